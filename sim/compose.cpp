@@ -29,8 +29,8 @@ void refuse_for_memory(std::string_view message) {
   if (message.find("ould not allocate") != std::string_view::npos) throw std::bad_alloc();
 }
 
-/// Installs error handlers for MuJoCo, which would otherwise write a log file and end the process on an error. Physics
-/// separately checks MuJoCo's counters of warnings after every step.
+/// Installs error handlers for MuJoCo, which would otherwise write a log file, and end the process on an error. Physics
+/// checks MuJoCo's counters of warnings after every step.
 void install_handlers() {
   static const bool kInstalled = [] {
     mju_user_warning = [](const char*) {};
@@ -57,8 +57,8 @@ int count_pairs(const mjModel& model) {
   return moving * (all - moving);
 }
 
-/// Returns whether the robot has a single geom, and MuJoCo's bounding-volume tree keeps the order of contacts. The tree
-/// sorts contacts by the first geom of a pair, which is the geom with the lower type number.
+/// Returns whether contacts have the same order with and without MuJoCo's bounding-volume tree. The robot must have a
+/// single geom; the tree sorts contacts by the geom of a pair with the lower type number.
 bool sorts_as_asked(const mjModel& model) {
   int robot = -1;
   for (int i = 0; i < model.ngeom; ++i) {
@@ -94,13 +94,13 @@ void spare_work(mjModel& model) {
   model.opt.enableflags |= mjENBL_SLEEP;
   std::fill(model.tree_sleep_policy, model.tree_sleep_policy + model.ntree, static_cast<int>(mjSLEEP_NEVER));
   model.opt.disableflags |= mjDSBL_ISLAND;  // the robot is a single island of connected bodies
-  // tests of bounding boxes are disabled for height fields, which are below every strut; planes have no box
+  // Height fields are below every strut, so tests of their bounding boxes are disabled. Planes have no box.
   for (int i = 0; i < model.ngeom; ++i) {
     if (model.geom_type[i] == mjGEOM_HFIELD)
       std::fill(model.geom_aabb + 6 * i + 3, model.geom_aabb + 6 * i + 6, mjMAXVAL);
   }
-  // with few pairs of geoms, the tree over the world's geoms saves time only if it contains just the geoms near the
-  // robot
+  // With few pairs of geoms, the tree over the world's geoms saves time only if it contains just the geoms near the
+  // robot.
   if (count_pairs(model) <= kFewPairs && !(NearGeoms::serves(model) && sorts_as_asked(model))) {
     model.opt.disableflags |= mjDSBL_MIDPHASE;
   }
@@ -133,7 +133,7 @@ World compose(const ResolvedSituation& situation, const std::filesystem::path& m
   World world;
   const SpecPtr spec = parse(models / robot_type.file);
   spec->option.timestep = kStep_s;
-  // of MuJoCo's integrators, only this one preserves energy and momentum of a tumbling body
+  // RK4 is the only integrator of MuJoCo that preserves energy and momentum of a tumbling body.
   spec->option.integrator = mjINT_RK4;
   spec->compiler.usethread = 0;
   robot_type.shape(spec.get(), situation->robot.values, world);

@@ -26,7 +26,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row[b.size()];
 }
 
-/// Returns whether the value of a parameter with this name must be a whole number, because it is a count or an index.
+/// Returns whether the value of a parameter must be a whole number, because the name indicates a count or an index.
 bool is_whole(std::string_view name) {
   return name.ends_with("_count") || name == "shape";
 }
@@ -41,7 +41,7 @@ double Values::at(std::string_view name) const {
 
 std::string nearest_name(std::string_view name, std::span<const std::string> known) {
   std::string best;
-  // a suggested name differs from the unknown name in at most half of its letters
+  // A suggested name differs from the unknown name in at most half of its letters.
   std::size_t best_distance = std::max<std::size_t>(2, name.size() / 2) + 1;
   for (const std::string& candidate : known) {
     const std::size_t distance = edit_distance(name, candidate);

@@ -11,7 +11,7 @@
 
 namespace tumble::sim {
 
-/// Parameter is a number that a component of a situation takes, with default, limits, unit and meaning. A switch is
+/// Parameter describes a number that a component of a situation uses: default, limits, unit and meaning. A switch is
 /// also a number: 0 is off, 1 is on.
 struct Parameter {
   std::string_view name;  ///< ends in its unit if it has one: slope_rad, mass_kg
@@ -22,7 +22,6 @@ struct Parameter {
   std::string_view doc;   ///< meaning and source, one sentence
 };
 
-/// Concatenates two tables of parameters.
 template <std::size_t M, std::size_t N>
 constexpr std::array<Parameter, M + N> joined(const std::array<Parameter, M>& first,
                                               const std::array<Parameter, N>& second) {
@@ -54,11 +53,11 @@ class Values {
   std::map<std::string, double> numbers_;
 };
 
-/// Fills in the defaults of a component's parameters. Rejects unknown names (suggesting the nearest known name), NaN
-/// and values outside their limits. Error messages start with `place`, for example "world.hill".
+/// Fills in the defaults of a component's parameters. Throws InvalidSituation for an unknown name (with the nearest
+/// known name), NaN, or a value outside its limits. Error messages start with `place`, for example "world.hill".
 Values resolve(const std::string& place, const Values& given, std::span<const Parameter> known);
 
-/// Returns the known name nearest to `name` by edit distance; empty if none is similar.
+/// Returns the known name nearest to `name` by edit distance, or an empty text if no name is similar.
 std::string nearest_name(std::string_view name, std::span<const std::string> known);
 
 /// ComponentType is a kind of world, robot, motion or sensor: one entry of a registry.
@@ -68,7 +67,7 @@ struct ComponentType {
   std::span<const Parameter> parameters;
 };
 
-/// Component is a part of a situation: the name of its type and its numbers.
+/// Component is a part of a situation: the name of its type, and its numbers.
 struct Component {
   std::string type;
   Values values;

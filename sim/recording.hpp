@@ -22,7 +22,7 @@ struct ContactTruth {
   std::int64_t time_ns = 0;
   Eigen::Vector3d point_W_m;
   Eigen::Vector3d normal_W;  ///< unit vector, into the robot
-  /// tangential velocity of the robot's surface at the contact, relative to the world
+  /// Tangential velocity of the robot's surface at the contact, relative to the world.
   Eigen::Vector3d slip_velocity_W_m_s;
   double normal_force_n = 0;
   std::int32_t surface_id = -1;
@@ -33,7 +33,7 @@ struct ImuTruth {
   std::string name;
   Eigen::Isometry3d T_BI = Eigen::Isometry3d::Identity();  ///< true mounting
   std::vector<Eigen::Vector3d> rate_rad_s;                 ///< exact: rotation over the window divided by its duration
-  std::vector<Eigen::Vector3d> specific_force_m_s2;        ///< exact: velocity change minus gravity, in midway axes
+  std::vector<Eigen::Vector3d> specific_force_m_s2;        ///< exact: velocity change minus gravity, in axes halfway
   std::vector<Eigen::Vector3d> gyro_unclipped_rad_s;       ///< readings with all errors except saturation
   std::vector<Eigen::Vector3d> accel_unclipped_m_s2;
   std::vector<Eigen::Vector3d> gyro_bias_rad_s;  ///< bias at each sample

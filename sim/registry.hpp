@@ -10,8 +10,8 @@
 
 namespace tumble::sim {
 
-/// Returns the registry entry with this name. Error messages start with `what` ("world"). Throws InvalidSituation that
-/// suggests the nearest known name.
+/// Returns the registry entry with this name. If there is none, throws InvalidSituation with the nearest known name.
+/// Error messages start with `what` ("world").
 template <typename Type>
 const Type& find_entry(std::span<const Type* const> registry, std::string_view name, const std::string& what) {
   std::vector<std::string> names;
@@ -24,7 +24,6 @@ const Type& find_entry(std::span<const Type* const> registry, std::string_view n
                          (near.empty() ? "" : "; did you mean '" + near + "'?"));
 }
 
-/// Returns the entries of a registry as a list of ComponentType.
 template <typename Type>
 std::vector<ComponentType> components(std::span<const Type* const> registry) {
   std::vector<ComponentType> list;

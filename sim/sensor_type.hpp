@@ -24,7 +24,7 @@ struct SensorContext {
 };
 
 /// SensorType is a kind of sensor: its parameters, and the function that adds its readings and truth to a recording. An
-/// optional check rejects parameters that contradict each other, with a message that starts with `place`.
+/// optional check throws InvalidSituation for parameters that contradict each other; the message starts with `place`.
 struct SensorType {
   ComponentType component;
   void (*simulate)(const SensorContext& context, Recording& recording);

@@ -27,16 +27,17 @@ struct ImuRecord {
   std::vector<Eigen::Vector3d> accel_m_s2;        ///< specific force
   std::vector<std::uint8_t> clip_flags;           ///< bits gyro x y z, accel x y z; zero for devices without flags
   std::vector<Eigen::Vector3d> magnetic_field_t;  ///< flux density in I, one per sample; empty without magnetometer
-  /// undisturbed field of the Earth, from a map; 0: unknown
+  /// Undisturbed field of the Earth, from a map; 0: unknown.
   Eigen::Vector3d earth_field_W_t = Eigen::Vector3d::Zero();
 };
 
 /// PointTimes states whether the times of the points within a sweep are known.
 enum class PointTimes : std::uint8_t {
   measured,  ///< each point has its own time in offset_ns
-  /// all points belong to the start of the sweep, because the lidar is a flash or the sweep is deskewed; offset_ns is 0
+  /// All points belong to the start of the sweep, because the lidar is a flash or the sweep is deskewed; offset_ns is
+  /// 0.
   not_skewed,
-  unknown  ///< the sweep is skewed in an unknown way; offset_ns is 0
+  unknown  ///< the motion distortion of the sweep is unknown; offset_ns is 0
 };
 
 /// LidarRecord contains the returns of one lidar, sweep after sweep. A firing without a hit gives no point.

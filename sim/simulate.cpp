@@ -52,10 +52,10 @@ Eigen::Isometry3d given_pose(const engine::World& world, const SensorSpec& senso
 
 Recording simulate(const BuiltSituation& built, int threads) {
   const Situation& situation = built.situation();
-  // a copy, because the floor's friction changes with the robot's position
+  // The world is a copy, because the floor's friction changes with the robot's position.
   engine::World world = engine::copy_of(built.world());
   const auto motion = find_motion_type(situation.motion.type).make(situation.motion.values, world);
-  // computed before the long simulation, so that an unknown site is reported immediately
+  // The mountings are computed before the long simulation, so that an unknown site is reported immediately.
   std::vector<Eigen::Isometry3d> mountings;
   for (const SensorSpec& sensor : situation.sensors) mountings.push_back(site_pose(world, sensor));
 

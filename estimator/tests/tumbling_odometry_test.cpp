@@ -355,7 +355,7 @@ TEST(TumblingOdometry, TellsAnAccelerometerOfTheOtherSense) {
     ASSERT_TRUE(mirrored.add_imu(sample).ok());
   }
   EXPECT_TRUE(sound.health().ok()) << sound.health().message();
-  EXPECT_NE(mirrored.health().message().find("a sign error of the accelerometer"), std::string::npos)
+  EXPECT_NE(mirrored.health().message().find("agrees with an inverted accelerometer"), std::string::npos)
       << mirrored.health().message();
 }
 

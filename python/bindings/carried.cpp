@@ -25,7 +25,7 @@ namespace tumble::python {
 
 namespace {
 
-/// Carried is a HandHeldSmoother with the ranges that the data sheet of the IMU states.
+/// Carried holds a HandHeldSmoother and the measurement ranges from the IMU's data sheet.
 struct Carried {
   HandHeldSmoother smoother;
   RailDetector::Params axis_aligned_rails;
@@ -59,8 +59,10 @@ void bind_smoother(nb::module_& m) {
       .def_ro("iterations", &Report::iterations)
       .def_ro("converged", &Report::converged)
       .def_ro("cost", &Report::cost)
-      .def_ro("hand_acceleration_ratio", &Report::hand_acceleration_ratio,
-              "2 or more indicates a thrown body or violent hand-held motion")
+      .def_ro(
+          "hand_acceleration_ratio", &Report::hand_acceleration_ratio,
+          "largest mean acceleration of the hand over 0.25 s, divided by the assumed standard deviation; 2 or more\n"
+          "indicates a thrown body or violent hand-held motion")
       .def_ro("revolutions_tested", &Report::revolutions_tested)
       .def_ro("revolutions_corrected", &Report::revolutions_corrected)
       .def_ro("revolutions_ambiguous", &Report::revolutions_ambiguous,
@@ -88,7 +90,7 @@ void bind_smoother(nb::module_& m) {
       .def_static("parameters", [] { return list_fields(HandHeldSmoother::Params{}); });
 }
 
-/// The stream makes one step per node and ignores these parameters.
+/// The stream makes one iteration per node and ignores these parameters.
 const std::vector<const char*> kUnusedParameters = {"iterations_max"};
 
 void bind_stream(nb::module_& m) {

@@ -23,11 +23,12 @@ using Report = LidarInertialOdometry::SweepReport;
 void bind_report(nb::module_& m) {
   nb::enum_<SweepVerdict>(
       m, "SweepVerdict", nb::is_arithmetic(),
-      "Result of registering a sweep. Unless it is `registered`, the pose depends on the inertial prior.")
+      "Result of registering a sweep. `registered`: the lidar determines the pose. Otherwise, the pose also\n"
+      "depends on the inertial prior.")
       .value("first", SweepVerdict::first, "started the map")
       .value("registered", SweepVerdict::registered, "aligned with the map in all six directions")
       .value("degenerate", SweepVerdict::degenerate,
-             "aligned in the directions that the surfaces constrain; the prior determines the others")
+             "aligned in the directions that the surfaces constrain; the prior determines the other directions")
       .value("rejected", SweepVerdict::rejected, "rejected: too few matches, or a correction beyond the bound");
   nb::class_<Report>(m, "SweepReport", "Result of a sweep. Poses are of the IMU, in W.")
       .def_ro("verdict", &Report::verdict)
@@ -55,7 +56,7 @@ void bind_report(nb::module_& m) {
       .def_ro("isolated_points", &Report::isolated_points)
       .def_ro("points_registered", &Report::points_registered)
       .def_ro("map_points_added", &Report::map_points_added)
-      .def_ro("in_prior_map", &Report::in_prior_map, "whether the poses are in the frame of the prior map");
+      .def_ro("in_prior_map", &Report::in_prior_map, "True if the poses are in the frame of the prior map");
   using C = SweepCalibration;
   nb::class_<C>(m, "SweepCalibration", "Estimated calibration of lidar, IMU and gravity.")
       .def_prop_ro(
@@ -65,7 +66,7 @@ void bind_report(nb::module_& m) {
           "gravity_m_s2", [](const C& c) { return whole<3>(c.gravity_W_m_s2.data()); }, "(3,), in W");
 }
 
-/// Python sets the box by `own_body_L`, so the fields of its corners are hidden.
+/// Python sets the box by the keyword `own_body_L`, so the corner fields are hidden.
 const std::vector<const char*> kBoxParameters = {"own_body_*"};
 
 LidarInertialOdometry::Params mapper_params(const nb::kwargs& given) {
@@ -126,7 +127,7 @@ Report add_sweep(Object& self, const WholeNumber& start_ns, const WholeNumber& e
     status = mapper.add_sweep(start, end, points, report);
     if (status.ok() || !report.trajectory.empty()) last.sweep_end_ns = end;
   });
-  // a report with a trajectory has the verdict `rejected` and the pose of the inertial prior, and is no error
+  // A report with a trajectory is not an error: its verdict is `rejected`, and its pose is the inertial prediction.
   if (report.trajectory.empty())
     require(status, std::nullopt, nb::none(), exact_sweep(status, start, end, before.sweep_end_ns));
   return report;

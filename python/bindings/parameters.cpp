@@ -105,7 +105,7 @@ void bind_parameter(nb::module_& m) {
       .def_ro("low", &Parameter::low, "smallest allowed value; for a vector, of each coordinate")
       .def_ro("high", &Parameter::high, "largest allowed value")
       .def_ro("meaning", &Parameter::meaning)
-      .def_ro("first", &Parameter::first, "whether this is one of the parameters that a user should set first")
+      .def_ro("first", &Parameter::first, "True for the basic parameters, which a user should set before all others")
       .def(
           "__repr__",
           [](const Parameter& p) {

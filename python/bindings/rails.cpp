@@ -73,7 +73,7 @@ void bind_rails(nb::module_& m) {
       "The rail of one sensing element, estimated from readings: the planes row . y = offset -+ distance.")
       .def_prop_ro(
           "row", [](const RailPlane& p) { return whole<3>(p.row.data()); },
-          "(3,): 1 along the element's own axis, its slopes along the other two")
+          "(3,): 1 along the element's own axis, and the slopes of the plane along the other two axes")
       .def_ro("distance", &RailPlane::distance_rad_s, "rad/s for a gyro, m/s^2 for an accelerometer")
       .def_ro("offset", &RailPlane::offset_rad_s)
       .def_ro("tolerance", &RailPlane::tolerance_rad_s,
@@ -90,7 +90,7 @@ void bind_rails(nb::module_& m) {
           nb::for_getter(nb::sig("def accel(self) -> list[RailPlane | None]")))
       .def_prop_ro(
           "upright", [](const Found& f) { return f.rails.gyro_clips_after_compensation; },
-          "whether the device clips its output axes, so that clipping of one axis leaves the other axes unaffected")
+          "True if the device clips its output axes; clipping of one axis then leaves the other axes unaffected")
       .def_prop_ro(
           "clipped_gyro", [](const Found& f) { return bits(f, &Clipping::gyro); },
           "(N,) uint8, bit j: axis j is clipped; the true value is at or beyond the reading")

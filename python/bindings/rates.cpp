@@ -26,7 +26,7 @@ namespace tumble::python {
 
 namespace {
 
-/// Reads lever arm, calibration and ranges, which are not numeric fields of the parameters.
+/// Reads lever arm, calibration and measurement ranges, which are not numeric fields of `Params`.
 void read_rig(Keywords& keywords, RateModelParams& model, RailDetector::Params& rails) {
   model.nominal.lever_arm_m = vector_of(keywords.need("lever_arm_m"), "lever_arm_m");
   const nb::object calibration = keywords.take("calibration");
@@ -34,7 +34,7 @@ void read_rig(Keywords& keywords, RateModelParams& model, RailDetector::Params& 
   read_ranges(keywords, rails);
 }
 
-/// Returns the part of a class's parameters that contains the rate model and the saturation levels.
+/// Returns the member of `params` that contains the rate model and the saturation limits.
 RateSmoother::Params& rate_part(RateSmoother::Params& params) {
   return params;
 }
@@ -119,15 +119,15 @@ void bind_batch(nb::module_& m) {
       .def_ro("calibration_mahalanobis", &RateReport::calibration_mahalanobis,
               "distance of the calibration from its prior; a value far above 1 indicates a wrong prior")
       .def_ro("calibration_at_prior", &RateReport::calibration_at_prior,
-              "whether the calibration was not updated and equals its prior")
+              "True if the run did not update the calibration, which then equals its prior")
       .def_ro("rail", &RateReport::rail, "rails in use: gyro x y z [rad/s], accelerometer [m/s^2]; None: not detected")
       .def_prop_ro(
           "planes", [](const RateReport& r) { return as_list(r.planes); },
           nb::for_getter(nb::sig("def planes(self) -> list[RailPlane | None]")), "rails of the gyro elements")
       .def_ro("rate_unit_suspect", &RateReport::rate_unit_suspect,
-              "whether the rates are implausible, for example in degrees")
+              "True if the rates are implausible, for example because they are in deg/s")
       .def_ro("force_unit_suspect", &RateReport::force_unit_suspect,
-              "whether the specific force is near 1, for example in g")
+              "True if the magnitude of the specific force is near 1, so that its unit may be g")
       .def_ro("samples", &RateReport::samples)
       .def_ro("clipped", &RateReport::clipped)
       .def_ro("recovered_flight", &RateReport::recovered_flight)

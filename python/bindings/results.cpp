@@ -170,7 +170,7 @@ void bind_rolling_of_results(nb::module_& m) {
           "at_rest", [](const R& s) { return column<bool>(s.rows, [](auto& r) { return &r.at_rest; }); }, "(N,) bool")
       .def_prop_ro(
           "uncertain", [](const R& s) { return column<bool>(s.rows, [](auto& r) { return &r.uncertain; }); },
-          "(N,) bool: whether the sample is in an event that made the position uncertain");
+          "(N,) bool: True for samples in an event that made the position uncertain");
 }
 
 void bind_map(nb::module_& m) {
@@ -230,7 +230,7 @@ void bind_findings(nb::module_& m) {
           "kind of fault, for example 'frozen_axis'")
       .def_ro("sensor", &HealthFinding::sensor,
               "'imu', 'imu_2' for the second of several IMUs, 'lidar'; '': the estimate")
-      .def_ro("axis", &HealthFinding::axis, "'gyro_x' to 'accel_z', or '' unless one axis is suspect")
+      .def_ro("axis", &HealthFinding::axis, "'gyro_x' to 'accel_z' if one axis is suspect, otherwise ''")
       .def_ro("quantity", &HealthFinding::quantity, "the tested quantity, with its unit")
       .def_ro("value", &HealthFinding::value, "value of the quantity")
       .def_ro("bound", &HealthFinding::bound, "violated limit")

@@ -121,12 +121,12 @@ void bind_filter(nb::module_& m) {
       .def_prop_ro(
           "started_in_motion",
           [](Object& self) { return self.run([](Live& at) { return at.state->started_in_motion; }); },
-          "whether the run started in motion; the initial attitude then has a larger uncertainty")
+          "True if the run started in motion; the initial attitude then has a larger uncertainty")
       .def_static("parameters", [] { return list_fields(RollingFilter::Params{}); });
   bind_keeping<RollingFilter>(bound);
 }
 
-/// Returns the names of the parameters that RollingOdometry determines.
+/// Returns the names of the parameters that RollingOdometry sets itself.
 const std::vector<const char*>& derived_rolling_parameters() {
   static const std::vector<const char*> all(RollingOdometry::Params::derived_fields().begin(),
                                             RollingOdometry::Params::derived_fields().end());
@@ -168,7 +168,7 @@ RollingEstimate as_estimate(const RollingOdometry::Pose& p) {
           p.uncertain};
 }
 
-/// Returns the samples of all IMUs, from one triple of arrays or from lists with one array per IMU. All IMUs share
+/// Returns the samples of all IMUs. The input is one triple of arrays, or lists with one array per IMU. All IMUs share
 /// `time_ns`.
 std::vector<std::vector<ImuSample>> samples_of_units(const ArrayLike& time_ns, const ArrayLike& gyro,
                                                      const ArrayLike& accel, std::size_t units) {
@@ -214,9 +214,9 @@ void bind_unit(nb::module_& m) {
   nb::class_<U>(m, "SphereUnit",
                 "State of one IMU of a sphere, from a comparison with the other IMUs. A sphere with a single IMU has "
                 "no such state.")
-      .def_ro("frozen", &U::frozen, "whether its readings are constant while those of the other units change")
+      .def_ro("frozen", &U::frozen, "True if its readings are constant while the readings of the other units change")
       .def_ro("disagrees", &U::disagrees,
-              "whether it has disagreed with the other units for a long time and is excluded")
+              "True if the unit is excluded, because it has disagreed with the other units for a long time")
       .def_ro("left_out", &U::excluded_windows, "number of windows in which its specific force was excluded")
       .def_ro("absent", &U::missing_samples, "number of samples that were not finite")
       .def_prop_ro("time_offset_s", &U::offset_s, "offset of its clock from the mean of all units")

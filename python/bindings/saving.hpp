@@ -19,8 +19,8 @@ inline std::span<const std::byte> state_of(nb::handle given) {
   return {reinterpret_cast<const std::byte*>(bytes.c_str()), bytes.size()};
 }
 
-/// Binds save() and load(), which T has, and pickling by them. `restored(bytes)` constructs a T with the parameters
-/// stored in the bytes.
+/// Binds save(), load() and pickling for a class T that has save and load. `restored(bytes)` constructs a T with the
+/// parameters stored in the bytes.
 template <class T, class Class, class Restored>
 void bind_saving(Class& bound, Restored restored) {
   using Object = Guarded<T>;

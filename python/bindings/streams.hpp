@@ -21,15 +21,15 @@ namespace tumble::python {
 
 namespace nb = nanobind;
 
-/// Running is a filter of the library with its State, as one Python object.
+/// Running holds a filter of the library and its State in one Python object.
 template <class Filter, class State = typename Filter::State>
 struct Running {
   Filter filter;
   State state;
 };
 
-/// Streaming is a stream with its State, which can be saved. The State is on the heap, because that of a sphere has
-/// half a megabyte.
+/// Streaming holds a stream and its State. The State is on the heap, because the state of a sphere stream needs half a
+/// megabyte.
 template <SavedStream Stream>
 struct Streaming {
   using Params = typename Stream::Params;
@@ -52,7 +52,7 @@ struct Streaming {
   Status load(std::span<const std::byte> bytes) { return load_state<Stream>(bytes, params, *state); }
 };
 
-/// Constructs a stream from saved bytes alone.
+/// Constructs a stream, including its parameters, from saved bytes.
 template <class Stream>
 Streaming<Stream> restored(std::span<const std::byte> bytes) {
   typename Stream::Params params;
@@ -62,15 +62,15 @@ Streaming<Stream> restored(std::span<const std::byte> bytes) {
   return out;
 }
 
-/// Binds the functions copy, save, load and pickle of a stream.
+/// Binds copying, save(), load() and pickling of a stream.
 template <class Stream, class Class>
 void bind_keeping(Class& bound) {
   bind_copy<Guarded<Streaming<Stream>>>(bound);
   bind_saving<Streaming<Stream>>(bound, &restored<Stream>);
 }
 
-/// Adds samples to an estimator up to the first rejected sample. The raised TumbleError then has the index of that
-/// sample and the results before it. `step(estimator, sample, out)` returns a Status.
+/// Adds samples to an estimator until it rejects one. The raised TumbleError then contains the index of the rejected
+/// sample and the results of the earlier samples. `step(estimator, sample, out)` returns a Status.
 template <class Out, class Estimator, class Step>
 Out feed(Guarded<Estimator>& to, const std::vector<ImuSample>& samples, Step step) {
   Out out;
@@ -88,7 +88,8 @@ Out feed(Guarded<Estimator>& to, const std::vector<ImuSample>& samples, Step ste
   return out;
 }
 
-/// Returns the exact times of a rejected sweep: relative to its own start, or to the end of the previous sweep.
+/// Returns the exact value and bound of the time that made the estimator reject a sweep. The bound is the sweep's own
+/// start or the end of the previous sweep.
 inline ExactTimes exact_sweep(const Status& status, TimeNs start_ns, TimeNs end_ns, std::optional<TimeNs> before_ns) {
   if (std::string_view(status.field) == "end_ns") return {end_ns, start_ns};
   return {start_ns, before_ns};

@@ -35,7 +35,7 @@ TumblingOdometry restored_tumbling(std::span<const std::byte> bytes) {
 using BoundTumblingOdometry = Guarded<TumblingOdometry>;
 using Sweep = TumblingOdometry::Sweep;
 
-/// Returns the names of the parameters that the data sheets and TumblingOdometry itself determine.
+/// Returns the names of the parameters that TumblingOdometry computes itself or reads from data sheets.
 const std::vector<const char*>& derived_tumbling_parameters() {
   static const std::vector<const char*> all = [] {
     const auto derived = TumblingOdometry::Params::Expert::derived_fields();
@@ -53,7 +53,7 @@ Sheet sheet_of(nb::handle given, const char* field, const char* type) {
   return sheet;
 }
 
-/// Reads pairs (LidarSheet, T_IL) or triples with own_body_L.
+/// Converts pairs (LidarSheet, T_IL) or triples (LidarSheet, T_IL, own_body_L).
 std::vector<FurtherLidar> further_lidars_of(const nb::object& given) {
   std::vector<FurtherLidar> out;
   for (const nb::handle each : given) {
@@ -242,7 +242,7 @@ void bind_accessors(Class& bound) {
           [](BoundTumblingOdometry& self) {
             return self.run([](TumblingOdometry& odometry) { return odometry.second_pass_applied(); });
           },
-          "whether the map and the pose come from the second pass")
+          "True if the map and the pose come from the second pass")
       .def_prop_ro(
           "dropped_sweeps",
           [](BoundTumblingOdometry& self) {
@@ -260,7 +260,7 @@ void bind_tumbling(nb::module_& m) {
           "message", [](const Sweep& s) { return s.status.message(); }, "\"ok\", or the error")
       .def_prop_ro(
           "placed", [](const Sweep& s) { return !s.report.trajectory.empty(); },
-          "whether the sweep has poses; a sweep that starts before the first IMU sample has none")
+          "True if the sweep has poses; a sweep that starts before the first IMU sample has no poses")
       .def_ro("report", &Sweep::report)
       .def_prop_ro(
           "pose_in_position_frame",
@@ -274,7 +274,7 @@ void bind_tumbling(nb::module_& m) {
       .def_ro("sigma", &SweepScale::sigma, "standard deviation of scale; infinite before the first comparison")
       .def_ro("changes", &SweepScale::changes, "number of compared changes of velocity")
       .def_prop_ro("is_inconsistent", &SweepScale::is_inconsistent,
-                   "whether scale differs from 1 by more than 2 % and more than five standard deviations");
+                   "True if scale differs from 1 by more than 2 % and by more than five standard deviations");
   nb::class_<BoundTumblingOdometry> bound(
       m, "TumblingOdometry",
       "Estimates pose, velocity and map of a tumbling body, causally and sample by sample. The sensors are one IMU, "

@@ -41,7 +41,7 @@ class OdometryNode : public rclcpp::Node, public Publisher {
 
  protected:
   using Trigger = std_srvs::srv::Trigger;
-  static constexpr std::size_t kImuDepth = 2000;  ///< samples that wait while a sweep is registered
+  static constexpr std::size_t kImuDepth = 2000;  ///< queue of IMU samples that arrive while a sweep is registered
 
   /// Starts a new run at a pose of the base. Without a pose, the run starts at the origin, or anywhere in a prior map.
   /// Returns `empty` before the first data.
@@ -50,8 +50,9 @@ class OdometryNode : public rclcpp::Node, public Publisher {
   std::string text(const std::string& parameter) { return get_parameter(parameter).as_string(); }
   std::vector<double> list(const std::string& parameter) { return get_parameter(parameter).as_double_array(); }
   using Serialized = std::function<void(std::shared_ptr<rclcpp::SerializedMessage>)>;
-  /// Subscribes as soon as the topic has a publisher, reliably if all its publishers are reliable. Best-effort
-  /// subscriptions lose large clouds. If the topic has the type CustomMsg of Livox, `livox` receives the messages.
+  /// Subscribes as soon as the topic has a publisher. The subscription is reliable if all publishers of the topic are
+  /// reliable, because best-effort subscriptions lose large clouds. If the topic has the type CustomMsg of Livox,
+  /// `livox` receives the messages.
   template <class Message>
   void subscribe(const std::string& topic, std::size_t depth, std::function<void(const Message&)> callback,
                  Serialized livox = nullptr);
@@ -71,7 +72,7 @@ class OdometryNode : public rclcpp::Node, public Publisher {
   nav_msgs::msg::Odometry message(const Odometry& odometry, bool from_imu);
 
   std::vector<std::function<bool()>>
-      inputs_;  ///< functions that subscribe to a topic with a publisher, and return whether the node has subscribed
+      inputs_;  ///< each function subscribes to a topic if it has a publisher, and returns true after the subscription
   std::vector<rclcpp::SubscriptionBase::SharedPtr> subscriptions_;
   rclcpp::TimerBase::SharedPtr timer_;
   tf2_ros::Buffer buffer_;

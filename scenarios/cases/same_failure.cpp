@@ -14,7 +14,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Returns whether the metric of an outcome exceeds its limit; NaN gives false.
+/// Returns true if the metric is worse than its limit, and false if the metric is missing.
 bool is_beyond(const Outcome& outcome, const std::string& metric, double limit) {
   const double value = value_of(outcome.scores, metric);
   if (std::isnan(value)) return false;
@@ -26,7 +26,8 @@ bool is_beyond(const Outcome& outcome, const std::string& metric, double limit) 
 SameFailure::SameFailure(const Failure& failure, const Outcome& outcome) : status_(outcome.status) {
   if (status_ == OutcomeStatus::killed)
     throw BadInput(fmt::format(
-        "the machine ended the run (status 'killed'), so the run gives no result for the method: {}", outcome.message));
+        "the operating system killed the run (status 'killed'), so the run shows nothing about the method: {}",
+        outcome.message));
   if (status_ != OutcomeStatus::ok) return;
   if (!failure.metric.empty() && is_beyond(outcome, failure.metric, failure.limit)) {
     metric_ = failure.metric;
@@ -35,7 +36,7 @@ SameFailure::SameFailure(const Failure& failure, const Outcome& outcome) : statu
   }
   const auto condemned = std::find_if(outcome.scores.begin(), outcome.scores.end(), is_failed_verdict);
   if (condemned != outcome.scores.end()) {
-    metric_ = condemned->metric;  // 0 is good, 1 is bad
+    metric_ = condemned->metric;  // metric of unit verdict: 0 passes, 1 fails
     return;
   }
   std::string text = "the run does not fail: its status is 'ok', and no metric fails";

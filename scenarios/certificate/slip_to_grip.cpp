@@ -31,8 +31,7 @@ std::vector<CertificateEntry> certify_slip_to_grip(const CertificateInput& input
   state.v_WB_m_s = {setup.speed_m_s, 0.0, 0.0};
   trial.set_state(state);
 
-  // With soft contact, the last 0.5 % of the slip velocity decays slowly. The measurement therefore stops when 0.5 % of
-  // the slip velocity remains.
+  // With soft contact, the last 0.5 % of the slip velocity decays slowly, so the measurement stops there.
   constexpr double kLeftOver = 0.005;
   const double mass_kg = trial.mass_kg(), inertia_kg_m2 = trial.inertia_B_kg_m2()(1, 1);
   const double expected_s =
@@ -48,8 +47,9 @@ std::vector<CertificateEntry> certify_slip_to_grip(const CertificateInput& input
     before_m_s = now_m_s;
   }
   return {{"slip_to_grip_time", "sphere",
-           "a sphere that starts sliding at v0 grips after v0 / (mu g (1 + m r^2 / I)): relative difference", "1",
-           gripped_s / expected_s - 1.0, -0.01, 0.01, ""}};
+           "a sphere that starts to slide at the speed v0 grips after the time v0 / (mu g (1 + m r^2 / I)): relative "
+           "difference (mu: friction coefficient; m, r, I: mass, radius and moment of inertia)",
+           "1", gripped_s / expected_s - 1.0, -0.01, 0.01, ""}};
 }
 
 }  // namespace tumble::scenarios

@@ -15,13 +15,13 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Throws BadInput if a number is missing, because the simulation would otherwise use the default without a message.
+/// Throws BadInput if a number is missing, because the simulation would otherwise silently use a default.
 void require_every_number(const DataSheet& sheet, const std::string& file, const Registry& registry) {
   for (const sim::Parameter& parameter : find_type(registry.sensors, sheet.sensor_kind)->parameters) {
     const auto is_it = [&](const DataSheet::Entry& entry) { return entry.name == parameter.name; };
     if (std::none_of(sheet.entries.begin(), sheet.entries.end(), is_it)) {
-      throw BadInput(fmt::format("{}: '{}' is missing; a data sheet needs every number of kind '{}' ({})", file,
-                                 parameter.name, sheet.sensor_kind, parameter.doc));
+      throw BadInput(fmt::format("{}: '{}' is missing; a data sheet of kind '{}' must state each of its numbers ({})",
+                                 file, parameter.name, sheet.sensor_kind, parameter.doc));
     }
   }
 }

@@ -41,7 +41,7 @@ void fix(const Scenario& scenario, const std::string& key, const std::string& na
   fix(scenario, key, name, value, find_type(types, part.type)->parameters, part.numbers);
 }
 
-/// Replaces one number of a sensor by a constant. The text `rest` is the part of the key after "sensors.", for example
+/// Replaces one parameter of a sensor by a constant. `rest` is the part of the key after "sensors.", for example
 /// "imu.output_rate_hz".
 void fix_of_sensor(Scenario& scenario, const std::string& key, const std::string& rest, double value,
                    const Registry& registry) {
@@ -52,7 +52,7 @@ void fix_of_sensor(Scenario& scenario, const std::string& key, const std::string
   const auto at = std::find(names.begin(), names.end(), name);
   if (at == names.end()) fail(scenario, key, "unknown sensor '" + name + "'" + suggestion(name, names));
   if (dot == std::string::npos)
-    fail(scenario, key, "the key does not name a number of the sensor, as in 'sensors.NAME.NUMBER'");
+    fail(scenario, key, "the key names no number of the sensor; write 'sensors.NAME.NUMBER'");
   Scenario::Sensor& sensor = scenario.sensors[static_cast<std::size_t>(at - names.begin())];
   const std::string number = rest.substr(dot + 1);
   const std::string mount = "mount_error.";

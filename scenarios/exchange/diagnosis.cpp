@@ -188,7 +188,8 @@ std::vector<RecordingFinding> findings_in_readings(const sim::Sensors& sensors) 
     if (lidar.point_times == sim::PointTimes::unknown)
       out.push_back(
           {lidar.name, "the points have no times, so sweeps cannot be deskewed",
-           "name the field with the point times by --time-field NAME, or enable point times in the lidar's driver"});
+           "set --time-field NAME to the field that contains the point times, or enable point times in the lidar's "
+           "driver"});
   }
   return out;
 }

@@ -22,8 +22,8 @@ std::string labels_text(const AxisLabels& labels) {
     axes.sign[read] = static_cast<int>(labels.sign[j]);
   }
   return fmt::format(
-      "caution: gravity in the accelerometer rotates as if the accelerometer's axes x, y, z were the axes {}{}; check "
-      "the signs and the order of the axes in the driver",
+      "caution: the gravity that the accelerometer measures rotates as if the accelerometer's axes x, y, z were the "
+      "axes {}{}; check the signs and the order of the axes in the driver",
       axes.text(), labels.gyro_flipped ? " of a gyro with opposite sign" : " of the gyro");
 }
 

@@ -61,8 +61,8 @@ void require_position(const Eigen::Vector3d& p_m, const std::string& where) {
 void require_attitude(const Eigen::Quaterniond& q, const std::string& where) {
   const double norm = q.coeffs().stableNorm();
   if (std::abs(norm - 1.0) <= kAnswerNormTolerance) return;
-  throw BadInput(
-      fmt::format("{}: the quaternion has norm {:g}; it must be 1 within {:g}", where, norm, kAnswerNormTolerance));
+  throw BadInput(fmt::format("{}: the quaternion has norm {:g}; it must be 1 (difference at most {:g})", where, norm,
+                             kAnswerNormTolerance));
 }
 
 /// Checks that a covariance is finite, with variances of at least 0 and correlations of at most 1.
@@ -168,8 +168,9 @@ void AnswerBounds::require_rates(const std::vector<RateState>& rates, const Plac
   for (std::size_t k = 0; k < rates.size(); ++k) {
     const Eigen::Vector3d& rate_rad_s = rates[k].w_WI_I_rad_s;
     if (!rate_rad_s.allFinite() || rate_rad_s.cwiseAbs().maxCoeff() > kRateMax_rad_s)
-      throw BadInput(fmt::format("{}: the rate is {} rad/s; it must be finite and within {:g} rad/s", place(k),
-                                 text_of(rate_rad_s), kRateMax_rad_s));
+      throw BadInput(
+          fmt::format("{}: the rate is {} rad/s; its components must be finite and at most {:g} rad/s in magnitude",
+                      place(k), text_of(rate_rad_s), kRateMax_rad_s));
     require_covariance(rates[k].covariance_rad2_s2, place(k));
     require_time(rates[k].time_ns, place(k));
   }

@@ -17,7 +17,7 @@ Estimate run_attitude_eskf(const sim::Sensors& sensors, const sim::Values& param
   baselines::Eskf::Params params;
   params.gravity_m_s2 = sensors.gravity_m_s2;
   attitude_eskf_settings().apply(parameters, params);
-  // The filter and AttitudeState use the same attitude error: in world axes, with q_true = Exp(phi) q.
+  // Eskf and AttitudeState define the attitude error equally: in world axes, with q_true = Exp(phi) q.
   return run_attitude_filter<baselines::Eskf>(
       sensors, params,
       [](const baselines::Eskf::State& state) -> Eigen::Matrix3d { return state.covariance.topLeftCorner<3, 3>(); });

@@ -16,7 +16,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Returns the sensor data with the true gyro readings before clipping. The accelerometer readings remain clipped.
+/// Returns the sensor data with the true gyro readings before clipping. The accelerometer stays clipped.
 sim::Sensors unclipped_gyros(const sim::Sensors& sensors, const sim::Truth& truth) {
   if (truth.imus.size() < sensors.imus.size()) throw BadInput("the truth lacks an IMU of the recording");
   sim::Sensors out;
@@ -37,8 +37,8 @@ sim::Sensors unclipped_gyros(const sim::Sensors& sensors, const sim::Truth& trut
 }
 
 Estimate run_attitude_oracle(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput& oracle) {
-  // The original readings are also checked, because an oracle (a method with true input) must fail where every method
-  // must fail.
+  // The clipped readings are checked too: where no method can succeed, the oracle (a method with true input) must also
+  // fail.
   Estimate estimate;
   std::vector<ImuSample> samples;
   estimate.status = bridge::primary_imu_samples(sensors, samples);

@@ -22,8 +22,7 @@ TumbleAttitude::Params stated(const sim::Sensors& sensors) {
   return params;
 }
 
-/// Estimates the attitude of a sphere from all IMUs, merged in body axes. The rolling motion supplies the velocity of
-/// the sphere.
+/// Estimates the attitude of a sphere from all IMUs, merged in body axes. The rolling motion measures the velocity.
 Estimate run_sphere(const sim::Sensors& sensors, const sim::Values& parameters) {
   Estimate estimate;
   estimate.frame = Frame::body;
@@ -58,7 +57,7 @@ Estimate run_rig(const sim::Sensors& sensors, const sim::Values& parameters) {
   std::vector<ImuSample> samples;
   estimate.status = bridge::primary_imu_samples(sensors, samples);
   if (!estimate.status.ok()) return estimate;
-  check_imu(sensors, samples, estimate);  // Only a warning: constant external pushes can cause the same readings.
+  check_imu(sensors, samples, estimate);  // a warning: constant external pushes cause the same readings
   const CheckedImu imu = checked_imu(sensors);
   report_findings(check_frozen(imu, samples), sensors, estimate);
   const RecoveredRates recovered = recovered_readings(sensors, samples, ReplacedReadings::unreliable, estimate);
@@ -108,8 +107,9 @@ void report_unknown_attitude(Estimate& estimate) {
   }
   SensorHealth health;
   if (unknown_s > 0.0)
-    health.add({HealthFinding::Kind::attitude_unknown, "", "", "time in s with a standard deviation above 0.5 rad",
-                unknown_s, 0.0, 1.0, since_ns, ended});
+    health.add({HealthFinding::Kind::attitude_unknown, "", "",
+                "time in s during which the standard deviation of the tilt exceeds 0.5 rad", unknown_s, 0.0, 1.0,
+                since_ns, ended});
   add_findings(health, {}, estimate);
 }
 

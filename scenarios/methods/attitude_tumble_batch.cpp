@@ -17,12 +17,11 @@ namespace tumble::scenarios {
 namespace {
 
 /// The hand-held smoother replaces the rate smoother if the probability of hand-held motion in clipped intervals
-/// exceeds kCarried. During hand-held motion, the motion limits of the hand-held smoother give better rates than the
-/// rate smoother.
+/// exceeds this value. During hand-held motion, its limits on the motion give better rates.
 constexpr double kCarried = 0.5;
 
-/// Smooths the attitude with the recovered rates as gyro readings, for a body that was not hand-held while its gyro
-/// clipped. The vector `rates` is the output of the rate smoother.
+/// Smooths the attitude of a body that was not hand-held while its gyro clipped. Recovered rates replace the gyro
+/// readings. `rates` is the output of the rate smoother.
 Status run_thrown(const sim::Sensors& sensors, const sim::Values& parameters, const std::vector<ImuSample>& samples,
                   const RecoveredRates& recovered, std::vector<RateState>& rates, Estimate& estimate) {
   const std::vector<Eigen::Matrix3d>& covariances = recovered.covariances_rad2_s2;
@@ -39,8 +38,8 @@ Status run_thrown(const sim::Sensors& sensors, const sim::Values& parameters, co
   return status;
 }
 
-/// Compares the recovered rates with the direction of gravity at the standstills of the body. The check uses the input
-/// of the attitude smoother, because the smoother's output always agrees with gravity at standstills.
+/// Compares the recovered rates with the direction of gravity at standstills. The check uses the rates before attitude
+/// smoothing, because the smoothed attitude always agrees with gravity at standstills.
 void check_at_rests(const sim::Sensors& sensors, const std::vector<ImuSample>& samples, const RecoveredRates& recovered,
                     Estimate& estimate) {
   std::vector<RateState> read(recovered.sources.size());
@@ -58,7 +57,7 @@ Estimate run_attitude_tumble_batch(const sim::Sensors& sensors, const sim::Value
   std::vector<ImuSample> samples;
   estimate.status = bridge::primary_imu_samples(sensors, samples);
   if (!estimate.status.ok()) return estimate;
-  check_imu(sensors, samples, estimate);  // Only a warning, as in the filters.
+  check_imu(sensors, samples, estimate);  // a warning, as in the filters
   const CheckedImu imu = checked_imu(sensors);
   report_findings(check_frozen(imu, samples), sensors, estimate);
   RecoveredRates recovered;

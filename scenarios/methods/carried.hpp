@@ -13,15 +13,15 @@
 #include "tumble/attitude/clipped_readings.hpp"
 #include "tumble/attitude/hand_held_smoother.hpp"
 
-/// The functions in carried.hpp run the hand-held smoother on the primary IMU after saturation detection. All methods
-/// for hand-held motion use the functions in carried.hpp.
+/// The methods for hand-held motion use the functions in carried.hpp, which run the hand-held smoother on the primary
+/// IMU after saturation detection.
 namespace tumble::scenarios {
 
 /// Returns the settings of the hand-held methods, with the library's defaults.
 const Settings<HandHeldSmoother::Params>& carried_settings();
 
-/// Finds the saturated sensing elements of each sample from the measurement ranges of the IMU and the readings. The
-/// detected saturation limits are added to `health` (report_rails.hpp).
+/// Finds the saturated sensing elements in each sample, from the readings and the measurement ranges of the IMU. Adds
+/// the detected saturation limits to `health` (report_rails.hpp).
 ClippedReadings find_clipped(const sim::ImuRecord& record, std::span<const ImuSample> samples,
                              std::map<std::string, double>& health);
 
@@ -29,8 +29,8 @@ ClippedReadings find_clipped(const sim::ImuRecord& record, std::span<const ImuSa
 /// the recording.
 HandHeldSmoother::Params carried_params(const sim::Sensors& sensors, const sim::Values& parameters);
 
-/// Runs the hand-held smoother over the primary IMU. Returns an error of the IMU record or of the smoother; the outputs
-/// are then empty.
+/// Runs the hand-held smoother over the primary IMU. On an error of the IMU record or of the smoother, the outputs are
+/// empty.
 Status run_carried(const sim::Sensors& sensors, const sim::Values& parameters, std::vector<RateState>& rates,
                    std::vector<AttitudeState>& attitudes, std::map<std::string, double>& health);
 

@@ -69,9 +69,10 @@ void report_stamps(const sim::Sensors& sensors, Estimate& estimate) {
   const sim::ImuRecord& imu = sensors.imus.front();
   if (!are_rounded(imu.time_ns)) return;
   SensorHealth health;
-  health.add(HealthFinding::Kind::rounded_stamps,
-             {ErrorCode::out_of_range, "rounding of the time stamps in s", kRounding_s, seconds(imu.period_ns)},
-             imu.name);
+  health.add(
+      HealthFinding::Kind::rounded_stamps,
+      {ErrorCode::out_of_range, "step in s to which the time stamps are rounded", kRounding_s, seconds(imu.period_ns)},
+      imu.name);
   add_finding(health.findings.front(), estimate);
 }
 

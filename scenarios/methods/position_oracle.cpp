@@ -18,9 +18,9 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr std::int64_t kEdgeNs = 400'000'000;
-constexpr double kLevelTiltRad = 0.005;  // smaller tilts of the floor count as level
+constexpr double kLevelTiltRad = 0.005;  // a floor with a smaller tilt counts as level
 
-/// Prepared contains the merged IMUs of a sphere and the smoother's parameters from the recording.
+/// Prepared contains the merged IMU readings of a sphere, and the smoother's parameters from the recording.
 struct Prepared {
   std::vector<ImuSample> samples;
   RollingSmoother::Params params;
@@ -41,7 +41,7 @@ bool prepare(const char* method, const sim::Sensors& sensors, Prepared& out, Est
   return true;
 }
 
-/// Returns the smoother's settings without the `fixed` parameters, which the method takes from the truth.
+/// Returns the smoother's settings without the parameters in `fixed`, whose values come from the truth.
 Settings<RollingSmoother::Params> oracle_settings(std::vector<std::string> fixed) {
   RollingSmoother::Params params;
   params.filter.radius_m = presets::kSphereRadius_m;
@@ -49,13 +49,13 @@ Settings<RollingSmoother::Params> oracle_settings(std::vector<std::string> fixed
   return Settings<RollingSmoother::Params>(
       params, {.stated = {"radius_m", "gravity_m_s2", "lever_arm_x_m", "lever_arm_y_m", "lever_arm_z_m",
                           "gyro_range_rad_s", "accel_range_m_s2", "recovered_rate_sigma_rad_s",
-                          // The following parameters depend on whether the device has a data sheet.
+                          // The values of the following parameters depend on whether the device has a data sheet.
                           "gyro_bias_sigma_rad_s", "accel_bias_sigma_m_s2", "tilt_sigma_rad", "accel_scale_sigma",
                           "gyro_scale_sigma", "accel_delay_sigma_s", "lever_arm_sigma_m", "incline_begins_per_s"},
                .fixed = std::move(fixed)});
 }
 
-/// Smooths all samples of a recording; the vector `known` contains the true contact modes, or is empty.
+/// Smooths all samples of a recording. `known` contains the true contact modes; if empty, they are estimated.
 void smooth(const Prepared& prepared, std::span<const RollingMode> known, Estimate& estimate) {
   const RollingSmoother smoother(prepared.params);
   const auto state = std::make_unique<RollingSmoother::State>();
@@ -85,7 +85,7 @@ std::size_t physics_index(const sim::Truth& truth, std::int64_t time_ns, std::si
   return std::min(static_cast<std::size_t>(std::max<std::int64_t>(time_ns, 0) / truth.period_ns), count - 1);
 }
 
-/// A method with the true attitude lacks the parameters of the attitude estimate.
+/// A method with the true attitude has no parameters of the attitude estimate.
 const Settings<RollingSmoother::Params>& settings_with_attitude() {
   static const Settings<RollingSmoother::Params> all =
       oracle_settings({"gyro_range_rad_s", "tilt_sigma_rad", "gyro_bias_sigma_rad_s", "gyro_scale_sigma",
@@ -109,7 +109,7 @@ Estimate run_exact_attitude(const sim::Sensors& sensors, const sim::Values& para
   }
   const Eigen::Matrix3d R_BI = truth.imus.front().T_BI.linear();
   std::size_t next = 0;
-  for (ImuSample& sample : imus.samples) {  // average over readings of the primary IMU
+  for (ImuSample& sample : imus.samples) {  // mean of the primary IMU's readings
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     const std::size_t first = next;
     while (next < times_ns.size() && times_ns[next] <= sample.time_ns) sum += truth.imus.front().rate_rad_s[next++];
@@ -130,7 +130,7 @@ Estimate run_exact_attitude(const sim::Sensors& sensors, const sim::Values& para
   return estimate;
 }
 
-/// Changes short intervals of the mode `incline` to bumps, because an edge tilts the contact normal only briefly.
+/// Replaces short intervals of the mode `incline` by `bump`, because an edge tilts the contact normal only briefly.
 void edges_are_bumps(std::int64_t period_ns, std::vector<RollingMode>& modes) {
   for (std::size_t begin = 0; begin < modes.size();) {
     std::size_t end = begin;

@@ -21,20 +21,20 @@ namespace {
 
 constexpr double kLagS = 1.0;
 constexpr TimeNs kHealthPeriodNs = 100'000'000;       // time between two calls of health()
-constexpr double kSpinsM_s = 0.2, kSpinsShare = 0.3;  // speed difference at which a hop counts as slip
+constexpr double kSpinsM_s = 0.2, kSpinsShare = 0.3;  // a hop with a larger speed difference is a slip
 
 Settings<RollingOdometry::Params> odometry_settings(double lag_s, std::vector<std::string> fixed) {
   RollingOdometry::Params params;
   params.radius_m = presets::kSphereRadius_m;
   params.lag_s = lag_s;
-  // Other parameters of RollingOdometry determine the following parameters.
+  // Other parameters of RollingOdometry determine these parameters.
   fixed.insert(fixed.end(),
                {"merge_count", "merge_gyro_range_rad_s", "merge_accel_range_m_s2", "rolling_radius_m",
                 "rolling_gravity_m_s2", "rolling_lever_arm_*", "rolling_gyro_range_rad_s", "rolling_accel_range_m_s2",
                 "rolling_recovered_rate_sigma_rad_s", "rolling_lag_s", "rolling_rate_max_hz"});
   return Settings<RollingOdometry::Params>(
       params, {.stated = {"radius_m", "gravity_m_s2",
-                          // The prior parameters below depend on whether the device has a data sheet.
+                          // The priors below depend on whether the device has a data sheet.
                           "centre_sigma_m", "rolling_gyro_bias_sigma_rad_s", "rolling_accel_bias_sigma_m_s2",
                           "rolling_tilt_sigma_rad", "rolling_accel_scale_sigma", "rolling_gyro_scale_sigma",
                           "rolling_accel_delay_sigma_s", "rolling_incline_begins_per_s"},
@@ -56,8 +56,7 @@ const Settings<RollingOdometry::Params>& live_settings() {
   return all;
 }
 
-/// Returns whether the sphere rotates faster than it travels. A short flight during which the sphere rotates too fast
-/// belongs to a slip.
+/// Returns true if rolling speed and travel speed differ; a short flight then belongs to a slip.
 bool spins(double radius_m, const RollingOdometry::Pose& pose) {
   const double rolling_m_s = radius_m * (pose.pose.q_WA * pose.angular_velocity_rad_s).head<2>().norm();
   const double speed_m_s = pose.pose.v_WA_m_s.norm();
@@ -70,7 +69,7 @@ sim::ContactLabel contact_label(double radius_m, const RollingOdometry::Pose& po
   return slip_or_slide(radius_m, pose.pose.q_WA, pose.angular_velocity_rad_s, pose.pose.v_WA_m_s);
 }
 
-/// Adds the findings about the IMUs from the whole recording to the estimate.
+/// Adds the findings about the IMUs, which refer to the whole recording, to the estimate.
 void report_whole(const MergedFindings& whole, std::span<const std::string> names, Estimate& estimate) {
   report_merged(whole, names, estimate);
   estimate.health["imu_readings_left_out"] = static_cast<double>(whole.merged.excluded_readings);
@@ -83,7 +82,7 @@ void report_whole(const MergedFindings& whole, std::span<const std::string> name
   }
 }
 
-/// Passes the readings of all IMUs to the odometry in order of time, and collects the poses.
+/// Passes the readings of all IMUs to the odometry, in order of time, and collects the poses.
 Status replay(const std::vector<UnitRecording>& recordings, RollingOdometry& odometry, double radius_m,
               std::span<const std::string> names, Estimate& estimate) {
   TimeNs checked_ns = 0;
@@ -96,7 +95,7 @@ Status replay(const std::vector<UnitRecording>& recordings, RollingOdometry& odo
   };
   std::vector<std::size_t> next(recordings.size(), 0);
   while (true) {
-    std::optional<std::size_t> first;  // the unit with the earliest reading
+    std::optional<std::size_t> first;  // index of the IMU with the earliest reading
     TimeNs first_ns = std::numeric_limits<TimeNs>::max();
     for (std::size_t k = 0; k < recordings.size(); ++k) {
       if (next[k] == recordings[k].samples.size() || recordings[k].samples[next[k]].time_ns >= first_ns) continue;
@@ -105,7 +104,7 @@ Status replay(const std::vector<UnitRecording>& recordings, RollingOdometry& odo
     }
     if (!first) break;
     const Status status = odometry.add_imu(*first, recordings[*first].samples[next[*first]++]);
-    // The estimator rejects the first sample after a gap, and the second sample confirms the time stamp of the first.
+    // The estimator rejects the first sample after a gap, until the second sample confirms its time stamp.
     if (!status.ok() && status.error_code != ErrorCode::gap) return status;
     collect();
   }

@@ -19,9 +19,9 @@ const Settings<baselines::AccelerometerRate::Params>& rate_accelerometers_settin
   return all;
 }
 
-// Computes the specific force of the IMU `other`, in the axes of `other`, at the time stamps of the primary IMU. The
-// specific force is NaN outside the readings of `other`, and where `other` is clipped. The function ignores the gyro of
-// `other`.
+// Computes the specific force that the IMU `other` measures, in its axes, at the time stamps of the primary IMU. The
+// force is NaN outside the readings of `other`, and where its accelerometer is clipped. The gyro of `other` is not
+// used.
 Status auxiliary_imu(const sim::ImuRecord& primary, const sim::ImuRecord& other, AuxiliaryAccelerometer& out) {
   std::vector<ImuSample> there;
   if (Status status = bridge::imu_samples(other, there); !status.ok()) return status;

@@ -6,7 +6,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-// The parameters of the other models of ClippedBaseline are fixed.
+// Parameters of the other models of ClippedBaseline have no effect, so users cannot set them.
 const Settings<baselines::ClippedBaseline::Params>& rate_constant_jerk_settings() {
   static const Settings<baselines::ClippedBaseline::Params> all(
       {.kind = baselines::ClippedBaseline::Kind::constant_jerk},

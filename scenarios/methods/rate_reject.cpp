@@ -6,7 +6,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-// The method rate/reject fixes the parameters that only other models of ClippedBaseline use.
+// Parameters of the other models of ClippedBaseline have no effect, so users cannot set them.
 const Settings<baselines::ClippedBaseline::Params>& rate_reject_settings() {
   static const Settings<baselines::ClippedBaseline::Params> all(
       {.kind = baselines::ClippedBaseline::Kind::reject},

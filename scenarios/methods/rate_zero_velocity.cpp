@@ -40,9 +40,9 @@ Method rate_zero_velocity() {
   info.name = "zero_velocity";
   info.kind = Kind::rate;
   info.doc =
-      "Smooths inertial navigation between standstills, where velocity and rate are zero. The method is made for "
-      "motions of one or two seconds from rest to rest that clip a few samples (steps, hand motion). After several "
-      "rotations, tilt and velocity do not determine the clipped rate.";
+      "Integrates the IMU and smooths the result with the zero velocity and zero rate of standstills. The method is "
+      "made for motions of one or two seconds from rest to rest that clip a few samples (steps, hand motion). After "
+      "several rotations, tilt and velocity do not determine the clipped rate.";
   info.source = "similar to the smoothers of Dang and Suh for inertial sensors between zero-velocity intervals";
   info.settings = {&rate_zero_velocity_settings()};
   return make_method(std::move(info), run_rate_zero_velocity);

@@ -41,7 +41,7 @@ std::vector<Method> all_methods() {
       attitude_tumble_lag(),
       attitude_tumble_batch(),
       attitude_oracle(),
-      position_rolling(),  // Without a baseline, the first method of a kind is the reference.
+      position_rolling(),  // without a baseline, reports compare with the first method
       position_double_integration(),
       position_observer(),
       position_autogain_fusion(),
@@ -68,7 +68,7 @@ std::vector<Method> all_methods() {
   return all;
 }
 
-/// The registry rejects an external method with the name of a built-in method, because the results would be ambiguous.
+/// Rejects an external method with the name of a built-in method, because its results would be ambiguous.
 MethodPointer method_of_file(const std::string& file, double time_limit_s) {
   auto method = std::make_shared<const Method>(external_method(file, time_limit_s));
   for (const Method& own : methods()) {
@@ -118,7 +118,7 @@ Method make_method(MethodInfo info, RunCore run) {
       std::make_shared<const std::vector<sim::Parameter>>(joined_rows(settings, info.parameters_first));
   info.parameters = *parameters;
   const bool needs_truth = info.needs_truth;
-  // The lambda stores `parameters`, because `info` refers to them.
+  // `info` refers to `parameters`, so the lambda keeps them alive.
   RunMethod wrapped = [name, settings, parameters, needs_truth, run](
                           const sim::Sensors& sensors, const sim::Values& given, const OracleInput& oracle) {
     if (needs_truth && oracle.truth == nullptr) {
@@ -159,7 +159,7 @@ std::vector<MethodPointer> find_methods(std::span<const std::string> names) {
 
 std::vector<MethodPointer> find_methods_within(std::span<const std::string> names, double time_limit_s) {
   std::vector<MethodPointer> found;
-  std::map<std::string, std::string> asked;  // argument that selected each method
+  std::map<std::string, std::string> asked;  // argument that selected the method
   for (const std::string& name : names) {
     for (MethodPointer& method : find_within(name, time_limit_s)) {
       const auto [before, is_new] = asked.emplace(full_name(method->info), name);

@@ -38,11 +38,11 @@ LidarInertialOdometry::Params odometry_params(const sim::Sensors& sensors, const
   return odometry;
 }
 
-/// Adds the processed sweeps of a run to the estimate. Returns false if a sweep without a pose ended the run.
+/// Adds the processed sweeps to the estimate. Returns false if a sweep without a pose ended the run.
 bool append_sweeps(std::vector<MappedSweep>& sweeps, Estimate& estimate) {
   for (MappedSweep& sweep : sweeps) {
     SweepReport& report = sweep.report;
-    // The sweep has no pose, because the IMU readings start after the sweep.
+    // The sweep ended before the first IMU reading, so it has no pose.
     if (sweep.status.error_code == ErrorCode::too_few && report.trajectory.empty()) {
       leave_out_unfinished(estimate);
       continue;
@@ -95,7 +95,7 @@ SlamParams with_few_matches(SlamParams params) {
   return params;
 }
 
-// Adds the typical calibration uncertainties of a hand-assembled rig to the parameters.
+// Adds typical uncertainties of a hand-assembled rig: mounting, clock offset and gravity.
 SlamParams with_calibration(SlamParams params) {
   const TumblingOdometry::Params door;
   params.odometry.mount_sigma_rad = door.mount_sigma_rad;

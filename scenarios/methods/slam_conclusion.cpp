@@ -12,7 +12,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr double kRests_m = 0.01, kRests_rad = 0.01;  // largest motion over one sweep at rest
+constexpr double kRests_m = 0.01, kRests_rad = 0.01;  // largest motion over one sweep of a stationary rig
 
 /// Adds the median and the 90th percentile of the Mahalanobis distance between predicted and registered poses to the
 /// health.
@@ -27,15 +27,16 @@ void report_innovations(Estimate& estimate) {
   estimate.health["innovation_90"] = all[all.size() * 9 / 10];
 }
 
-/// Returns whether the rig is stationary during the sweep. At rest, the lidar measures the same rings repeatedly; the
-/// unconstrained directions are then harmless.
+/// Returns true if the rig is stationary during the sweep. Unconstrained directions are then harmless, although the
+/// lidar measures the same rings repeatedly.
 bool rests(const SweepReport& sweep) {
   if (sweep.trajectory.size() < 2) return false;
   const PoseState &first = sweep.trajectory.front(), &last = sweep.trajectory.back();
   return (last.p_WA_m - first.p_WA_m).norm() < kRests_m && first.q_WA.angularDistance(last.q_WA) < kRests_rad;
 }
 
-/// Returns the fraction of the sweeps during motion whose surfaces constrain all directions.
+/// Returns the fraction of registered sweeps among the sweeps during motion. Registered means that the surfaces
+/// constrain all directions.
 double well_constrained_share(std::span<const SweepReport> sweeps) {
   std::size_t constrained = 0, moving = 0;
   for (const SweepReport& sweep : sweeps) {
@@ -46,7 +47,7 @@ double well_constrained_share(std::span<const SweepReport> sweeps) {
   return moving > 0 ? static_cast<double>(constrained) / static_cast<double>(moving) : 1.0;
 }
 
-/// Adds the uncertainty of the final pose to the health; a large value reveals surroundings that constrain the pose
+/// Adds the uncertainty of the final pose to the health. A large value means that the surroundings constrain the pose
 /// poorly.
 void report_end(const Localisation& localisation, Estimate& estimate) {
   const Eigen::Matrix<double, 6, 6>& P = estimate.sweeps.back().pose.covariance;

@@ -14,7 +14,7 @@ namespace {
 constexpr double kFloorPriorM = 0.05;
 constexpr double kFloorPriorRad = 0.02;
 
-/// TrueMotion returns the true motion of the IMU since the sweep's start, at every simulation step, in body axes.
+/// TrueMotion predicts the true motion of the IMU since the sweep's start, at every simulation step, in body axes.
 class TrueMotion : public TrajectoryModel {
  public:
   TrueMotion(const sim::Truth& truth, const StartAtRest& start) : truth_(truth), T_BI_(truth.imus.front().T_BI) {
@@ -24,8 +24,8 @@ class TrueMotion : public TrajectoryModel {
   baselines::RigidOdometry::Motion expect(TimeNs from_ns, TimeNs to_ns) override {
     baselines::RigidOdometry::Motion motion;
     const auto first = static_cast<std::size_t>(std::max<TimeNs>(from_ns / truth_.period_ns, 0));
-    // The true attitude at the start is aligned with the estimated attitude, so that only the motion within the sweep
-    // comes from the truth.
+    // Only the motion within the sweep comes from the truth, so the true attitude is aligned with the estimate at the
+    // start.
     const Eigen::Quaterniond to_estimate = last_.q_WI * attitude(first).conjugate();
     motion.start = last_;
     motion.start.time_ns = from_ns;

@@ -16,7 +16,7 @@ namespace {
 /// RecordingReader visits every field of a recording and reads it from an HDF5 group.
 class RecordingReader {
  public:
-  /// The folder `scratch` receives the columns that are stored on disk.
+  /// `scratch` is the folder for columns that are stored on disk.
   explicit RecordingReader(hdf5::Group group, std::filesystem::path scratch = {})
       : group_(std::move(group)), scratch_(std::move(scratch)) {}
 
@@ -93,7 +93,7 @@ class RecordingReader {
   std::filesystem::path scratch_;
 };
 
-/// The type `Columns` is ContactColumns or StoredContacts.
+/// `Columns` is ContactColumns or StoredContacts.
 template <class Columns>
 void require_one_length(const Columns& columns, const std::string& file) {
   for (const std::size_t other : {columns.point_W_m.size(), columns.normal_W.size(), columns.slip_velocity_W_m_s.size(),

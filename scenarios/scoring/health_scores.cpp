@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The metrics in health_scores.cpp measure whether an estimate is wrong, and whether its health reports the error.
+// The health metrics measure whether an estimate is wrong, and whether its health reports the error.
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
@@ -16,14 +16,13 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr double kWrongDeviations = 5.0;
-// An estimate is wrong, independent of its covariance, if more than half of the samples during motion have an error
-// above a limit. The limits are a rate error of kWrongRateShare times the true rate, and a tilt error of
-// kWrongTilt_rad.
+// Independent of its covariance, an estimate is wrong if more than half of the samples during motion exceed an error
+// limit. The limits are a rate error of kWrongRateShare times the true rate, and a tilt error of kWrongTilt_rad.
 constexpr double kWrongRateShare = 0.2, kWrongTilt_rad = 0.5;
-constexpr double kMoves_rad_s = 1.0;  // smallest true rate of a sample that counts
+constexpr double kMoves_rad_s = 1.0;  // samples with a smaller true rate do not count
 
-/// Errors contains the errors during motion, in standard deviations, and relative to a limit that is independent of the
-/// covariance.
+/// Errors contains the errors during motion: `deviations` in standard deviations; `gross` as relative rate error or
+/// tilt error.
 struct Errors {
   std::vector<double> deviations, gross;
 };
@@ -32,7 +31,7 @@ double deviations_of(const Eigen::VectorXd& error, const Eigen::MatrixXd& covari
   return std::sqrt(error.dot(covariance.ldlt().solve(error)));
 }
 
-/// Returns the quantile of the values, or 0 without values. NaN counts as the largest value.
+/// Returns the quantile of the values; 0 if there are none. NaN counts as the largest value.
 double quantile(std::vector<double> values, double share) {
   if (values.empty()) return 0.0;
   for (double& value : values) value = std::isnan(value) ? HUGE_VAL : value;
@@ -41,8 +40,8 @@ double quantile(std::vector<double> values, double share) {
   return *at;
 }
 
-/// The function uses the covariances without the increase due to findings (suspected faults). With the increase, an
-/// error that the health reports would not count as wrong.
+/// Findings (suspected faults) increase the covariances. The increase is subtracted here, because with it a reported
+/// error would not count as wrong.
 Errors rate_errors(const ScoredEstimate& scored) {
   const std::vector<Eigen::Matrix3d>& suspect = scored.estimate().suspect_rad2_s2;
   const std::vector<PairedRate>& pairs = paired_rates(scored);
@@ -70,15 +69,14 @@ Errors attitude_errors(const ScoredEstimate& scored) {
   return out;
 }
 
-/// Returns whether a tenth of the errors exceed five standard deviations, or half of the errors exceed the limit that
-/// is independent of the covariance.
+/// Returns true if a tenth of the errors exceed five standard deviations, or half of the errors exceed `gross_limit`.
 bool are_wrong(const Errors& errors, double gross_limit) {
   return quantile(errors.deviations, 0.9) > kWrongDeviations || quantile(errors.gross, 0.5) > gross_limit;
 }
 
-/// Returns whether the error of the last pose exceeds five standard deviations. The error is the normalised error of
-/// the pose if the metric `pose_nees` applies, and otherwise the position error. Returns an empty result for an
-/// estimate without covariances.
+/// Returns true if the error of the last pose exceeds five standard deviations. The error is that of the metric
+/// `pose_nees`, or the position error if this metric does not apply. Returns nothing for an estimate without
+/// covariances.
 std::optional<bool> pose_is_wrong(const ScoredEstimate& scored, Kind kind) {
   double nees = 0.0;
   for (const Metric& metric : metrics()) {
@@ -128,17 +126,18 @@ bool silently_wrong(const ScoredEstimate& scored, double& value) {
 template <Kind kind>
 void add(std::vector<Metric>& out) {
   out.push_back({{"health_wrong", Unit::verdict,
-                  "1 if the estimate is wrong: a tenth of the moving samples (poses: the last pose) is more than five "
-                  "reported standard deviations off, or half of them by a fifth of the rate or 0.5 rad of tilt",
+                  "1 if the estimate is wrong. For rates and attitudes: a tenth of the errors in motion exceed five "
+                  "reported standard deviations, or half of the errors exceed a fifth of the true rate or 0.5 rad of "
+                  "tilt. For poses: the error of the last pose exceeds five reported standard deviations",
                   Sense::none},
                  kind,
                  wrong<kind>});
   out.push_back({{"health_reported", Unit::verdict,
-                  "1 if a finding of the health states that readings or estimate should not be used", Sense::none},
+                  "1 if the method reports that its readings or its estimate should not be used", Sense::none},
                  kind,
                  reported});
   out.push_back({{"health_silently_wrong", Unit::verdict,
-                  "1 if the estimate is wrong and its health does not report it", Sense::none},
+                  "1 if the estimate is wrong and the method does not report this", Sense::none},
                  kind,
                  silently_wrong<kind>});
 }

@@ -19,7 +19,7 @@ namespace {
 
 constexpr int kLooksMax = 1000;
 
-/// Returns the kind in the name of a method, for example "rate" for "rate/tumble", or an empty text.
+/// Returns the kind in a method's name, for example "rate" for "rate/tumble"; empty if the name has no kind.
 std::string kind_of(const std::string& name) {
   const std::size_t slash = name.find('/');
   return slash == std::string::npos ? std::string() : name.substr(0, slash);
@@ -69,7 +69,7 @@ AnswerPairs pairs_of(const Results& results, const Question& question, std::uint
   return pairs;
 }
 
-/// Evaluates the interim analyses of one scenario in order, until one of them gives an answer.
+/// Evaluates the interim analyses of one scenario in order, until an analysis gives an answer.
 Answer answer_of(const std::string& scenario, const std::map<std::uint64_t, AnswerPair>& pairs,
                  const Question& question, std::uint64_t last_seed) {
   SequentialSignTest test(question.risk / static_cast<double>(question.scenarios.size()));
@@ -146,11 +146,13 @@ void claim(Results& results, const Question& question, const std::filesystem::pa
   const std::string known = results.note(kQuestionNote), asked = question.describe();
   if (known == asked) return;
   if (!known.empty())
-    throw BadInput(fmt::format("{}: this file stores the question '{}', but this run asks '{}'; choose another file",
-                               database.string(), known, asked));
+    throw BadInput(
+        fmt::format("{}: this file belongs to the question '{}', but the question of this run is '{}'; choose another "
+                    "file",
+                    database.string(), known, asked));
   if (!results.outcomes().empty())
-    throw BadInput(fmt::format("{}: this file contains draws from a run without this question; choose another file",
-                               database.string()));
+    throw BadInput(
+        fmt::format("{}: this file contains draws of a run without --until; choose another file", database.string()));
   results.set_note(kQuestionNote, asked);
 }
 
@@ -167,7 +169,7 @@ std::vector<Answer> answers(const Results& results, const Question& question, st
 }
 
 const char* finding_text(const Answer& answer, const Question& question) {
-  return answer.finding == Finding::worse && question.margin.value > 0.0 ? "not by the margin"
+  return answer.finding == Finding::worse && question.margin.value > 0.0 ? "not better by the margin"
                                                                          : to_string(answer.finding);
 }
 

@@ -38,7 +38,7 @@ const char* words(Reach reach) {
     case Reach::nothing:
       return "nothing";
     case Reach::simulation:
-      return "a number of the scenario";
+      return "a parameter of the scenario";
     case Reach::input:
       return "an error of the methods' input";
     case Reach::method:

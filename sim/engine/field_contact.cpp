@@ -15,8 +15,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Cell is one cell of a height field below a strut, in coordinates relative to the cell's first corner. MuJoCo divides
-/// the cell into two triangles, along the diagonal from the first to the last corner.
+/// Cell is one cell of a height field below a strut (capsule), in coordinates relative to the cell's first corner.
+/// MuJoCo divides the cell into two triangles, along the diagonal from the first to the last corner.
 class Cell {
  public:
   Cell(const Field& field, int row, int column, const Strut& strut, const Part& over)
@@ -53,8 +53,8 @@ class Cell {
   double beside_diagonal_m(const Vector3d& p_m) const {
     return (p_m.x() * dy_ - p_m.y() * dx_) / std::sqrt(dx_ * dx_ + dy_ * dy_);
   }
-  /// Returns whether the strut is too far above the plane with the given slopes through the cell's first corner for a
-  /// contact.
+  /// Returns whether the strut is too far above a plane for a contact. The plane contains the cell's first corner, and
+  /// has the given slopes.
   bool above_plane(double slope_x, double slope_y) const {
     const auto above_m = [&](const Vector3d& p_m) {
       return p_m.z() - heights_m_[0] - slope_x * p_m.x() - slope_y * p_m.y();
@@ -67,7 +67,7 @@ class Cell {
   std::array<double, 4> heights_m_;  ///< heights of the corners, anticlockwise from the first
 };
 
-/// Touched collects the contacts of a strut with the ground, prism by prism.
+/// Touched collects the contacts of a strut with the prisms of the ground.
 class Touched {
  public:
   Touched(const Strut& strut, const Vector3d& origin_W_m, mjPreContact* contacts)
@@ -132,7 +132,7 @@ std::optional<int> field_contacts(const mjModel& model, const mjData& data, int 
   for (int row = rows.first; row <= rows.last; ++row) {
     const Part in_row = Part{}.within(strut, 1, field.y_m(row), field.y_m(row + 1));
     if (in_row.none()) continue;
-    // most cells are entirely below the strut, so the cheap comparison of heights comes first
+    // Most cells are entirely below the strut, so the cheap comparison of heights comes first.
     const double lowest_m = std::min(strut.at_m(in_row.first).z(), strut.at_m(in_row.last).z()) - strut.reach_m;
     double left_m = field.higher_m(row, columns.first), right_m;
     for (int column = columns.first; column <= columns.last; ++column, left_m = right_m) {

@@ -32,16 +32,16 @@ struct FrictionPatch {
 /// World is a compiled situation: world and robot in one model.
 struct World {
   ModelPtr model;
-  /// id of the body that carries the sensors; its inertial frame is B
+  /// Id of the body that carries the sensors. The inertial frame of this body is B.
   int robot_body = -1;
   bool free = true;                   ///< true: the robot is a single free body; false: the body is attached by joints
   std::vector<std::string> surfaces;  ///< surface id -> name; parallel to `surface_geom`
   std::vector<int> surface_geom;      ///< surface id -> geom id; static geoms that a lidar sees and a robot touches
   std::vector<FrictionPatch> patches;
   double half_extent_m = 0;  ///< the robot has left the world beyond this |x| or |y|
-  /// point on the ground where a robot starts; the robot moves along +x
+  /// Point on the ground where a robot starts. The robot moves along +x.
   Eigen::Vector3d start_W_m = Eigen::Vector3d::Zero();
-  /// true centre of mass in the robot's design frame, in B axes
+  /// True centre of mass in the robot's design frame, in B axes.
   Eigen::Vector3d com_offset_m = Eigen::Vector3d::Zero();
   double sphere_radius_m = 0;  ///< 0 if the robot is not a sphere
 };

@@ -8,10 +8,10 @@
 
 namespace tumble::sim::engine {
 
-/// NearGeoms restricts MuJoCo's bounding-volume tree of the world to geoms that a floating robot may touch soon. The
+/// NearGeoms restricts MuJoCo's bounding-volume tree of the world to geoms that a free robot may touch soon. The
 /// destructor restores the original tree. MuJoCo tests the remaining pairs as before and sorts contacts by geom, so the
 /// motion stays bit-identical. Planes and height fields are always in the tree with unbounded boxes, because a test of
-/// their boxes saves no time. NearGeoms leaves a model unchanged if the model has further moving bodies, or no tree.
+/// their boxes saves no time. A model without a tree, or with further moving bodies, is unchanged.
 class NearGeoms {
  public:
   /// `model` must outlive this object, and must not be copied while this object exists.
@@ -20,10 +20,10 @@ class NearGeoms {
   NearGeoms(const NearGeoms&) = delete;
   NearGeoms& operator=(const NearGeoms&) = delete;
 
-  /// Returns whether the model's only moving body is a single floating body.
+  /// Returns whether the model's only moving body is a single free body.
   static bool serves(const mjModel& model);
 
-  /// Selects the geoms near the robot; must be called before each step with the position of the robot's body. The
+  /// Selects the geoms near the robot. Call around() before each step with the position of the robot's body. The
   /// selection is valid for a step of at most 0.2 m.
   void around(const Eigen::Vector3d& p_WB_m);
 

@@ -24,13 +24,14 @@ struct Pair {
   }
 };
 
-/// Returns how far a point is to the left of an edge, seen from above, multiplied by the horizontal length of the edge.
+/// Returns the distance of a point to the left of an edge, seen from above, multiplied by the horizontal length of the
+/// edge.
 double left_of(const Vector3d& edge_m, const Vector3d& beside_m) {
   return edge_m.x() * beside_m.y() - edge_m.y() * beside_m.x();
 }
 
 /// AxisBox is the bounding box of a strut's axis. The box quickly rejects geometry that is farther away than the
-/// closest pair of points that the search has found.
+/// closest pair of points found so far.
 class AxisBox {
  public:
   AxisBox(const Vector3d& a_m, const Vector3d& b_m)
@@ -43,7 +44,8 @@ class AxisBox {
     const double z = apart_m(2, std::min(from_m.z(), to_m.z()), std::max(from_m.z(), to_m.z()));
     return x * x + y * y + z * z > closest.distance2_m2;
   }
-  /// Returns whether every point below `top_m` is farther from the axis than the points of `closest` are apart.
+  /// Returns whether every point below `top_m` is farther from the axis than the two points of `closest` from each
+  /// other.
   bool is_beyond_below(const Vector3d& top_m, const Pair& closest) const {
     const double x = apart_m(0, top_m.x(), top_m.x()), y = apart_m(1, top_m.y(), top_m.y());
     const double z = std::max(low_m_.z() - top_m.z(), 0.0);
@@ -96,7 +98,7 @@ void meet_side(const Vector3d& end_m, const Prism& prism, int i, Pair& closest) 
   closest.take(end_m, on_face_m);
 }
 
-/// Returns whether the part of the strut's axis above the prism's top triangle reaches below the plane of the triangle.
+/// Returns whether the strut's axis, above the prism's top triangle, reaches below the plane of this triangle.
 bool pierces(const Vector3d& a_m, const Vector3d& along_m, const Prism& prism, const Vector3d& normal) {
   double first = 0.0, last = 1.0;
   for (int i = 0; i < 3; ++i) {

@@ -21,11 +21,11 @@ struct Closest {
 
 enum class Meeting { apart, near, pierced };
 
-/// Finds the closest points if the axis from `a_m` to `b_m` is nearer to the prism than `reach_m`. The function reports
-/// no closest points if the axis pierces the prism or is within 10 um of it. The closest points of two separate convex
-/// bodies are exact except for rounding: an end of the axis and the inside of a face, or the axis and an edge. The
-/// function assumes that the bottom of the prism is out of reach. If several pairs of points have equal distances, as
-/// for an axis along a face, the function returns one of them.
+/// Finds the closest points if the axis from `a_m` to `b_m` is nearer to the prism than `reach_m`. There are no closest
+/// points if the axis pierces the prism or is within 10 um of it. The closest points of two separate convex bodies are
+/// exact except for rounding: an end of the axis and the inside of a face, or the axis and an edge. The bottom of the
+/// prism is assumed to be out of reach. If several pairs of points have equal distances, as for an axis along a face,
+/// the result is one of them.
 Meeting meet(const Eigen::Vector3d& a_m, const Eigen::Vector3d& b_m, const Prism& prism, double reach_m,
              Closest& closest);
 

@@ -8,14 +8,15 @@
 
 namespace tumble::sim {
 
-/// Bias simulates the bias of a triad, independent for each axis: a turn-on value (normal, drawn once), in-run
-/// instability and a random walk. The in-run instability is flicker noise over three decades: four first-order
-/// Gauss-Markov processes of equal size, with correlation times a factor of ten apart. The Gauss-Markov processes start
-/// in their stationary state. The in-run instability is bounded; its standard deviation is 2.58 times the floor of the
-/// Allan deviation. The Allan deviation of the in-run instability is flat at `in_run` within 5 % for averaging times
-/// from 1/200 to 1/2 of `in_run_s`. Data sheets state the value `in_run` as "in-run bias stability" (IEEE Std 952-1997,
-/// annex C; the sum of Gauss-Markov processes as flicker: Keshner, "1/f noise", Proceedings of the IEEE 70, 1982). The
-/// bias model excludes temperature and any dependence on earlier motion.
+/// Bias simulates the bias of a triad, independent for each axis, as the sum of three parts:
+/// - a turn-on value (normal, drawn once),
+/// - in-run instability: flicker noise over three decades, from four first-order Gauss-Markov processes of equal size,
+///   with correlation times a factor of ten apart (Keshner, "1/f noise", Proceedings of the IEEE 70, 1982),
+/// - a random walk.
+/// The Gauss-Markov processes start in their stationary state, so the in-run instability is bounded. The in-run
+/// instability has a standard deviation of 2.58 times the floor of its Allan deviation. This Allan deviation is flat at
+/// `in_run` within 5 % for averaging times from 1/200 to 1/2 of `in_run_s`. Data sheets call `in_run` the "in-run bias
+/// stability" (IEEE Std 952-1997, annex C). The model excludes temperature and any dependence on earlier motion.
 class Bias {
  public:
   struct Params {

@@ -10,23 +10,23 @@
 namespace tumble::sim {
 
 /// Elements models the sensing elements of a triad (gyroscope or accelerometer). Each sensing element has its own axis,
-/// scale, zero offset and saturation level. Let u be the signal in the device's axes with all errors except saturation.
-/// Sensing element i measures s_i = m_i . u + o_i, with row i of the misalignment matrix M and the zero offset o_i.
-/// Saturation maps the vector s to c(s). The device then subtracts the offset and inverts the matrix, so the reading is
-/// y = M^-1 (c(s) - o). Saturation of sensing elements has these consequences:
+/// scale, zero offset and saturation level. Let u be the signal in the device's axes, with all errors except
+/// saturation. Sensing element i measures s_i = m_i . u + o_i, where m_i is row i of the misalignment matrix M, and o_i
+/// is the zero offset. Saturation maps the vector s to c(s). The device then subtracts the offset and inverts the
+/// matrix: the reading is y = M^-1 (c(s) - o).
+/// Saturation of sensing elements has these consequences:
 /// - While no element saturates, the reading is u, bit for bit: neither M nor o is observable.
 /// - While only element j is at its limit r, the reading satisfies m_j . y = +r - o_j or -r - o_j. The saturated
 ///   readings are on a tilted plane, which differs for the two signs.
 /// - While element j is at its limit, the other axes are also wrong, by entries of M^-1 times the saturation deficit of
 ///   element j. The equation m_i . y = m_i . u still holds for each unsaturated element i.
 /// Measured devices show planes tilted by 0.02 and 0.05, and offsets of 0.05 and 0.14 rad/s (wand and pendulum of
-/// RepoIMU; scenarios/certificate/real_rails.cpp has the values). In the model, noise and quantisation act in the axes
-/// of the device. The model excludes compensation errors that differ at saturation, and offsets that drift within a
-/// recording.
+/// RepoIMU; see scenarios/certificate/real_rails.cpp). In the model, noise and quantisation act in the axes of the
+/// device. The model excludes compensation errors that differ at saturation, and offsets that drift within a recording.
 class Elements {
  public:
   struct Params {
-    /// standard deviation of each entry off M's diagonal [1], truncated at three standard deviations
+    /// Standard deviation of each entry off M's diagonal [1], truncated at three standard deviations.
     double misalignment = 0.0;
     double scale = 0.0;   ///< standard deviation of each entry on the diagonal, about 1
     double offset = 0.0;  ///< standard deviation of each element's offset o [unit of the signal]
@@ -45,12 +45,12 @@ class Elements {
   /// Returns whether M is the identity and there is no offset.
   bool axis_aligned() const { return axis_aligned_; }
 
-  /// Returns the device's reading of `signal` after saturation by `rail`; signal and reading are in the device's axes.
+  /// Returns the device's reading of `signal` after saturation by `rail`. Signal and reading are in the device's axes.
   /// Sets bit `first_bit + i` of `flags` if element i saturated. For axis-aligned elements, the reading equals the
   /// output of `rail`.
   Eigen::Vector3d clip(const Eigen::Vector3d& signal, Rail& rail, int first_bit, std::uint8_t& flags) const;
 
-  /// Returns `reading` with the components of the elements in `mask` (bit i) replaced by the components of `other`.
+  /// Returns `reading`, with the components of the elements in `mask` (bit i) replaced by the components of `other`.
   Eigen::Vector3d with_elements_of(const Eigen::Vector3d& other, std::uint8_t mask,
                                    const Eigen::Vector3d& reading) const;
 

@@ -8,8 +8,7 @@ namespace tumble::sim {
 
 namespace {
 
-/// The bias changes slowly, so TriadChain updates the bias only every 10 ms, which saves four fifths of the random
-/// numbers.
+/// TriadChain updates the slowly changing bias only every 10 ms, which saves four fifths of the random numbers.
 constexpr double kBiasPeriod_s = 0.01;
 
 int steps_of_bias(double rate_hz) {

@@ -25,20 +25,22 @@ struct TriadReading {
 /// per output window. The stages in order are: analogue low-pass, scale and misalignment, bias, external additions
 /// (g-sensitivity), white noise of the active range, sensing elements with saturation, compensation of the elements,
 /// quantum, digital low-pass, mean over the window. With `clip_after_low_pass`, sensing elements and saturation act on
-/// the mean over the window instead. If a triad rotates, the mean of the readings differs from the increment of the
-/// motion (coning, sculling). The caller therefore passes the ideal reading of the window, and TriadChain adds the mean
-/// of the errors. An element that saturated in the window reports the plain mean of the chain's output. If every stage
-/// is off, the reading equals the ideal reading, bit for bit. A second chain with equal stages and noise, but without
-/// saturation, computes the unclipped reading. The reading of a device with a separate window or update rate
-/// (sampling.hpp) is the plain mean over its window.
+/// the mean over the window instead.
+///
+/// If a triad rotates, the mean of the readings differs from the increment of the motion (coning, sculling). The caller
+/// therefore passes the ideal reading of the window, and TriadChain adds the mean of the errors. If every stage is off,
+/// the reading equals the ideal reading, bit for bit. If an element saturated in the window, its reading is the plain
+/// mean of the chain's output. The same applies to all readings of a device with a separate window or update rate
+/// (sampling.hpp). A second chain with equal stages and noise, but without saturation, computes the unclipped reading.
 class TriadChain {
  public:
   /// Constructs the chain of one triad. `prefix` and `unit` select the parameters: "gyro" and "rad_s", or "accel" and
-  /// "m_s2". `stream_name` begins the names of the random streams; `steps` is the number of physics steps per window.
+  /// "m_s2". The names of the random streams begin with `stream_name`. `steps` is the number of physics steps per
+  /// window.
   TriadChain(const Values& values, const std::string& prefix, const std::string& unit, double rate_hz, int steps,
              std::uint64_t seed, const std::string& stream_name);
 
-  /// Processes one physics step: `ideal` is the ideal mean over the step, and `added` is added to the signal before the
+  /// Processes one physics step. `ideal` is the ideal mean over the step. `added` is added to the signal before the
   /// noise.
   void step(const Eigen::Vector3d& ideal, const Eigen::Vector3d& added);
   /// Ends the window with the exact ideal reading `exact`. Sets bit `first_bit + i` of `flags` for each element i that
@@ -46,7 +48,7 @@ class TriadChain {
   TriadReading take(const Eigen::Vector3d& exact, int first_bit, std::uint8_t& flags);
 
   const Elements& elements() const { return elements_; }
-  /// Replaces the randomly drawn sensing elements; must be called before the first step.
+  /// Replaces the randomly drawn sensing elements. Call this function before the first step.
   void set_elements(const Elements& elements) { elements_ = elements; }
 
  private:
@@ -54,7 +56,6 @@ class TriadChain {
   struct Path {
     LowPass low_pass;
     Eigen::Vector3d sum = Eigen::Vector3d::Zero(), error = Eigen::Vector3d::Zero();
-    /// Returns the signal after all stages of the error chain.
     Eigen::Vector3d add(const Eigen::Vector3d& signal, const Eigen::Vector3d& ideal);
   };
 

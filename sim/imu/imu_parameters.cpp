@@ -155,7 +155,6 @@ constexpr std::array kParameters = {
 
 constexpr double kSlowestUpdate_hz = 0.1;
 
-/// Checks the saturation parameters of one triad.
 void check_rail(const Values& values, const std::string& place, const std::string& prefix, const std::string& unit) {
   const std::string rail_name = prefix + "_rail_" + unit;
   const std::string axis_name = prefix + "_plateau_axis_spread_" + unit;
@@ -175,7 +174,7 @@ void check_rail(const Values& values, const std::string& place, const std::strin
   const double offset = values.at(offset_name);
   if (rail > 0.0 && offset > 0.0 && 3.0 * (spread + offset) >= rail) {
     std::ostringstream text;
-    text << place << "." << offset_name << " and the plateau's spreads are " << spread + offset
+    text << place << "." << offset_name << " and the spreads of the saturation level are " << spread + offset
          << " together; they must be below a third of " << rail_name << ", which is " << rail;
     throw InvalidSituation(text.str());
   }

@@ -164,7 +164,7 @@ Ideal ideal_between(const BodyState& before, const BodyState& after, const Eigen
   return {R_IB * mean_rate_B(before, after), R_IB * specific_force_B(before, after, T_BI.translation(), gravity_m_s2)};
 }
 
-/// Returns the mean rate over a window with the correct number of full turns. The attitudes at the ends of the window
+/// Returns the mean rate over a window, with the correct number of full turns. The attitudes at the ends of the window
 /// determine the rotation only up to full turns; the physics steps within the window determine the number of turns.
 Eigen::Vector3d unwound(const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& mean_of_steps_rad_s, double time_s) {
   constexpr double kRevolution_rad = 6.283185307179586;
@@ -189,7 +189,7 @@ void require_bandwidths_below(const SensorSpec& sensor, double rate_hz) {
     if (sensor.values.at(name) < 0.5 * rate_hz) continue;
     std::ostringstream text;
     text << "sensors." << sensor.name << "." << name << " is " << sensor.values.at(name)
-         << " Hz; it must be below half of the chain's rate of " << rate_hz << " Hz";
+         << " Hz; it must be below half of the IMU simulation's internal rate of " << rate_hz << " Hz";
     throw InvalidSituation(text.str());
   }
 }

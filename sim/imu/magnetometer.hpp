@@ -18,9 +18,9 @@ struct MagneticDipole {
   Eigen::Vector3d moment_W_a_m2;
 };
 
-/// MagneticField is the magnetic flux density in the world [T]: the uniform field of the Earth and point dipoles, B =
-/// mu_0 / (4 pi) (3 (m r) r - m r^2) / r^5 (Jackson, Classical Electrodynamics, equation 5.56). The magnetic field
-/// model excludes induced magnetisation, currents and moving sources.
+/// MagneticField is the magnetic flux density in the world [T]: the uniform field of the Earth plus point dipoles. The
+/// field of a dipole is B = mu_0 / (4 pi) (3 (m r) r - m r^2) / r^5 (Jackson, Classical Electrodynamics, equation
+/// 5.56). The model excludes induced magnetisation, currents and moving sources.
 struct MagneticField {
   Eigen::Vector3d earth_W_t = Eigen::Vector3d::Zero();
   std::vector<MagneticDipole> dipoles;
@@ -28,16 +28,16 @@ struct MagneticField {
 };
 
 /// Draws the magnetic field of one situation. The Earth's field has strength earth_field_t and dip
-/// earth_inclination_rad; its horizontal part points earth_north_rad from the world's x axis towards y. The number of
-/// dipoles is magnetic_sources; each is at least magnetic_source_nearest_m away from the path `p_W_m`. Each dipole is
-/// within magnetic_source_farthest_m of a random position of the path. The moments of the dipoles are log-uniform
-/// within a factor of 3 of magnetic_source_moment_a_m2, in random directions. Equal parameters and seeds give equal
-/// fields for every magnetometer.
+/// earth_inclination_rad. The horizontal part of the Earth's field points earth_north_rad from the world's x axis
+/// towards y. There are magnetic_sources dipoles. Each dipole is at least magnetic_source_nearest_m away from the path
+/// `p_W_m`, and within magnetic_source_farthest_m of a random position of the path. The moments of the dipoles are
+/// log-uniform within a factor of 3 of magnetic_source_moment_a_m2, in random directions. Equal parameters and seeds
+/// give equal fields for every magnetometer.
 MagneticField draw_magnetic_field(const Values& values, std::span<const Eigen::Vector3d> p_W_m, std::uint64_t seed);
 
 /// Magnetometer applies the errors of a magnetometer with three axes: soft iron (scale and misalignment), hard iron (a
 /// constant offset in sensor axes), white noise, saturation, quantisation. If every error parameter is 0, the reading
-/// is the true field, bit for bit. The magnetometer model excludes bandwidth, delay and temperature.
+/// is the true field, bit for bit. The model excludes bandwidth, delay and temperature.
 class Magnetometer {
  public:
   Magnetometer(const Values& values, std::uint64_t seed, const std::string& stream_name);

@@ -11,11 +11,11 @@ namespace tumble::sim {
 
 /// Rail models the saturation of a triad's output, in the forms that real devices show.
 /// - `clamp`: the output stops at `level`, which may exceed the stated range.
-/// - `plateau`: the level differs between axes and signs (drawn once) and between clipping events. Rail draws a new
-///   level after the signal has fallen below 90 % of the level.
+/// - `plateau`: the level differs between axes and signs (drawn once), and between clipping events. A new level is
+///   drawn after the signal has fallen below 90 % of the level.
 /// - `wrap`: a reading beyond the level appears with the opposite sign, as when a 16-bit word overflows.
 /// - `slow_recovery`: a clipped axis accumulates an offset with the sign of the signal, up to `recovery_share` of the
-///   level, with time constant `recovery_s`. After clipping, the offset decays with the time constant `recovery_s`.
+///   level, with time constant `recovery_s`. After clipping, the offset decays with the same time constant.
 /// The model excludes saturation levels that depend on temperature, and devices that stop after saturation.
 class Rail {
  public:

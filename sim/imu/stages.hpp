@@ -8,11 +8,11 @@
 #include "sim/random/stream.hpp"
 
 /// stages.hpp contains small stages of an inertial sensor's error model, each for one triad; bias.hpp and rail.hpp
-/// contain larger stages. A stage that is off returns its input bit for bit and draws no random numbers.
+/// contain larger stages. A stage that is off returns its input bit for bit, and draws no random numbers.
 namespace tumble::sim {
 
-/// Returns three normally distributed numbers with standard deviation `sigma`. For `sigma` 0, the three numbers are
-/// zero and no random number is drawn.
+/// Returns three normally distributed numbers with standard deviation `sigma`. For `sigma` 0, the numbers are zero, and
+/// no random number is drawn.
 Eigen::Vector3d normals(Stream& stream, double sigma);
 
 /// Returns a normally distributed number with standard deviation `sigma`, truncated at three standard deviations. For
@@ -34,7 +34,7 @@ class DelayLine {
 };
 
 /// LowPass is a second-order low-pass filter (Butterworth, bilinear transform with prewarped cutoff) with gain 1 for a
-/// constant signal. The first sample sets the steady state of the low-pass filter. A cutoff frequency of 0 switches the
+/// constant signal. The filter starts in the steady state of the first sample. A cutoff frequency of 0 switches the
 /// stage off.
 class LowPass {
  public:
@@ -50,19 +50,20 @@ class LowPass {
 };
 
 /// Draws the matrix of scale and misalignment errors of a triad. The diagonal is 1 plus scale errors, and the other
-/// entries are six independent small angles; all errors are normally distributed. The axis errors are exactly the
-/// identity if both standard deviations are 0.
+/// entries are six independent small angles; all errors are normally distributed. The matrix is exactly the identity if
+/// both standard deviations are 0.
 Eigen::Matrix3d draw_axis_errors(Stream& stream, double scale_sigma, double misalignment_sigma_rad);
 
-/// RangeChoice selects for each axis the precise or the coarse part of a device with two ranges. The coarse part is in
-/// use while the signal exceeds `handover`, until the signal is below 90 % of `handover`. A handover of 0 always
-/// selects the coarse part. Bias, scale and axes are equal for both parts; noise and quantum differ.
+/// RangeChoice selects for each axis the precise or the coarse range of a device with two ranges. An axis switches to
+/// the coarse range when the signal exceeds `handover`, and back when the signal is below 90 % of `handover`. A
+/// handover of 0 always selects the coarse range. Bias, scale and axes are equal in both ranges; noise and quantum
+/// differ.
 class RangeChoice {
  public:
   explicit RangeChoice(double handover) : handover_(handover) {}
-  /// Selects the precise or the coarse part for each axis, from the signal before noise and saturation.
+  /// Selects the precise or the coarse range for each axis, from the signal before noise and saturation.
   void update(const Eigen::Vector3d& signal);
-  /// Returns `coarse` or `precise` for each axis, according to the selected part.
+  /// Returns `coarse` or `precise` for each axis, according to the selected range.
   Eigen::Vector3d pick(double coarse, double precise) const;
 
  private:
@@ -74,7 +75,7 @@ class RangeChoice {
 /// the standard deviation density * sqrt(rate).
 Eigen::Vector3d white_noise(Stream& stream, const Eigen::Vector3d& density, double rate_hz);
 
-/// Rounds each axis to the nearest multiple of its `quantum`; a quantum of 0 switches rounding off.
+/// Rounds each axis to the nearest multiple of its `quantum`. A quantum of 0 switches rounding off.
 Eigen::Vector3d quantise(const Eigen::Vector3d& input, const Eigen::Vector3d& quantum);
 
 }  // namespace tumble::sim

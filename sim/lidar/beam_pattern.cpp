@@ -11,7 +11,7 @@ namespace tumble::sim {
 namespace {
 
 constexpr double kRevolution_rad = 6.283185307179586;
-constexpr int kAzimuthCells = 2048;  // 3 mrad per cell: a strut of 4 cm at a distance of 0.3 m covers about forty cells
+constexpr int kAzimuthCells = 2048;  // a strut of 4 cm at a distance of 0.3 m covers about 40 cells of 3 mrad
 
 std::int64_t period_ns(const Values& values, const char* name) {
   return std::llround(values.at(name) * 1e9);

@@ -9,7 +9,7 @@
 
 namespace tumble::sim {
 
-/// kMaxChannels is the maximum number of lidar beams (channels) per slot; BeamPattern explains slots.
+/// kMaxChannels is the maximum number of lidar beams (channels) per slot. BeamPattern defines slots.
 inline constexpr int kMaxChannels = 16;
 
 /// ChannelFirings contains the firings of one channel in kLanes consecutive slots: origins and directions in the axes
@@ -20,10 +20,10 @@ struct ChannelFirings {
 };
 
 /// FiringBlock contains the firings of up to kLanes consecutive slots. A lane is one of the kLanes rays that are cast
-/// together. Neighbouring lanes have similar directions, which makes a packet of rays fast to cast. Lanes beyond the
-/// number of slots are also filled.
+/// together. Neighbouring lanes have similar directions, so a packet of lanes is fast to cast. Lanes beyond the number
+/// of slots are also filled.
 struct FiringBlock {
-  /// number of the slot since the start of the recording, from which the random numbers follow
+  /// Number of the slot since the start of the recording. This number determines the random numbers of the slot.
   std::int64_t first_slot = 0;
   int slots = 0;
   std::array<std::int64_t, kLanes> start_ns{};      ///< true start time of each slot since the start of the recording
@@ -56,9 +56,10 @@ class BeamPattern {
   virtual void fire(std::int64_t sweep, std::int64_t slot, int slots, FiringBlock& block) const = 0;
 
   /// Returns the number of direction cells. Each slot is in one cell, so that results can be precomputed per channel
-  /// and cell. Returns 0 if the pattern does not repeat.
+  /// and cell. Returns 0 for a pattern that does not repeat.
   virtual int cells() const { return 0; }
-  /// Returns the largest angle about the z axis of L between a firing in a cell and the firing at the cell's middle.
+  /// Returns the largest angle about the z axis of L between a firing in a cell and the firing at the middle of the
+  /// cell.
   virtual double cell_half_angle_rad() const { return 0.0; }
   /// Fills in the origins and directions of the beams at the middles of the cells `first` to `first + kLanes - 1`.
   virtual void fire_cells(int /*first*/, FiringBlock& /*block*/) const {}
@@ -71,7 +72,7 @@ class BeamPattern {
 };
 
 /// SpinningPattern is the pattern of a spinning lidar, in which a column of lasers rotates about the z axis. The
-/// azimuth is zero (along x of L) at the start of each sweep and increases clockwise seen from above. Channel c of
+/// azimuth is zero (along x of L) at the start of each sweep, and increases clockwise seen from above. Channel c of
 /// sequence k fires at the time k P + c p, with the sequence period P and the firing period p. The beam of a channel
 /// leaves the mirror at the distance R1 from the axis and R2 below the origin. Ring numbers start at the lowest
 /// elevation. The timing and geometry are from the RoboSense RS-16 User's Guide v4.0 and the published driver.
@@ -96,8 +97,8 @@ class SpinningPattern final : public BeamPattern {
 
 /// ColumnPattern is the pattern of a lidar with up to 128 evenly spaced rings, in which a column of lasers rotates
 /// about the z axis. A column fires in banks of 16 rings from bottom to top, evenly distributed over the column's
-/// period. Each bank of 16 rings is one slot. All beams start at the origin of L. Elevations may rise by a fraction of
-/// the ring spacing from sweep to sweep, which approximates patterns that do not repeat.
+/// period. Each bank is one slot. All beams start at the origin of L. Elevations may rise by a fraction of the ring
+/// spacing from sweep to sweep, which approximates patterns that do not repeat.
 class ColumnPattern final : public BeamPattern {
  public:
   explicit ColumnPattern(const Values& values);

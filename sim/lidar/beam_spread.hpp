@@ -21,9 +21,9 @@ struct Echoes {
 /// cross-section into equal areas (Vogel, Mathematical Biosciences 44, 1979). Each ray returns an energy of
 /// reflectivity times cosine of incidence, divided by the range squared. Hits whose ranges differ by less than the
 /// length of the echo merge into one echo. The measured range is the energy-weighted mean of the ranges in the
-/// strongest echo. A beam across an edge therefore returns a range between the two surfaces, or the range of one
-/// surface if the surfaces are farther apart. The surface id and the exact hit are those of the ray with the most
-/// energy. The model excludes an intensity profile over the beam, and several returns per firing.
+/// strongest echo. At an edge, the range is therefore between the two surfaces, or the range of one surface if the
+/// surfaces are farther apart. Surface id and exact hit are those of the ray with the most energy. The model excludes
+/// an intensity profile over the beam, and several returns per firing.
 class BeamSpread {
  public:
   explicit BeamSpread(const Values& values);

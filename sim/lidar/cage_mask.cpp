@@ -21,7 +21,7 @@ Shape widened(Shape shape, double margin_m) {
       size = Vector3d(size.x() + margin_m, size.y() + margin_m, margin_m);
       break;
     case ShapeKind::ellipsoid:
-      // the ellipsoid is scaled such that its support function |a n| grows by at least the margin
+      // The ellipsoid is scaled such that its support function |a n| grows by at least the margin.
       size *= 1.0 + margin_m / size.minCoeff();
       break;
     case ShapeKind::capsule:
@@ -67,8 +67,8 @@ CageMask::CageMask(const SceneGeometry& cage, const BeamPattern& pattern)
     std::fill(meets_.begin(), meets_.end(), std::uint8_t{1});
     return;
   }
-  // any beam of the cell is the middle beam, rotated about z by at most the half angle; a further margin covers float
-  // rounding
+  // Any beam of the cell is the middle beam, rotated about z by at most the half angle. A further margin covers float
+  // rounding.
   const double margin_m = reach_m * pattern.cell_half_angle_rad() + 1e-4 * (1.0 + reach_m);
   for (SceneShape& part : wide.shapes) part.shape = widened(part.shape, margin_m);
 

@@ -43,7 +43,7 @@ float unit_of(std::uint32_t word) {
 }
 
 /// Computes the natural logarithm of x in (0, 1]. With x = 2^e m and m in [0.71, 1.41], the logarithm of m is the
-/// series of 2 atanh((m - 1) / (m + 1)). The relative error of the logarithm is 2e-7.
+/// series of 2 atanh((m - 1) / (m + 1)). The relative error is 2e-7.
 float log_of(float x) {
   const std::int32_t bits = std::bit_cast<std::int32_t>(x) - 0x3f3504f3;
   const std::int32_t exponent = bits >> 23;
@@ -84,7 +84,7 @@ LaneNoiseSource::LaneNoiseSource(const Stream& stream) {
     noise.normal[i + kBlocks] = radius * sine;
   }
   for (int i = 0; i < kBlocks; ++i) {
-    // with 23 bits, the largest uniform number is below 1 in float
+    // With 23 bits, the largest uniform number is below 1 in float.
     noise.uniform[i] = (static_cast<float>(static_cast<std::int32_t>(words.word[2][i] >> 9)) + 0.5f) * 0x1p-23f;
     noise.uniform[i + kBlocks] =
         (static_cast<float>(static_cast<std::int32_t>(words.word[3][i] >> 9)) + 0.5f) * 0x1p-23f;

@@ -9,7 +9,7 @@
 
 namespace tumble::sim {
 
-/// LaneNoise contains the random numbers of one packet of rays, with one number of each kind per lane.
+/// LaneNoise contains the random numbers of one packet of rays: one number of each kind per lane.
 struct LaneNoise {
   alignas(64) float normal[kLanes];   ///< mean 0, standard deviation 1, tails truncated at 6.6
   alignas(64) float uniform[kLanes];  ///< in (0, 1)

@@ -11,7 +11,12 @@ constexpr double kRightAngle_rad = 1.5707963267948966;
 constexpr double kDegree_rad = kRightAngle_rad / 90.0;
 
 constexpr Parameter elevation(std::string_view name, double value_rad) {
-  return {name, value_rad, -kRightAngle_rad, kRightAngle_rad, "rad", "elevation of this channel, in firing order"};
+  return {name,
+          value_rad,
+          -kRightAngle_rad,
+          kRightAngle_rad,
+          "rad",
+          "elevation of this channel; channels are numbered in firing order"};
 }
 
 // Parameters that all lidars have, for example of the range errors. The default values are those of the lidars RS-16
@@ -176,8 +181,10 @@ constexpr std::array kRosette = {
     Parameter{"sweep_period_s", 0.1, 1e-3, 10.0, "s", "duration of the sweeps into which points are grouped"},
     Parameter{"prism_1_rate_hz", 7294.0 / 60.0, -1000.0, 1000.0, "Hz", "rotations per second of the first prism"},
     Parameter{"prism_2_rate_hz", -4664.0 / 60.0, -1000.0, 1000.0, "Hz", "rotations per second of the second prism"},
-    Parameter{"prism_1_amplitude", 0.1713, 0.0, 1.0, "1", "tangent of the first prism's deflection"},
-    Parameter{"prism_2_amplitude", 0.1744, 0.0, 1.0, "1", "tangent of the second prism's deflection"},
+    Parameter{"prism_1_amplitude", 0.1713, 0.0, 1.0, "1",
+              "tangent of the angle by which the first prism deflects the beam"},
+    Parameter{"prism_2_amplitude", 0.1744, 0.0, 1.0, "1",
+              "tangent of the angle by which the second prism deflects the beam"},
     Parameter{"mixed_amplitude", 0.0022, 0.0, 1.0, "1",
               "tangent of the additional deflection at twice the rate of the first prism minus the rate of the second; "
               "0: off"},

@@ -22,8 +22,8 @@ void append(const std::vector<T>& from, std::size_t count, std::vector<T>& to) {
   to.insert(to.end(), from.begin(), from.begin() + static_cast<std::ptrdiff_t>(count));
 }
 
-/// Reserves memory for one point per firing, so that points are never moved. Firings without a hit leave memory unused,
-/// which needs no physical memory.
+/// Reserves memory for one point per firing, so that points are never moved. Firings without a hit leave virtual memory
+/// unused, which needs no physical memory.
 void reserve(std::size_t points, LidarRecord& record, LidarTruth& truth) {
   record.position_L_m.reserve(points);
   record.range_m.reserve(points);
@@ -44,7 +44,7 @@ void append_sweep(const SweepPoints& sweep, LidarRecord& record, LidarTruth& tru
   append(sweep.surface_id, sweep.count, truth.surface_id);
 }
 
-/// Returns the number of sweeps that end within the motion; the last motion sample is valid for one more period.
+/// Returns the number of sweeps that end within the motion. The last motion sample is valid for one more period.
 std::int64_t whole_sweeps(const MotionTrack& motion, std::int64_t sweep_period_ns) {
   if (motion.period_ns <= 0 || motion.p_WB_m.size() != motion.q_WB.size()) {
     throw std::invalid_argument(
@@ -94,7 +94,7 @@ void simulate_lidar(const engine::World& world, const SensorSpec& sensor, const 
   record.sweep_first.push_back(0);
   if (sweeps > 0) reserve(caster.firings(0) * static_cast<std::size_t>(sweeps), record, truth);
 
-  // the code casts only a few sweeps at a time, so that intermediate results need little memory
+  // Only a few sweeps are cast at a time, so that intermediate results need little memory.
   const auto allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
   threads = std::clamp(threads, 1, static_cast<int>(allowed));  // oneTBB prints a warning for larger numbers
   const std::int64_t at_once = 2 * threads;

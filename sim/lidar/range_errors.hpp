@@ -9,7 +9,7 @@
 
 namespace tumble::sim {
 
-/// Returns contains the measurements of sixteen exact hits. A measurement is valid only if `kept` is set.
+/// Returns contains the measurements of sixteen exact hits. A measurement is valid if `kept` is set.
 struct Returns {
   bool kept[kLanes];
   alignas(64) float range_m[kLanes];
@@ -19,8 +19,8 @@ struct Returns {
 /// RangeErrors applies range errors in this order: loss of weak returns (by range, incidence, reflectivity), random
 /// loss, white noise, range limits, quantum. The intensity is reflectivity times the cosine of incidence, rounded down
 /// to the intensity quantum, as in devices that compensate for range. The model excludes range bias by incidence or
-/// intensity, cross-talk, and several returns per firing. BeamSpread models beam divergence and mixed returns before
-/// RangeErrors acts.
+/// intensity, cross-talk, and several returns per firing. Beam divergence and mixed returns belong to BeamSpread, which
+/// acts before RangeErrors.
 class RangeErrors {
  public:
   RangeErrors(const Values& values, std::uint64_t seed, std::string_view stream_name);

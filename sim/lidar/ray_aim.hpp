@@ -9,12 +9,12 @@ namespace tumble::sim {
 /// BlockPoses computes the lidar's pose for a block of firings, and converts firings to world rays, each at its own
 /// firing time. Within a slot (50 us), the pose is extrapolated with the rate at the middle of the slot. At 20 rad/s,
 /// the extrapolation error is (rate dt)^2 / 2 = 1e-7 rad. At a sample of the motion, the rate changes, so a slot that
-/// contains a sample has one pose per firing.
+/// contains such a sample has one pose per firing.
 class BlockPoses {
  public:
   void follow(const BeamPattern& pattern, const FiringBlock& block, TrackCursor& track);
 
-  /// Sets origins and directions of `rays` for one channel; the other members of `rays` are unchanged.
+  /// Sets origins and directions of `rays` for one channel. The other members of `rays` are unchanged.
   void aim(const BeamPattern& pattern, const FiringBlock& block, const ChannelFirings& firings, int channel,
            RayPacket& rays) const;
 

@@ -38,7 +38,7 @@ constexpr const char* kDevice =
 constexpr int kKernelLanes = 8;
 static_assert(kKernelLanes == kShapeLanes && NearestHits::kNone == RTC_INVALID_GEOMETRY_ID);
 /// Embree divides with an approximate reciprocal that differs between CPU vendors. Embree's ranges therefore only
-/// select candidates: faces within the factor kReach of the nearest hit are compared again.
+/// select candidates: RayScene recomputes all faces within the factor kReach of the nearest hit.
 constexpr float kReach = 1.0f + 4e-6f;
 
 struct MeshLabel {
@@ -85,7 +85,7 @@ std::vector<std::array<std::uint32_t, 4>> paired(const std::vector<std::array<st
   return quads;
 }
 
-/// Computes the axis-aligned box of a bounded shape, slightly widened because Embree rounds to float.
+/// Computes the axis-aligned box of a bounded shape, slightly enlarged because Embree rounds to float.
 void shape_bounds(const RTCBoundsFunctionArguments* args) {
   const Shape& shape = static_cast<const SceneShape*>(args->geometryUserPtr)[args->primID].shape;
   const Vector3d half = shape.R_FS.cwiseAbs() * half_extent(shape);
@@ -108,12 +108,12 @@ Ray ray_at(RTCRayN* rays, unsigned int count, unsigned int i) {
 /// length). For a quad, `second_half` selects the half through which the ray passes. Embree's approximate reciprocal is
 /// accurate enough for this selection, because the two halves are adjacent.
 double meet_face(const MeshLabel& mesh, unsigned int face, const Ray& ray, bool second_half, Vector3d& normal) {
-  // corners are relative to the ray's origin; double represents the differences of floats exactly
+  // Corners are relative to the ray's origin; double represents the differences of floats exactly.
   const auto corner = [&](std::uint32_t i) -> Vector3d { return mesh.corner(face, i).cast<double>() - ray.origin; };
   Vector3d a = corner(0), b = corner(1), c = corner(2);
   if (mesh.as_quads) {
     const Vector3d d = corner(3);
-    // for (b, c, d, a) of the pair (a, b, c), (a, c, d), corners 1 and 3 are the ends of the diagonal
+    // For the quad (b, c, d, a) of the pair (a, b, c), (a, c, d), corners 1 and 3 are the ends of the diagonal.
     const Vector3d across = b.cross(d);
     const bool beside_first = across.dot(a) >= 0.0, beside_second = across.dot(c) >= 0.0;
     const bool in_second =
@@ -236,7 +236,7 @@ void RayScene::Impl::add_shapes() {
 
 RayScene::RayScene(const SceneGeometry& geometry) : impl_(std::make_unique<Impl>()) {
   impl_->device.reset(rtcNewDevice(kDevice));
-  // a lack of memory must not be reported as a missing CPU feature
+  // A lack of memory must not be reported as a missing CPU feature.
   if (!impl_->device && rtcGetDeviceError(nullptr) == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
   if (!impl_->device)
     throw std::runtime_error("lidar: the ray-tracing library Embree cannot start; the CPU must have AVX2 and FMA");
@@ -247,7 +247,7 @@ RayScene::RayScene(const SceneGeometry& geometry) : impl_(std::make_unique<Impl>
   }
   for (const SceneMesh& part : geometry.meshes) impl_->add_mesh(part);
   impl_->add_shapes();
-  // the arena has one thread, because building must not use threads that the caller did not provide
+  // The arena has one thread, because building must not use threads that the caller did not provide.
   tbb::task_arena(1).execute([this] { rtcCommitScene(impl_->scene.get()); });
   const RTCError error = rtcGetDeviceError(impl_->device.get());
   if (error != RTC_ERROR_NONE) throw std::runtime_error("lidar: Embree error " + std::to_string(error));
@@ -281,7 +281,7 @@ void RayScene::Impl::cast_lanes(const RayPacket& packet, int first, CastContext&
   RTCRayHit8 rays;
   alignas(32) int valid[kKernelLanes];
   for (int i = 0; i < kKernelLanes; ++i) {
-    // an unused lane repeats the first lane with an empty range, so that its input is defined
+    // An unused lane repeats the first lane with an empty range, so that its input is defined.
     const bool used = first + i < packet.count;
     const int lane = used ? first + i : first;
     valid[i] = used ? -1 : 0;
@@ -308,7 +308,7 @@ void RayScene::cast(RayPacket& packet) const {
   if (impl_->bounded.empty() && impl_->meshes.empty()) return;
   CastContext cast{{}, &impl_->meshes, NearestHits(packet)};
   rtcInitIntersectContext(&cast.embree);
-  // the rays of one channel have similar directions
+  // The rays of one channel have similar directions.
   cast.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   for (int first = 0; first < packet.count; first += kKernelLanes) impl_->cast_lanes(packet, first, cast);
   cast.nearest.write(packet);

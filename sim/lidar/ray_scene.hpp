@@ -13,7 +13,7 @@ namespace tumble::sim {
 /// have similar directions.
 inline constexpr int kLanes = 16;
 
-/// RayPacket contains sixteen rays and their hits. Lanes with index `count` or above are not cast.
+/// RayPacket contains sixteen rays and their hits. Only lanes with index below `count` are cast.
 struct RayPacket {
   int count = kLanes;
   alignas(64) float origin_x[kLanes], origin_y[kLanes], origin_z[kLanes];
@@ -27,11 +27,11 @@ struct RayPacket {
 
 inline constexpr std::int32_t kNothing = -1;
 
-/// RayScene casts rays on a fixed geometry (Embree, plus infinite planes), and computes distances to it. Construction
-/// takes about 0.07 s for 320 000 triangles; the cost of a cast grows with the logarithm of their number. Several
-/// threads may call const members. The coordinates are float: at 50 m from the origin, a hit is accurate to about 1e-5
-/// m. Embree selects the surface with its AVX2 kernel on every CPU; RayScene then computes the hit on the surface in
-/// double precision. The results are therefore bit-identical on every x86-64 CPU with AVX2 and FMA. Throws
+/// RayScene casts rays on a fixed geometry (Embree, plus infinite planes), and computes distances to it. The
+/// construction takes about 0.07 s for 320 000 triangles; the cost of a cast grows with the logarithm of their number.
+/// Several threads may call const members. The coordinates are float: at 50 m from the origin, a hit is accurate to
+/// about 1e-5 m. Embree selects the surface with its AVX2 kernel on every CPU; RayScene then computes the hit on the
+/// surface in double precision. The results are therefore bit-identical on every x86-64 CPU with AVX2 and FMA. Throws
 /// std::runtime_error on other CPUs.
 class RayScene {
  public:

@@ -47,7 +47,7 @@ double cast_sphere(double radius, const Vector3d& o, const Vector3d& d, Vector3d
 }
 
 double cast_ellipsoid(const Vector3d& size, const Vector3d& o, const Vector3d& d, Vector3d& normal) {
-  // the ellipsoid is scaled to the unit sphere; the ray parameter remains the distance in F
+  // The ellipsoid is scaled to the unit sphere; the ray parameter remains the distance in F.
   const Vector3d so = o.cwiseQuotient(size), sd = d.cwiseQuotient(size);
   const double x = first_ahead(solve_quadratic(sd.squaredNorm(), so.dot(sd), so.squaredNorm() - 1.0));
   if (x < kNone) normal = (so + x * sd).cwiseQuotient(size).normalized();
@@ -139,9 +139,9 @@ double signed_box_distance(const Vector& point, const Vector& half) {
   return outside > 0.0 ? outside : beyond.maxCoeff();
 }
 
-/// Finds the nearest point of an ellipsoid as the root of sum (a_i y_i / (t + a_i^2))^2 = 1 for t > -min a_i^2, with
-/// the semi-axes a_i and the point y (Eberly, Distance from a point to an ellipsoid). Bisection works because the sum
-/// decreases monotonically for t > -min a_i^2.
+/// Returns the distance of a point y from an ellipsoid with the semi-axes a_i (Eberly, Distance from a point to an
+/// ellipsoid). The nearest point follows from the root of sum (a_i y_i / (t + a_i^2))^2 = 1 for t > -min a_i^2.
+/// Bisection finds the root, because the sum decreases monotonically for t > -min a_i^2.
 double ellipsoid_distance(const Vector3d& size, const Vector3d& point) {
   const double scale = size.maxCoeff();
   const Vector3d a = size / scale, y = point.cwiseAbs() / scale;
@@ -155,7 +155,7 @@ double ellipsoid_distance(const Vector3d& size, const Vector3d& point) {
     (outside(middle) > 0.0 ? low : high) = middle;
   }
   Vector3d nearest = a2.cwiseProduct(y).cwiseQuotient(a2 + Vector3d::Constant(high));
-  // for a point on a plane of symmetry near the centre, the surface determines the coordinate along the shortest axis
+  // For a point on a plane of symmetry near the centre, the surface determines the coordinate along the shortest axis.
   int shortest = 0;
   a.minCoeff(&shortest);
   if (y[shortest] < 1e-12) {

@@ -19,7 +19,7 @@ struct LocalRays {
 [[gnu::target("avx2")]] void to_shape_axes(const Shape& shape, const ShapeRays& rays, LocalRays& local) {
   const double px = shape.p_FS_m.x(), py = shape.p_FS_m.y(), pz = shape.p_FS_m.z();
   for (int axis = 0; axis < 3; ++axis) {
-    // the operations have the order of Eigen's operations, for bit-identical results
+    // The operations have the order of Eigen's operations, for bit-identical results.
     const double x = shape.R_FS(0, axis), y = shape.R_FS(1, axis), z = shape.R_FS(2, axis);
     for (int i = 0; i < kShapeLanes; ++i) {
       local.origin[axis][i] =
@@ -48,7 +48,7 @@ struct LocalRays {
 /// Computes the hits on a box by the slab method (Kay and Kajiya, SIGGRAPH 1986). A ray hits the last slab that it
 /// enters or, from inside, the first slab that it leaves.
 [[gnu::target("avx2")]] void cast_on_box(const Shape& shape, const LocalRays& rays, ShapeHits& hits) {
-  // axis numbers are doubles like the ranges, so that the compiler uses equal vector masks for both
+  // Axis numbers are doubles like the ranges, so that the compiler uses equal vector masks for both.
   alignas(64) double enter[kShapeLanes], enter_axis[kShapeLanes], enter_sign[kShapeLanes];
   alignas(64) double leave[kShapeLanes], leave_axis[kShapeLanes], leave_sign[kShapeLanes], misses[kShapeLanes];
   for (int i = 0; i < kShapeLanes; ++i) {

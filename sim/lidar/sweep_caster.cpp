@@ -70,7 +70,7 @@ SweepCaster::SweepCaster(const engine::World& world, const SensorSpec& sensor, c
       cage_(cage_geometry_),
       cage_mask_(cage_geometry_, *pattern_),
       T_BL_(T_BL),
-      // range noise can move a hit from just beyond the range limit into the lidar's range
+      // Range noise can move a hit from just beyond the range limit into the lidar's range.
       reach_m_(static_cast<float>(sensor.values.at("range_max_m") + 10.0 * sensor.values.at("range_noise_m"))),
       motion_(motion) {}
 
@@ -120,7 +120,7 @@ void SweepCaster::cast_block(Workspace& work) const {
     } else {
       for (int k = 0; k < spread_.rays(); ++k) {
         spread_.bend(firings, k, work.bent);
-        // the cage mask is valid only for the axis of a beam, so all other rays of the beam are cast against the cage
+        // The cage mask is valid only for the axis of a beam, so all other rays of the beam are cast against the cage.
         cast_channel(work.block, work.poses, c, !cage_.empty(), work.bent, work.beam[k]);
       }
       spread_.merge(work.beam, out.echoes);

@@ -16,8 +16,8 @@
 
 namespace tumble::sim {
 
-/// SweepPoints contains the returns of one sweep in order of time. The buffers are sized once for all firings of a
-/// sweep and then reused.
+/// SweepPoints contains the returns of one sweep in order of time. The buffers have the size of all firings of a sweep,
+/// and are reused for all sweeps.
 struct SweepPoints {
   std::vector<Eigen::Vector3f> position_L_m, hit_W_m;
   std::vector<float> range_m, intensity;
@@ -39,7 +39,7 @@ class SweepCaster {
 
   const BeamPattern& pattern() const { return *pattern_; }
   std::size_t firings(std::int64_t sweep) const;
-  /// Casts sweep `number` of the recording; the result depends only on the motion and the seed. The function allocates
+  /// Casts sweep `number` of the recording. The result depends only on the motion and the seed. The function allocates
   /// memory only if `points` is too small.
   void cast_sweep(std::int64_t number, SweepPoints& points) const;
 

@@ -16,9 +16,9 @@ using Pose34 = Eigen::Matrix<double, 3, 4>;
 
 /// TrackCursor interpolates the true pose of a lidar between the samples of the body's motion. Between samples, the
 /// body's position is linear in time, and the attitude rotates at a constant rate about a fixed axis. With samples 0.5
-/// ms apart, the error is a dt^2 / 8 = 3e-8 s^2 times the acceleration: 13 um at 400 m/s^2. After the last motion
-/// sample, TrackCursor extrapolates the last interval. Calls with ascending times are fast, because TrackCursor keeps
-/// the current interval.
+/// ms apart, the error is a dt^2 / 8 = 3e-8 s^2 times the acceleration a: 13 um at 400 m/s^2. After the last motion
+/// sample, TrackCursor extrapolates the last interval. TrackCursor stores the current interval, so calls with ascending
+/// times are fast.
 class TrackCursor {
  public:
   /// Interval is the time between two samples of the motion. At the fraction `x` of the interval, the body has rotated
@@ -35,8 +35,8 @@ class TrackCursor {
     double share(std::int64_t time_ns) const { return static_cast<double>(time_ns - start_ns) * per_ns; }
   };
 
-  /// Below the squared angle kSmall2, the series of sin(a)/a and (1 - cos(a))/a^2 are accurate to 1e-16. kSmall2 is the
-  /// square of 0.02 rad, which is 40 rad/s over 0.5 ms.
+  /// Below the squared angle kSmall2, the series of sin(a)/a and (1 - cos(a))/a^2 are accurate to 1e-16. The constant
+  /// kSmall2 is the square of 0.02 rad, which is 40 rad/s over 0.5 ms.
   static constexpr double kSmall2 = 4e-4;
   static double sinc_of_small(double angle2) {
     return 1.0 - angle2 / 6.0 * (1.0 - angle2 / 20.0 * (1.0 - angle2 / 42.0));
@@ -47,12 +47,12 @@ class TrackCursor {
   static double sinc_of(double angle2) { return std::sin(std::sqrt(angle2)) / std::sqrt(angle2); }
   static double cosc_of(double angle2) { return (1.0 - std::cos(std::sqrt(angle2))) / angle2; }
 
-  /// `motion` must have at least two samples and outlive the cursor.
+  /// `motion` must have at least two samples, and outlive the cursor.
   TrackCursor(const MotionTrack& motion, const Eigen::Isometry3d& T_BL) : motion_(motion) {
     T_BL_ << T_BL.linear(), T_BL.translation();
   }
 
-  /// Returns the interval that contains a time; the reference is valid until the next call.
+  /// Returns the interval that contains a time. The reference is valid until the next call.
   const Interval& interval(std::int64_t time_ns) {
     if (!now_.holds(time_ns)) enter_interval(time_ns);
     return now_;
@@ -82,7 +82,7 @@ class TrackCursor {
     now_.step_m = motion_.p_WB_m[i + 1] - motion_.p_WB_m[i];
     Eigen::Quaterniond relative = motion_.q_WB[i].conjugate() * motion_.q_WB[i + 1];
     if (relative.w() < 0.0) relative.coeffs() = -relative.coeffs();
-    // atan2 is precise at small angles, unlike acos
+    // Unlike acos, atan2 is precise at small angles.
     const double sine = relative.vec().norm();
     const Eigen::Vector3d rotation_rad =
         sine > 0.0 ? Eigen::Vector3d(relative.vec() * (2.0 * std::atan2(sine, relative.w()) / sine))

@@ -56,7 +56,7 @@ constexpr std::array<Parameter, kHandParameters.size() + N> with_hand(const std:
 
 /// Hand moves a sphere with a horizontal force at the sphere's centre. The force pulls the sphere to a moving reference
 /// position (spring, damper, and feed-forward force of rolling), with tremor. On floor patches with different friction,
-/// the hand adds bursts of torque. The hand applies no vertical force and has no body in the simulation.
+/// the hand adds bursts of torque. The hand applies no vertical force, and has no body in the simulation.
 class Hand {
  public:
   /// Constructs the hand of a motion. Error messages start with the name `motion`. Throws InvalidSituation if the robot
@@ -64,8 +64,7 @@ class Hand {
   Hand(const std::string& motion, const Values& values, const engine::World& world);
 
   double radius_m() const { return radius_m_; }
-  /// Returns the state at rest with the centre at `p_G_m`; the heavy side points down, so that the sphere is in
-  /// equilibrium.
+  /// Returns the state at rest with the centre at `p_G_m`. The heavy side points down, so the sphere is in equilibrium.
   BodyState at_rest(const Eigen::Vector3d& p_G_m) const;
   /// Returns the wrench that the hand applies to a sphere in `state`. The function stores when a burst began, so times
   /// must increase between calls.

@@ -37,7 +37,7 @@ constexpr double kTick_s = 0.001;
 constexpr double kPathLongest_s = 600.0;
 
 /// Schedule is the hand's path over time: the horizontal target position of the sphere's centre at each tick (time
-/// step) from `start_s` on. The path starts and ends at rest.
+/// step) after `start_s`. The path starts and ends at rest.
 class Schedule {
  public:
   Schedule(const Values& values, const engine::World& world, Stream& stream) {
@@ -56,7 +56,7 @@ class Schedule {
   const Eigen::Vector2d& first() const { return nodes_.front(); }
 
   void add_to(double time_s, Reference& reference) const {
-    // three ticks around the time give the path's value, first and second difference
+    // Three ticks around the time determine the path's value, first and second difference.
     const double at = (time_s - start_s_) / kTick_s;
     const auto last = static_cast<double>(ticks_.size()) - 2.0;
     const double inside = std::clamp(at, 1.0, last);
@@ -106,7 +106,7 @@ class Schedule {
       constexpr double kLastTau_s = 0.15;  // time constant of the approach over the last centimetres
       aim_m_s = std::min({aim_m_s, std::sqrt(1.6 * acceleration_m_s2 * left_m), left_m / kLastTau_s});
       const double change = acceleration_m_s2 * kTick_s;
-      // during a push, only the averaging of the path (averaged()) limits the acceleration
+      // During a push, only the averaging of the path (averaged()) limits the acceleration.
       v_m_s = std::clamp(aim_m_s, v_m_s - change, pushed ? aim_m_s : v_m_s + change);
       v_m_s = std::max(v_m_s, 1e-3);
       s_m += v_m_s * kTick_s;
@@ -116,8 +116,8 @@ class Schedule {
     return ticks;
   }
 
-  /// Returns the moving average of a path over `width` ticks. Beyond its ends, the path is assumed constant, so that
-  /// start and end remain.
+  /// Returns the moving average of a path over `width` ticks. The path is assumed constant beyond its ends, so that
+  /// start and end positions remain.
   static std::vector<Eigen::Vector2d> averaged(const std::vector<Eigen::Vector2d>& in, int width) {
     std::vector<Eigen::Vector2d> out;
     out.reserve(in.size() + static_cast<std::size_t>(width));

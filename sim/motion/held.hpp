@@ -9,12 +9,12 @@
 
 namespace tumble::sim {
 
-/// HoldingHand holds a robot still in the air, with critically damped springs for position and attitude and a force
-/// that carries the weight. The force of the hand acts at the centre of mass.
+/// HoldingHand holds a robot still in the air, with critically damped springs for position and attitude, and a force
+/// that carries the weight. The force acts at the centre of mass.
 class HoldingHand {
  public:
-  /// Holds the robot with attitude `q_WB` at `offset_W_m` from the world's start, with its lowest point `height_m`
-  /// above the ground at the start. Throws InvalidSituation for a height of 0 or less.
+  /// Holds the robot with attitude `q_WB` at `offset_W_m` from the world's start. The lowest point of the robot is
+  /// `height_m` above the ground at the start. Throws InvalidSituation for a height of 0 or less.
   HoldingHand(const engine::World& world, const Eigen::Quaterniond& q_WB, const Eigen::Vector3d& offset_W_m,
               double height_m);
 

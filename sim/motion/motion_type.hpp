@@ -10,19 +10,19 @@
 
 namespace tumble::sim {
 
-/// Motion causes the motion of a robot by a start pose and a wrench (force and torque). A Motion never sets a velocity,
-/// because the simulated accelerometers would not measure the jump.
+/// Motion moves a robot from a start pose by a wrench (force and torque). A Motion never sets a velocity, because the
+/// simulated accelerometers would not measure the jump.
 class Motion {
  public:
   virtual ~Motion() = default;
-  /// Returns the pose at rest just above the ground, from which the robot settles under gravity before the recording
-  /// starts.
+  /// Returns the pose at rest just above the ground. From this pose, the robot settles under gravity before the
+  /// recording starts.
   virtual BodyState start() const = 0;
   /// Returns the wrench from `state.time_s` to the next step. Before time 0, the robot settles into its contacts.
   virtual Wrench wrench(const BodyState& state) = 0;
 };
 
-/// MotionType is a kind of motion with its parameters and its factory for a world. `world` must outlive the motion.
+/// MotionType is a kind of motion, with its parameters and its factory for a world. `world` must outlive the motion.
 struct MotionType {
   ComponentType component;
   std::unique_ptr<Motion> (*make)(const Values& values, const engine::World& world);

@@ -13,8 +13,10 @@ constexpr std::array kOwnPushParameters = {
     Parameter{"rest_s", 1.75, 0.0, 30.0, "s", "rest before the push"},
     Parameter{"push_s", 0.2, 0.02, 2.0, "s", "duration of the push; force and torque rise and fall as a raised cosine"},
     Parameter{"yaw_rad", 0.0, -3.2, 3.2, "rad", "heading of the robot at rest; 0: its x axis points down the slope"},
-    Parameter{"velocity_m_s", 2.0, 0.0, 10.0, "m/s", "horizontal velocity change by the push (impulse over mass)"},
-    Parameter{"lift_m_s", 1.0, 0.0, 10.0, "m/s", "upward velocity change by the push (impulse over mass)"},
+    Parameter{"velocity_m_s", 2.0, 0.0, 10.0, "m/s",
+              "change of the horizontal velocity, caused by the push (impulse over mass)"},
+    Parameter{"lift_m_s", 1.0, 0.0, 10.0, "m/s",
+              "change of the upward velocity, caused by the push (impulse over mass)"},
 };
 constexpr std::array kPushParameters = joined(kOwnPushParameters, kImpulseParameters);
 

@@ -18,7 +18,7 @@ constexpr std::array kSwingParameters = {
     Parameter{"hold_s", 0.5, 0.0, 10.0, "s", "time for which the hand holds the lifted segment"},
     Parameter{"release_s", 0.03, 0.005, 1.0, "s", "time in which the hand releases the segment"},
     Parameter{"interval_s", 19.0, 2.0, 120.0, "s",
-              "mean time between two releases, varied by up to a tenth; must be at least the times of lift and hold"},
+              "mean time between two releases, varied by up to a tenth; must be at least lift_s plus hold_s"},
     Parameter{"aside_m", 0.4, 0.0, 3.0, "m",
               "mean distance by which the segment is moved aside, perpendicular to the hinges"},
     Parameter{"up_m", 0.45, 0.0, 3.0, "m", "mean distance up"},
@@ -32,7 +32,7 @@ constexpr std::array kSwingParameters = {
 
 constexpr double kSwingLongest_s = 3600.0;
 
-/// Lift is one swing, in which the hand grips the robot, leads it aside, holds it and releases it.
+/// Lift is one swing: the hand grips the robot, leads it aside, holds it and releases it.
 struct Lift {
   double start_s;
   Eigen::Vector3d lift_W_m;
@@ -63,7 +63,7 @@ double smooth(double share) {
 }
 
 /// In the motion Swing, a hand grips the lowest segment of the pendulum at the segment's centre of mass. A spring and a
-/// damper pull this segment to a moving target. The hand applies no torque and has no body in the simulation.
+/// damper pull the lowest segment to a moving target. The hand applies no torque, and has no body in the simulation.
 class Swing : public Motion {
  public:
   Swing(const Values& values, const engine::World& world)
@@ -87,7 +87,7 @@ class Swing : public Motion {
     const Lift& lift = *std::prev(after);
     const double since_s = state.time_s - lift.start_s;
     constexpr double kGrip_s = 0.3;  // time in which the fingers close
-    // natural frequency of the spring with the hanging mass, typical of an arm
+    // Natural frequency of the spring with the hanging mass, typical of an arm.
     constexpr double kFrequency_rad_s = 15.0;
     const double grip = smooth(since_s / kGrip_s) * (1.0 - smooth((since_s - lift_s_ - hold_s_) / release_s_));
     if (grip <= 0.0) return {};

@@ -43,7 +43,7 @@ constexpr std::array kTwirlParameters = {
 constexpr double kTwirlSwayLow_hz = 0.3, kTwirlSwayHigh_hz = 4.0;
 constexpr double kTwirlLongest_s = 120.0;
 
-/// Stroke is one twist of the wrist or the fingers, from rest to rest, with a rate in the form of a sin^2 pulse.
+/// Stroke is one twist of the wrist or the fingers, from rest to rest. The rate has the form of a sin^2 pulse.
 struct Stroke {
   static constexpr double kRise = 1.0 / 3.0;
   double start_s, length_s, peak_rad_s;
@@ -72,9 +72,9 @@ std::vector<Stroke> plan_strokes(const Values& values, Stream& stream) {
   return strokes;
 }
 
-/// In the motion Twirl, a hand holds the robot at one point and twirls it about x, stroke by stroke. A spring and a
-/// damper keep the robot on the intended path, in addition to the forces that the path's acceleration needs. The hand
-/// has no body in the simulation.
+/// In the motion Twirl, a hand holds the robot at one point and twirls it about x, stroke by stroke. The forces of the
+/// hand cause the path's acceleration; a spring and a damper correct deviations. The hand has no body in the
+/// simulation.
 class Twirl : public Motion {
  public:
   Twirl(const Values& values, const engine::World& world)
@@ -100,14 +100,13 @@ class Twirl : public Motion {
   }
 
  private:
-  /// Returns the intended pose of the robot.
   HandHeldPose path(double time_s) const {
     double spun_rad = 0.0;
     for (const Stroke& stroke : strokes_) {
       if (time_s <= stroke.start_s) break;
       spun_rad += stroke.angle_rad(time_s);
     }
-    // the tremor starts within a second, with continuous acceleration
+    // The tremor starts within a second, with continuous acceleration.
     const double share = eased(time_s - rest_s_);
     const Eigen::Vector3d sway_m(positions_[0].at(time_s), positions_[1].at(time_s), positions_[2].at(time_s));
     const BodyState start = hand_.start();

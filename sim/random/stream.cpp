@@ -31,8 +31,8 @@ std::uint64_t join(std::uint32_t low, std::uint32_t high) {
 }  // namespace
 
 Stream::Stream(std::uint64_t seed, std::string_view name) {
-  // The Philox key has 64 bits, but the seed and the hash of the name have 128 bits. One Philox block combines both, so
-  // that similar seeds and names give unrelated keys.
+  // The Philox key has 64 bits, but the seed and the hash of the name have 128 bits. One Philox block combines seed and
+  // hash, so that similar seeds and names give unrelated keys.
   const std::uint64_t hash = fnv1a(name);
   const auto folded = philox4x32_10({static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32), 0, 0},
                                     {static_cast<std::uint32_t>(hash), static_cast<std::uint32_t>(hash >> 32)});

@@ -30,7 +30,6 @@ void add_line(mjvScene& scene, const Vector3d& from, const Vector3d& to) {
   }
 }
 
-/// Transforms a point from a geom's frame to the world.
 Vector3d to_world(const mjData& data, int geom, const Vector3d& p_S) {
   const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> R_WS(data.geom_xmat + 9 * geom);
   return Eigen::Map<const Vector3d>(data.geom_xpos + 3 * geom) + R_WS * p_S;
@@ -114,7 +113,7 @@ void add_paths(const View& view, mjvScene& scene) {
         from = &to;
         continue;
       }
-      // path samples closer than the line's width are skipped to save time
+      // Path samples closer than the line's width are skipped to save time.
       if ((to - *from).norm() < path.width_m && &to != &path.points_W_m.back()) continue;
       if (mjvGeom* geom = next_geom(scene, mjGEOM_CAPSULE, path.rgba.data())) {
         mjv_connector(geom, mjGEOM_CAPSULE, 0.5 * path.width_m, from->data(), to.data());

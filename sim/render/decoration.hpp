@@ -13,7 +13,7 @@ int decoration_size(const engine::World& world, const View& view);
 
 /// Adds lines 1 m apart over height fields and 0.5 m apart over planes, which show slope and scale.
 void add_grid(const engine::World& world, const mjData& data, mjvScene& scene);
-/// Adds paths as connected capsules and clouds as balls (boxes if there are many).
+/// Adds paths as connected capsules, and clouds as balls (boxes if there are many points).
 void add_paths(const View& view, mjvScene& scene);
 void add_points(const View& view, mjvScene& scene);
 

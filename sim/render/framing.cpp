@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// paths within this distance plus a quarter of the robots' extent are kept in the picture
+// Paths are kept in the picture if they are within kNear_m plus a quarter of the robots' extent.
 constexpr double kNear_m = 1.0;
 
 struct Ball {
@@ -26,7 +26,8 @@ std::vector<Ball> content(const View& view, double robot_radius_m) {
     balls.push_back({T_WB.translation(), robot_radius_m});
     near.extend(T_WB.translation());
   }
-  // if there are robots, the framing ignores distant paths, because a diverged estimate must not make the robots tiny
+  // With robots in the view, the framing ignores distant paths, because a diverged estimate must not make the robots
+  // tiny.
   if (!near.isEmpty()) {
     const Vector3d margin = Vector3d::Constant(kNear_m + 0.25 * near.diagonal().norm());
     near = Eigen::AlignedBox3d(near.min() - margin, near.max() + margin);
@@ -36,7 +37,7 @@ std::vector<Ball> content(const View& view, double robot_radius_m) {
       if (near.isEmpty() || near.contains(p)) balls.push_back({p, path.width_m});
     }
   }
-  // maps (point clouds) are much larger than the motion, so they count only if the view has neither robot nor path
+  // Maps (point clouds) are much larger than the motion, so they count only in a view without robots and paths.
   if (balls.empty()) {
     for (const DrawnPoints& cloud : view.points) {
       for (const Vector3d& p : cloud.points_W_m) balls.push_back({p, cloud.radius_m});
@@ -49,7 +50,7 @@ std::vector<Ball> content(const View& view, double robot_radius_m) {
 }  // namespace
 
 Framing frame(const View& view, double robot_radius_m, double fovy_rad) {
-  constexpr double kMargin = 0.82;     // fraction of the picture's half width and height that the content may use
+  constexpr double kMargin = 0.82;     // usable fraction of the picture's half width and height
   constexpr double kSmallest_m = 1.2;  // minimum size, so that the surroundings stay visible
   constexpr double kOverview_m = 25.0;
   const std::vector<Ball> balls = content(view, robot_radius_m);

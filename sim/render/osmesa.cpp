@@ -10,7 +10,7 @@ namespace tumble::sim {
 
 namespace {
 
-/// Name of the shared library whose binary interface matches OSMesa's header.
+/// Shared library whose binary interface matches OSMesa's header.
 constexpr const char* kLibrary = "libOSMesa.so.8";
 
 [[noreturn]] void fail() {

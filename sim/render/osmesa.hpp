@@ -13,7 +13,7 @@ struct OsMesa {
   decltype(&::OSMesaMakeCurrent) make_current;
 };
 
-/// Loads OSMesa once for the life of the process and returns its functions. The symbols of OSMesa are then visible to
+/// Loads OSMesa once for the life of the process, and returns its functions. The symbols of OSMesa are then visible to
 /// MuJoCo, which looks up OpenGL functions by name. Throws std::runtime_error if loading fails. The function may be
 /// called from any thread.
 const OsMesa& osmesa();

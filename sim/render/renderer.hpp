@@ -28,8 +28,8 @@ struct DrawnPath {
   double width_m = 0.02;
 };
 
-/// DrawnPoints contains points that are drawn as small spheres, each with its own colour, for example of a map by
-/// error.
+/// DrawnPoints contains points that are drawn as small spheres, each with its own colour, for example map points
+/// coloured by error.
 struct DrawnPoints {
   std::vector<Eigen::Vector3d> points_W_m;
   std::vector<std::array<float, 4>> rgba;

@@ -36,12 +36,11 @@ class Current {
   Current& operator=(const Current&) = delete;
 
  private:
-  // pictures are drawn into a frame buffer object, so the buffer of the context is unused
+  // Pictures are drawn into a frame buffer object, so the buffer of the context is unused.
   static constexpr int kSide = 16;
   unsigned char pixels_[4 * kSide * kSide];
 };
 
-/// Scene is MuJoCo's scene for one picture.
 class Scene {
  public:
   Scene(const mjModel& model, int geoms) {
@@ -57,7 +56,7 @@ class Scene {
   mjvScene scene_;
 };
 
-/// Halves a picture in both directions and flips it vertically, because OpenGL's rows start at the bottom.
+/// Halves a picture in both directions, and flips it vertically, because OpenGL's rows start at the bottom.
 Picture averaged(const std::vector<std::uint8_t>& large, int width, int height) {
   Picture picture{width, height,
                   std::vector<std::uint8_t>(3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height))};
@@ -86,7 +85,7 @@ void set_look(mjModel& model, int shadow_pixels) {
   model.vis.quality.offsamples = 0;
   model.vis.quality.numslices = 24;
   model.vis.quality.numstacks = 14;
-  // soft light from the camera fills the sun's shadows
+  // Soft light from the camera brightens the sun's shadows.
   for (int c = 0; c < 3; ++c) {
     model.vis.headlight.ambient[c] = 0.28f;
     model.vis.headlight.diffuse[c] = 0.30f;
@@ -168,7 +167,7 @@ void SceneRenderer::Impl::add_robots(const View& view, const mjvOption& option, 
   if (world.robot_body < 0) return;
   if (!world.free) {
     for (const Eigen::Isometry3d& T_WB : view.robots_T_WB) {
-      // starts from the previous pose, because neighbouring poses of a film strip are similar
+      // Starts from the previous pose, because neighbouring poses of a film strip are similar.
       engine::reach(world, T_WB, *data);
       mjv_addGeoms(&model, data.get(), &option, nullptr, mjCAT_DYNAMIC, &scene);
     }

@@ -52,14 +52,14 @@ MeshPart part_of(const mjModel& model, int geom, const Eigen::Isometry3d& T_FS, 
   return part;
 }
 
-/// Returns the visible geoms of one body in a frame F; `T_FW` converts world coordinates to F.
+/// Returns the visible geoms of one body in a frame F. `T_FW` converts world coordinates to F.
 std::vector<MeshPart> body_mesh(const mjModel& model, const mjData& data, int body, const Eigen::Isometry3d& T_FW,
                                 int segments) {
   std::vector<MeshPart> parts;
   for (int geom = 0; geom < model.ngeom; ++geom) {
     if (model.geom_bodyid[geom] != body || model.geom_group[geom] >= kGroupsSeen) continue;
     if (colour_of(model, geom)[3] == 0.0f) continue;
-    // a thin strut (capsule) needs fewer pieces about its axis than the shell of a sphere
+    // A thin strut (capsule) needs fewer pieces about its axis than the shell of a sphere.
     const bool thin = model.geom_type[geom] == mjGEOM_CAPSULE;
     parts.push_back(part_of(model, geom, T_FW * geom_pose(data, geom), thin ? (segments + 2) / 4 * 2 : segments));
   }

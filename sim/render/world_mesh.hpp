@@ -17,7 +17,7 @@ struct MeshPart {
   std::vector<Eigen::Vector3f> vertices_m;
   std::vector<std::array<std::uint32_t, 3>> triangles;
   /// Grid size of a height field, or of a plane as a field with one cell; 0 for other parts. The grid nodes are in
-  /// `vertices_m` row by row; x increases along a row and y increases from row to row. For a grid, `triangles` is
+  /// `vertices_m` row by row; x increases along a row, and y increases from row to row. For a grid, `triangles` is
   /// empty: each cell is two triangles, cut from (row, column) to (row + 1, column + 1).
   int rows = 0, columns = 0;
 };

@@ -13,11 +13,11 @@ namespace tumble::sim {
 struct RobotType {
   ComponentType component;
   std::string_view file;  ///< file in the folder of models
-  /// Sets mass, inertia, contact and centre of mass of the parsed robot; fills in com_offset_m and sphere_radius_m of
+  /// Sets mass, inertia, contact and centre of mass of the parsed robot. Fills in com_offset_m and sphere_radius_m of
   /// `world`.
   void (*shape)(mjSpec* spec, const Values& values, engine::World& world);
-  /// Body of the MJCF file that carries all sensor sites, with its origin at its centre of mass. The sensor body is a
-  /// free body, or is attached by joints below `anchor`.
+  /// Body of the MJCF file that carries all sensor sites, with its origin at its centre of mass. The sensor body is
+  /// free, or attached by joints below `anchor`.
   std::string_view sensor_body = "robot";
   std::string_view anchor = "";  ///< static body that is moved to the world's start; empty: the robot is free
 };

@@ -3,14 +3,14 @@
 
 #include "sim/sensor_type.hpp"
 
-/// series_sensors.hpp declares sensors that deliver series of numbers; each sensor has one source file.
+/// series_sensors.hpp declares sensors that deliver series of numbers. Each sensor has one source file.
 namespace tumble::sim {
 
-/// Returns the barometer, which measures air pressure; the pressure decreases with height.
+/// Returns the barometer, which measures air pressure. The pressure decreases with height.
 const SensorType& barometer_sensor();
 
-/// Returns the pressure of isothermal air at a height above the world's origin [Pa]: p0 exp(-g M h / (R T)) (US
-/// Standard Atmosphere 1976, equation 33b), with M = 0.0289644 kg/mol and R = 8.31432 J/(mol K).
+/// Returns the pressure of isothermal air at a height above the world's origin [Pa]: p0 exp(-g M h / (R T)). The source
+/// is the US Standard Atmosphere 1976, equation 33b, with M = 0.0289644 kg/mol and R = 8.31432 J/(mol K).
 double air_pressure_pa(double ground_pressure_pa, double temperature_k, double gravity_m_s2, double height_m);
 
 }  // namespace tumble::sim

@@ -15,7 +15,6 @@ namespace tumble::sim {
 
 namespace {
 
-/// Returns the number of physics steps per averaging window.
 std::size_t steps_in_window(const SensorSpec& sensor, std::int64_t step_ns) {
   const double steps = 1e9 / (sensor.values.at("output_rate_hz") * static_cast<double>(step_ns));
   const double whole = std::round(steps);
@@ -41,7 +40,7 @@ class Reader {
     const ReadingErrors& errors = measured_->errors;
     const double noise = errors.noise > 0.0 ? errors.noise * noise_.normal() : 0.0;
     const double read = exact + bias_ + noise;
-    // quantisation comes before the range limit, so that no reading is out of range
+    // Quantisation comes before the range limit, so that no reading is out of range.
     const double step = errors.quantum > 0.0 ? errors.quantum * std::round(read / errors.quantum) : read;
     return std::clamp(step, errors.low, errors.high);
   }

@@ -30,11 +30,11 @@ inline constexpr std::array kSeriesParameters = {
               "recording"},
 };
 
-/// ReadingErrors contains the sizes of the errors of a reading, relative to the true mean over the averaging window; 0
-/// switches an error off.
+/// ReadingErrors contains the sizes of the errors of a reading, relative to the true mean over the averaging window. A
+/// size of 0 switches an error off.
 struct ReadingErrors {
   double noise = 0.0;  ///< standard deviation of the white noise of each reading
-  /// standard deviation of an error that is constant over a recording
+  /// Standard deviation of an error that is constant over a recording.
   double bias = 0.0;
   double low = -std::numeric_limits<double>::infinity();  ///< limits of the output range
   double high = std::numeric_limits<double>::infinity();
@@ -50,11 +50,11 @@ struct Measured {
 };
 
 /// Adds a series of `quantities` to a recording that contains the body's truth. A reading is the mean over an averaging
-/// window with bias, white noise, range, quantum, time stamps and losses (imu/time_stamps.hpp), as kSeriesParameters
-/// state. If every error is 0, the reading equals the true mean, bit for bit. A sample that the device loses is also
-/// missing in the truth. Throws InvalidSituation if the output period is not a whole number of physics steps. The model
-/// excludes temperature errors, drift, and any bandwidth limit except the averaging window. `constants` are numbers of
-/// the sensor that estimators receive with the recording.
+/// window with bias, white noise, range, quantum, time stamps and losses (imu/time_stamps.hpp). kSeriesParameters lists
+/// the parameters. If every error is 0, the reading equals the true mean, bit for bit. A sample that the device loses
+/// is also missing in the truth. `constants` are the names of the sensor's numbers that estimators receive with the
+/// recording. Throws InvalidSituation if the output period is not a whole number of physics steps. The model excludes
+/// temperature errors, drift, and any bandwidth limit except the averaging window.
 void simulate_series(const SensorContext& context, const std::vector<Measured>& quantities,
                      const std::vector<std::string>& constants, Recording& recording);
 

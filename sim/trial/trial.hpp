@@ -12,8 +12,8 @@
 
 namespace tumble::sim {
 
-/// Integrator selects the integrator of MuJoCo. The simulation uses `runge_kutta_4`; `euler` and `implicit` serve to
-/// demonstrate their errors.
+/// Integrator selects the integrator of MuJoCo. The simulation uses `runge_kutta_4`; `euler` and `implicit` demonstrate
+/// the errors of other integrators.
 enum class Integrator { runge_kutta_4, euler, implicit };
 
 struct TrialOptions {
@@ -22,7 +22,7 @@ struct TrialOptions {
 };
 
 /// Trial simulates a robot in its world step by step for measurements, with the model and engine of simulate(). The
-/// robot starts without settling, and the motion and sensors of the situation are ignored.
+/// robot starts without settling. The motion and sensors of the situation are ignored.
 class Trial {
  public:
   /// Constructs a trial with a copy of the world. Throws InvalidSituation if the time step is outside its limits.
@@ -41,14 +41,15 @@ class Trial {
   BodyState state() const;  ///< state of the body that carries the sensors
   /// Sets the state of a free robot. Throws InvalidSituation for a robot on joints.
   void set_state(const BodyState& state);
-  /// Returns the angle of a hinge, given its name, for a robot on joints; joint_rate_rad_s returns its rate. joint_rad
-  /// and joint_rate_rad_s throw InvalidSituation for an unknown name.
+  /// Return angle and angular velocity of the hinge with the given name, for a robot on joints. Throw InvalidSituation
+  /// for an unknown name.
   double joint_rad(const std::string& name) const;
   double joint_rate_rad_s(const std::string& name) const;
   void set_joint(const std::string& name, double angle_rad, double rate_rad_s);
   /// Advances the trial by one step under gravity, contacts and `wrench`. Throws SimulationFailure like Physics::step.
   void step(const Wrench& wrench = {});
-  /// Returns the contacts at the end of the last step; their time is that of the state, rounded to nanoseconds.
+  /// Returns the contacts at the end of the last step. The time of a contact is the time of the state, rounded to
+  /// nanoseconds.
   std::vector<ContactTruth> contacts() const;
 
  private:

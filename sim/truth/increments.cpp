@@ -7,11 +7,11 @@ namespace tumble::sim {
 
 namespace {
 
-/// Returns the rotation vector of a unit quaternion; the result is also exact for small angles.
+/// Returns the rotation vector of a unit quaternion. The rotation vector is also exact for small angles.
 Eigen::Vector3d log_rotation(Eigen::Quaterniond q) {
   if (q.w() < 0.0) q.coeffs() = -q.coeffs();
   const double sine = q.vec().norm();
-  // atan2(s, w) / s tends to 1 - s^2/6 for w near 1; below s = 1e-4, the error of the series is 1e-17
+  // For w near 1, atan2(s, w) / s tends to 1 - s^2/6; below s = 1e-4, the error of the series is 1e-17.
   const double factor = sine < 1e-4 ? 2.0 * (1.0 + sine * sine / 6.0) : 2.0 * std::atan2(sine, q.w()) / sine;
   return factor * q.vec();
 }

@@ -75,7 +75,7 @@ Truth record_truth(engine::World& world, Motion& motion, double duration_s) {
   if (distance_m < kLeastDistance_m)
     throw SimulationFailure("the robot did not move until the end of the simulation at " + std::to_string(duration_s) +
                             " s");
-  // no step ends at time 0; the specific force at time 0 is that of the first step, because the robot is at rest
+  // No step ends at time 0. The robot is then at rest, so the specific force of the first step applies.
   truth.f_B_m_s2.insert(truth.f_B_m_s2.begin(), truth.f_B_m_s2.front());
   truth.label = label_contacts(truth);
   return truth;

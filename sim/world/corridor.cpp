@@ -81,7 +81,7 @@ class Side {
     at_m_ = to_m;
   }
 
-  /// Adds a door between its posts, or a niche; some niches contain a locker.
+  /// Adds a door between its posts, or a niche. Some niches contain a locker.
   void add_recess(double width_m, double depth_m, const Colour& colour, bool door) {
     const double to_m = at_m_ + width_m, top_m = values_.at("wall_height_m");
     add(door ? "door_" : "niche_", at_m_, to_m, depth_m, depth_m + 2 * kHalfWall_m, top_m, colour);

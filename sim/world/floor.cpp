@@ -74,7 +74,7 @@ mjsGeom* add_bar(mjSpec* spec, engine::World& world, const std::string& name, co
                  double yaw_rad, double height_m, const Colour& colour) {
   mjsGeom* geom = add_surface(spec, world, name, mjGEOM_CYLINDER, {at_m.x(), at_m.y(), height_m - kBarRadius_m},
                               {kBarRadius_m, kObstacleHalfWidth_m, 0.0}, 0.0, colour);
-  // rotates the cylinder's z axis to -y, then by the yaw: q = q_z(yaw) * q_x(90 deg)
+  // Rotates the cylinder's z axis to -y, then by the yaw: q = q_z(yaw) * q_x(90 deg).
   const double half = std::sqrt(0.5), c = std::cos(yaw_rad / 2) * half, s = std::sin(yaw_rad / 2) * half;
   const double q[4] = {c, c, s, s};
   std::copy(q, q + 4, geom->quat);
@@ -92,7 +92,7 @@ void add_obstacles(mjSpec* spec, engine::World& world, const Values& values) {
     const Eigen::Vector2d ahead(std::cos(yaw_rad), std::sin(yaw_rad));
     Eigen::Vector2d at(value("x_m"), value("y_m"));
     if (kind == 3) at += half_depth_m * ahead;
-    // half of the obstacle is below the floor, so that its lower face does not coincide with the floor
+    // Half of the obstacle is below the floor, so that its lower face does not coincide with the floor.
     mjsGeom* geom = kind == 1 ? add_bar(spec, world, name, at, yaw_rad, height_m, kWood)
                               : add_surface(spec, world, name, mjGEOM_BOX, {at.x(), at.y(), 0.0},
                                             {half_depth_m, kObstacleHalfWidth_m, height_m}, yaw_rad, kWood);

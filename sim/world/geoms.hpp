@@ -13,7 +13,7 @@ namespace tumble::sim {
 
 using Colour = std::array<float, 4>;
 
-/// Adds a static geom that a robot touches and a lidar sees, and registers it as a surface of `world`. `size` is
+/// Adds a static geom that a robot touches and a lidar sees, and registers it as a surface of `world`. `size_m` is
 /// MuJoCo's size for the geom type (half widths, radius and half height); `yaw_rad` is about z. The caller may set
 /// further properties of the returned geom.
 mjsGeom* add_surface(mjSpec* spec, engine::World& world, const std::string& name, mjtGeom type,
@@ -33,7 +33,7 @@ struct HeightGrid {
 mjsGeom* add_height_field(mjSpec* spec, engine::World& world, const std::string& name, const HeightGrid& grid,
                           double common_position_m, double least_span_m, const Colour& colour);
 
-/// Adds a flat mark on the floor for pictures only; the mark has no contact and is not a surface.
+/// Adds a flat mark on the floor for pictures only. The mark has no contact, and is not a surface.
 void add_mark(mjSpec* spec, const engine::FrictionPatch& patch, const Colour& colour);
 
 /// Adds the sun, and the sky of pictures.

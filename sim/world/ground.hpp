@@ -26,7 +26,7 @@ inline constexpr std::array kGroundParameters = {
 };
 
 /// Sets friction and softness of the ground geom. MuJoCo uses the larger friction of two touching geoms, and the sphere
-/// has no friction. On hard ground, the softness of a contact is that of the robot; on soft ground, it is that of the
+/// has no friction. A contact has the softness of the robot on hard ground, and the softness of the ground on soft
 /// ground.
 void set_ground_contact(mjsGeom* geom, const Values& values);
 

@@ -20,8 +20,8 @@ inline constexpr double kEdge_m = -8.0;    ///< x of the upper edge
 inline constexpr double kSetBack_m = 0.8;  ///< distance of the robot's start behind the edge
 inline constexpr double kStart_x_m = kEdge_m - kSetBack_m;
 
-/// kCoverParameters lists the parameters of relief, rocks, trunks and blocks, which follow the parameters of a world in
-/// its table.
+/// kCoverParameters lists the parameters of relief, rocks, trunks and blocks. In the table of a world, the parameters
+/// of the world precede kCoverParameters.
 inline constexpr std::array kCoverParameters = {
     Parameter{"relief_m", 0.12, 0.0, 1.0, "m", "root mean square height of the relief; 0: none"},
     Parameter{"relief_shortest_m", 2.5, 0.5, 20.0, "m", "shortest wavelength of the relief"},

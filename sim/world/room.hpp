@@ -8,7 +8,7 @@
 
 namespace tumble::sim {
 
-/// kRoomParameters lists the parameters of the square room around a level floor; the room gives the lidar features.
+/// kRoomParameters lists the parameters of the square room around a level floor. The room gives the lidar features.
 inline constexpr std::array kRoomParameters = {
     Parameter{"room_half_m", 5.0, 2.5, 30.0, "m", "half width of the square room"},
     Parameter{"wall_height_m", 2.5, 0.2, 10.0, "m", "height of the four walls"},

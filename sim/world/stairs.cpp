@@ -46,7 +46,8 @@ void add_cheeks(mjSpec* spec, engine::World& world, const Flight& flight, double
 void build_stairs(mjSpec* spec, const Values& values, std::uint64_t seed, engine::World& world) {
   const Flight flight{hillside::kEdge_m, static_cast<int>(values.at("step_count")), values.at("step_rise_m"),
                       values.at("step_tread_m"), values.at("flight_half_width_m")};
-  // the ground follows the slope of the flight at the flight's sides, and stays below the treads under the flight
+  // At the flight's sides, the ground follows the slope of the flight. Under the flight, the ground stays below the
+  // treads.
   const SlopeProfile slope{flight.edge_x_m, flight.slope_rad(), flight.drop_m(), 0.05};
   const auto beside = [&](double, double y_m) {
     return fade(std::abs(y_m), flight.half_width_m + 0.3, flight.half_width_m + 1.5);

@@ -53,7 +53,7 @@ void add_shell(mjSpec* spec, engine::World& world, const Values& values, int sid
     const double x_m = values.at("length_m") * (static_cast<double>(ring) / rings - 0.5);
     for (int step = 0; step <= kSteps; ++step) {
       const double angle = -kBelow_rad + (std::numbers::pi / 2 + kBelow_rad) * step / kSteps;
-      // second coordinate of the unevenness: the arc length from the crown, where both halves meet
+      // Second coordinate of the unevenness: the arc length from the crown, where both halves meet.
       const double arc_m = side * (std::numbers::pi / 2 - angle) * values.at("half_width_m");
       const double scale = 1.0 + rough.height_m(x_m, arc_m) / values.at("half_width_m");
       vertices.push_back(static_cast<float>(x_m));
@@ -67,7 +67,7 @@ void add_shell(mjSpec* spec, engine::World& world, const Values& values, int sid
   for (int ring = 0; ring < rings; ++ring) {
     for (int step = 0; step < kSteps; ++step) {
       const int here = ring * (kSteps + 1) + step, next = here + kSteps + 1;
-      // pictures show only one side of a face, the side on which the corners are anticlockwise: here the inner side
+      // Pictures show a face only from the side on which its corners are anticlockwise: here the inner side.
       const int first = side > 0 ? next : here + 1, second = side > 0 ? here + 1 : next;
       for (const int corner : {here, first, next + 1, here, next + 1, second}) faces.push_back(corner);
     }
@@ -88,7 +88,7 @@ void add_shell(mjSpec* spec, engine::World& world, const Values& values, int sid
 void add_ends(mjSpec* spec, engine::World& world, const Values& values, double half_y_m) {
   const double half_height_m = 0.75 * values.at("height_m"), x_m = values.at("length_m") / 2;
   for (const int sign : {1, -1}) {
-    // the box at the end of the tube closes it, and is slightly rotated like debris
+    // The box at the end of the tube closes it, and is slightly rotated like debris.
     add_surface(spec, world, sign > 0 ? "end_front" : "end_back", mjGEOM_BOX, {sign * (x_m + 0.05), 0, half_height_m},
                 {0.2, half_y_m, half_height_m}, 0.1, kRock);
   }

@@ -12,7 +12,7 @@ namespace tumble::sim {
 /// WorldType is a kind of world: its parameters, and the function that adds it to a model.
 struct WorldType {
   ComponentType component;
-  /// Adds static geoms to `spec` and fills in `world` except model and ids. The parameters `values` are resolved.
+  /// Adds static geoms to `spec`, and fills in `world` except model and ids. The parameters `values` are resolved.
   /// Random numbers come from streams of `seed` named "terrain" or "terrain.*".
   void (*build)(mjSpec* spec, const Values& values, std::uint64_t seed, engine::World& world);
 };

@@ -121,7 +121,8 @@ TEST(Sensitivity, NamesTheNumberThatWasDrawn) {
     EXPECT_GT(row["numbers"].size(), 5u);
   }
   EXPECT_TRUE(seen);
-  EXPECT_THAT(run_program({"sensitivity", database.string()}).out, HasSubstr("hill: rate, influence of the numbers"));
+  EXPECT_THAT(run_program({"sensitivity", database.string()}).out,
+              HasSubstr("hill: rate, influence of the random parameters"));
   // with other models and scenarios, the draws cannot be computed
   scenarios::Results(database, scenarios::Results::Mode::create_or_append).set_note("data", "another");
   const Ended other = run_program({"sensitivity", database.string()});

@@ -257,7 +257,7 @@ TEST(Exchange, ATrajectoryAloneIsARecordingToScoreAgainst) {
   EXPECT_NEAR(metric(json_of(scored), "position_end_error_m"), 0.5, 1e-9);
   const Ended drawn = run_program({"render", recording, "-o", (folder / "x.png").string()});
   EXPECT_EQ(drawn.status, 2);
-  EXPECT_THAT(drawn.err, HasSubstr("its world cannot be drawn"));
+  EXPECT_THAT(drawn.err, HasSubstr("its world cannot be rendered"));
   const Ended estimated =
       run_program({"estimate", recording, "--method", "attitude/vqf", "-o", (folder / "e").string()});
   EXPECT_EQ(estimated.status, 2);

@@ -203,7 +203,7 @@ TEST(Sweep, OfAnotherSuiteKeepsTheExamplesThatStandThere) {
   left["examples"][2].erase("motion");
   std::ofstream(list) << left.dump();
   const Ended ended = run_shortened(arguments);
-  EXPECT_THAT(ended.err, HasSubstr("leaves out an existing example"));
+  EXPECT_THAT(ended.err, HasSubstr("an existing example cannot be read and is left out"));
   EXPECT_THAT(ended.err, HasSubstr("example 3"));
   EXPECT_EQ(json::parse(read_file(list)), both);
   EXPECT_EQ(json::parse(read_file(folder / "s.db.files" / "examples.json.damaged")), left);

@@ -213,8 +213,8 @@ TEST(Page, SaysHowManyDrawsMoreTellWhatBreaksAMethod) {
   EXPECT_EQ(draws_needed_text({{"hill", 24}, {"roll", 500}}), "");
   EXPECT_EQ(
       draws_needed_text({{"hill", 5}, {"roll", 500}, {"slip", 23}}),
-      "A scenario needs 12 draws to compute the influence of its numbers, and 24 draws for a plot of the score over "
-      "a number. These scenarios need more draws: hill 7, and 19 for the plot; slip 1 for the plot. ");
+      "A scenario needs 12 draws to compute the influence of its parameters, and 24 draws for a plot of the score over "
+      "a parameter. These scenarios need more draws: hill 7, and 19 for the plot; slip 1 for the plot. ");
 }
 
 TEST(Page, MovesByItselfAndStandsStillForWhoeverAsks) {

@@ -32,13 +32,13 @@ std::string strength_cell(double strength) {
                      60.0 * strength, strength);
 }
 
-/// Draws the score as a function of the number.
+/// Draws the score as a function of the scenario parameter.
 std::string dependence_cell(const Sensitivity& row, const Influence& each) {
   const bool is_share = row.metric == kFailure || scenarios::metric_info(row.metric).unit == scenarios::Unit::verdict;
   const auto label_of = [&](const scenarios::DependenceClass& part) {
     const std::string centre =
-        is_share ? fmt::format("{:.0f} % of runs [{:.0f}, {:.0f}]", 100.0 * part.centre.value, 100.0 * part.centre.low,
-                               100.0 * part.centre.high)
+        is_share ? fmt::format("{:.0f} % of runs failed [{:.0f}, {:.0f}]", 100.0 * part.centre.value,
+                               100.0 * part.centre.low, 100.0 * part.centre.high)
                  : styled_value(row.metric, part.centre.value, true) + " " + styled_interval(row.metric, part.centre);
     return fmt::format("{} {:.4g} to {:.4g}: {}, {} draws", each.number, part.low, part.high, centre, part.draws);
   };
@@ -65,7 +65,7 @@ std::string row_html(const Sensitivity& row) {
     ++shown;
   }
   if (shown > 0) return out;
-  return "<tr>" + cell(row.method) + cell(row.metric) + "<td colspan=\"6\">no influence beyond chance</td></tr>\n";
+  return "<tr>" + cell(row.method) + cell(row.metric) + "<td colspan=\"6\">no significant influence</td></tr>\n";
 }
 
 // A trend needs at least two classes.
@@ -79,8 +79,8 @@ std::string draws_needed_text(const std::map<std::string, std::int64_t>& draws) 
   for (const auto& [scenario, count] : draws) {
     if (count >= kDrawnFrom) continue;
     out += out.empty() ? fmt::format(
-                             "A scenario needs {} draws to compute the influence of its numbers, and {} draws for a "
-                             "plot of the score over a number. These scenarios need more draws: ",
+                             "A scenario needs {} draws to compute the influence of its parameters, and {} draws for a "
+                             "plot of the score over a parameter. These scenarios need more draws: ",
                              kDrawsMin, kDrawnFrom)
                        : "; ";
     out += scenario + " ";
@@ -95,20 +95,20 @@ std::string sensitivity_html(const std::vector<Sensitivity>& rows, const std::st
   if (!note.empty()) out += "<p>" + escaped(note) + "</p>\n";
   if (rows.empty()) return out;
   out +=
-      "<p>For each method and score, the table shows the three numbers of the scenario with the strongest significant "
-      "influence. Significant means a risk of 5 %, with Holm’s correction over all numbers of the row. The strength is "
-      "the share of the variance of the score’s ranks that the number explains. It is the larger of the number’s "
-      "first-order index and squared rank correlation. The plot shows the score over the range of the number, in "
-      "classes with equal numbers of draws. Each class shows the median (or the share of failures) with its 95 % "
-      "interval. Point at a class to see its values. A correlation above 0 means that larger numbers give worse "
-      "scores. The last two columns show median scores: of the quarter of the draws with the lowest numbers, and of "
-      "the quarter with the highest numbers.</p>\n";
+      "<p>For each method and score, the table shows the three random parameters of the scenario with the strongest "
+      "significant influence. Significant means a risk of 5 %, with Holm’s correction over all parameters. The "
+      "strength is the share of the variance of the score’s ranks that the parameter explains. It is the larger of "
+      "the parameter’s first-order index and squared rank correlation. The plot shows the score over the range of "
+      "the parameter, in classes with equal numbers of draws. Each class shows the median (or the share of "
+      "failures) with its 95 % interval. Point at a class to see its values. A correlation above 0 means that "
+      "larger values of the parameter give worse scores. The last two columns show median scores: of the quarter of "
+      "the draws with the lowest values, and of the quarter with the highest values.</p>\n";
   for (auto row = rows.begin(); row != rows.end();) {
     const Sensitivity& first = *row;
     out += fmt::format("<details{}><summary>{} · {}</summary>\n", row == rows.begin() ? " open" : "",
                        escaped(first.scenario), to_string(first.kind)) +
-           html::table_head({"method", "score", "number", "strength", "score over its range", "rank correlation [95 %]",
-                             "lowest quarter", "highest quarter"},
+           html::table_head({"method", "score", "parameter", "strength", "score over its range",
+                             "rank correlation [95 %]", "lowest quarter", "highest quarter"},
                             3);
     for (; row != rows.end() && row->scenario == first.scenario && row->kind == first.kind; ++row)
       out += row_html(*row);

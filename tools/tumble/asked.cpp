@@ -30,7 +30,7 @@ scenarios::Margin parse_margin(const std::string& option, const std::string& tex
 
 Question parse_question(const std::string& text, double risk, const scenarios::Suite& suite) {
   std::vector<std::string> words;
-  std::stringstream stream(text + ":");  // the extra colon makes std::getline return an empty word after a final colon
+  std::stringstream stream(text + ":");  // with the extra colon, std::getline returns an empty word after a final colon
   for (std::string word; std::getline(stream, word, ':');) words.push_back(word);
   if (words.size() < 3 || words.size() > 4 || std::find(words.begin(), words.end(), "") != words.end())
     throw BadInput(
@@ -56,7 +56,8 @@ Question parse_question(const std::string& text, double risk, const scenarios::S
 Table table_of(const std::vector<scenarios::Answer>& answers, const Question& question) {
   Table table(
       fmt::format(
-          "Is {} better than {} in {}{}? If neither method is better, the probability of an answer is at most {:g}",
+          "Is {} better than {} in {}{}? If neither method is better, the probability of a wrong answer is at most "
+          "{:g}",
           question.method, question.against, question.metric,
           question.margin.value == 0.0 ? ""
           : question.margin.relative   ? fmt::format(" by {:g} %", 100.0 * question.margin.value)

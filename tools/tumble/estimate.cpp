@@ -36,7 +36,7 @@ struct EstimateOptions {
   PriorMapOptions prior_map;
 };
 
-/// ShownCounter is a health counter that the table shows; --json and estimate.json contain all counters.
+/// ShownCounter is a health counter in the table. --json and estimate.json contain all counters.
 struct ShownCounter {
   const char *name, *meaning, *unit;
 };
@@ -111,11 +111,11 @@ int run_estimate(const Session& session, const EstimateOptions& options) {
   if (const std::string caution = learnt.caution(sensors); !caution.empty()) session.note(caution);
   if (!options.prior_map.map.empty()) session.note(localisation_text(options.prior_map, estimate));
   if (!with_digest) session.note("the recording contains no digest of its data, so the program cannot detect damage");
-  // The findings are printed even after a failure, because a sensor fault may be the cause.
+  // After a failure, the findings may name the cause: a sensor fault.
   for (const HealthFinding& each : estimate.faults.findings)
     session.note(full_name(method.info) + ": " + to_text(each));
   if (estimate.status.ok()) return kDone;
-  // The estimate is kept for inspection, because the cause of the error is in the recording.
+  // The incomplete estimate is kept for inspection.
   throw BadInput(options.recording.string() + ": " + full_name(method.info) +
                  " failed: " + failure_reason(estimate.status, sensors));
 }

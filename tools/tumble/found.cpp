@@ -92,8 +92,8 @@ class Found {
     const bool arm_stated = !options.lever_arm_m.empty() || !arm_m.isZero(0.0);
     add("lever arm of the IMU",
         arm_stated ? fmt::format("{} m from the centre of mass", vector_text(arm_m))
-                   : "assumed 0: the IMU is at the centre of mass. A wrong lever arm is harmless unless the gyro "
-                     "clips, but can cause a tracking failure while the gyro clips",
+                   : "assumed 0: the IMU is at the centre of mass. A wrong lever arm can cause a tracking failure "
+                     "while the gyro clips, and is harmless otherwise",
         arm_stated ? kStated : kAssumed, "--lever-arm X Y Z");
     sim::LidarRecord& lidar = lidars().front();
     const bool pose_stated =
@@ -205,7 +205,7 @@ class Found {
       return add("clock of the lidar", "the stated time stamps, calibrated during the run", kAssumed, "--stamps");
     add("clock of the lidar",
         agreement->delay_s == 0.0
-            ? std::string("agrees with the clock of the IMU within some 10 ms; calibrated during the run")
+            ? std::string("agrees with the clock of the IMU within about 10 ms; calibrated during the run")
             : fmt::format("{} s {} the clock of the IMU", rounded(std::abs(agreement->delay_s)),
                           agreement->delay_s > 0.0 ? "after" : "before"),
         kMeasured, "--stamps");

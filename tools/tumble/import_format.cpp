@@ -23,7 +23,7 @@ using scenarios::BadInput;
 const std::vector<std::string> kFormats = {"airbrakes", "broad",   "csv",     "kitti",   "mcap", "pcd", "odometry",
                                            "ply",       "repoimu", "rosbag1", "rosbag2", "tum",  "vtk"};
 
-/// Detects the format from the files in a folder. Several files of a ROS 1 bag are parts of one recording.
+/// Detects the format of the files in a folder. Several ROS 1 bags are parts of one recording.
 std::string format_of_folder(const std::filesystem::path& folder) {
   const std::map<std::string, std::string> known = {{".ply", "ply"},    {".pcd", "pcd"},     {".bin", "kitti"},
                                                     {".vtk", "vtk"},    {".bag", "rosbag1"}, {".mcap", "rosbag2"},
@@ -57,11 +57,11 @@ std::string format_of_csv(const std::filesystem::path& file) {
   try {
     return scenarios::pose_format(file);
   } catch (const BadInput&) {
-    return "csv";  // no poses
+    return "csv";  // no table of poses
   }
 }
 
-/// Detects a binary format from the first bytes; returns "" for other files.
+/// Detects a binary format from the first bytes; empty for other files.
 std::string format_of_content(const std::filesystem::path& file) {
   std::array<char, 16> first{};
   std::ifstream(file, std::ios::binary).read(first.data(), first.size());
@@ -88,7 +88,7 @@ std::string format_of(const ImportOptions& options) {
   if (!options.format.empty()) require_known("format", options.format, kFormats);
   std::error_code error;
   const bool folder = std::filesystem::is_directory(options.path, error);
-  // A pipe can be read only once, so the function does not open a pipe.
+  // A pipe can be read only once, so it is not opened here.
   if (!folder && options.format != "tum" && std::filesystem::exists(options.path, error))
     scenarios::require_regular_file(options.path);
   if (!options.format.empty()) return options.format;

@@ -29,7 +29,7 @@ bool is_sweeps(const std::string& format) {
 void require_numbers(const std::string& option, const std::vector<double>& numbers, double bound) {
   for (const double x : numbers) {
     if (!(std::abs(x) <= bound)) {
-      // NaN has a separate message, because it appears in tables as a dash.
+      // NaN has its own message, because tables show NaN as a dash.
       throw BadInput(
           fmt::format("{0}: {1:g} is out of range; each number must be from -{2:g} to {2:g}", option, x, bound));
     }

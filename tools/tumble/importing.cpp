@@ -47,7 +47,7 @@ Imported import_format(const Session& session, const ImportOptions& options, con
   return scenarios::import_sweeps(sweep_source(session, options, format));
 }
 
-/// Adds notes on the assumptions about an IMU, for properties that the file format lacks.
+/// Adds notes on assumed properties of an IMU that the file format lacks.
 void say_what_is_assumed(const ImportOptions& options, const std::string& format, std::vector<std::string>& notes) {
   if (options.lever_arm_m.empty() && (format == "csv" || !options.imu.empty())) {
     notes.push_back(
@@ -56,7 +56,7 @@ void say_what_is_assumed(const ImportOptions& options, const std::string& format
   }
 }
 
-/// Sets an option that the user did not set. Returns false if the option is already set or is another option.
+/// Sets an option that the user did not set. Returns false if it is already set, or not a known option.
 bool set_option(const scenarios::ImportOption& option, ImportOptions& options) {
   const std::pair<const char*, std::string*> known[] = {
       {"--accel-unit", &options.accel_unit}, {"--gyro-unit", &options.gyro_unit}, {"--stamps", &options.stamps}};
@@ -68,7 +68,7 @@ bool set_option(const scenarios::ImportOption& option, ImportOptions& options) {
   return false;
 }
 
-/// Throws BadInput for options that do not apply to a recording of this program; only data sheet and mounting of its
+/// Throws BadInput for options that have no effect on a recording of this program: only data sheet and mounting of its
 /// first sensors can be set.
 void require_own_options(ImportOptions options) {
   for (std::string* name : {&options.device, &options.lidar}) name->clear();

@@ -39,7 +39,7 @@ struct RenderOptions {
   int width = 1280, height = 720;
 };
 
-/// RenderContent owns all data to which a scene refers.
+/// RenderContent owns the data to which a scene refers.
 struct RenderContent {
   std::optional<sim::BuiltSituation> built;
   sim::Sensors sensors;
@@ -48,8 +48,8 @@ struct RenderContent {
 };
 
 bool is_recording(const std::string& what) {
-  // A name with a recording's extension means a file, even if the file does not exist. A folder is never a recording,
-  // so that the folder that 'tumble run hill' writes does not hide the scenario.
+  // A name with the extension of a recording is a file, even if the file does not exist. A folder is no recording: the
+  // folder from 'tumble run hill' must not hide the scenario 'hill'.
   if (std::filesystem::exists(what) && !std::filesystem::is_directory(what)) return !what.ends_with(".yaml");
   return what.ends_with(".h5") || what.ends_with(".hdf5");
 }
@@ -59,15 +59,15 @@ void load_situation(const scenarios::DataRoot& data, const RenderOptions& option
   const scenarios::RecordingInfo info = scenarios::read_info(options.what);
   if (info.situation_yaml.empty())
     throw BadInput(
-        fmt::format("{}: this recording contains no description of its world, so its world cannot be drawn; give a "
+        fmt::format("{}: this recording contains no description of its world, so its world cannot be rendered; give a "
                     "simulated recording",
                     options.what));
   content.built = built_from(info, options.what, data);
   content.sensors = scenarios::read_sensors(options.what);
-  // The truth gives the poses of the robot and the alignment of the estimates in the picture.
+  // The truth provides the poses of the robot, and aligns the estimates in the picture.
   if (!info.has_truth)
     throw BadInput(
-        fmt::format("{}: this recording contains no truth, so its path cannot be drawn; give a recording with truth",
+        fmt::format("{}: this recording contains no truth, so its path cannot be shown; give a recording with truth",
                     options.what));
   content.truth = scenarios::read_truth(options.what);
 }
@@ -83,7 +83,7 @@ void load_recording(const scenarios::DataRoot& data, const RenderOptions& option
         read_given({folder, options.what, scenarios::Frame::imu}, content.sensors, &content.truth, kind, method);
     Path path = estimated_path(estimate, content.sensors, content.truth);
     if (path.empty())
-      throw BadInput(fmt::format("{}: this estimate contains no poses, so its path cannot be drawn", folder.string()));
+      throw BadInput(fmt::format("{}: this estimate contains no poses, so its path cannot be shown", folder.string()));
     content.scene.estimates.push_back(std::move(path));
   }
 }
@@ -91,7 +91,7 @@ void load_recording(const scenarios::DataRoot& data, const RenderOptions& option
 void load_draw(const scenarios::DataRoot& data, const RenderOptions& options, RenderContent& content) {
   const scenarios::Scenario scenario = scenarios::load_scenario(data, options.what);
   if (!options.estimates.empty())
-    throw BadInput("estimates can be drawn only with a recording; give FILE.h5 instead of a scenario");
+    throw BadInput("estimates can be shown only with a recording; give FILE.h5 instead of a scenario");
   if (options.film > 0) throw BadInput(fmt::format("--film needs a recording; '{}' is a scenario", options.what));
   content.built.emplace(scenarios::draw(data, scenario, seed_of(scenario, options.seed)), data.models());
 }
@@ -128,10 +128,10 @@ int render_maps(const Session& session, const RenderOptions& options, const scen
   return kDone;
 }
 
-/// kFramesMax is the maximum number of video frames, because more would take minutes to render and to watch.
+/// Maximum number of video frames: more would take minutes to render and to watch.
 constexpr std::size_t kFramesMax = 3000;
 
-/// kSayEvery_s is the interval of progress lines for long renderings.
+/// Interval of progress lines for long renderings.
 constexpr double kSayEvery_s = 10.0;
 
 std::vector<std::uint8_t> video_of(const Session& session, const RenderOptions& options, const Scene& scene) {
@@ -210,18 +210,18 @@ int render(const Session& session, const RenderOptions& options) {
 
 Action declare_render(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<RenderOptions>();
-  verb.add("WHAT", options->what, "draws this recording, FILE.h5, or a draw of this scenario (with --seed)")
+  verb.add("WHAT", options->what, "renders this recording, FILE.h5, or one draw of this scenario (with --seed)")
       .required()
       .check([&session](const std::string& text) {
         if (is_recording(text)) return a_recording(text);
         scenarios::load_scenario(session.data(), text);
       });
-  verb.add("ESTIMATE", options->estimates, "also draws the estimates in these folders");
+  verb.add("ESTIMATE", options->estimates, "also shows the estimates in these folders");
   verb.add("--seed", options->seed, "sets the seed of the draw [default: for a named case, the seed of the case]");
   verb.add("-o,--output", options->output, "writes this picture, FILE.png; with --video FILE.webp").required();
-  verb.add("--film", options->film, "draws a film strip with this number of frames").whole(1, 64);
+  verb.add("--film", options->film, "renders a film strip with this number of frames").whole(1, 64);
   verb.add_flag("--map", options->map,
-                "draws the maps of the estimates next to each other, coloured by error from 0 (blue) to 1 m (red)");
+                "renders the maps of the estimates next to each other, coloured by error from 0 (blue) to 1 m (red)");
   verb.add_flag("--video", options->video,
                 "writes an animated WebP: the camera follows the robot, and copies of the robot mark its path");
   verb.add("--fps", options->fps, "sets the number of frames per second of a video").within(1.0, 60.0).shows_default();
@@ -231,7 +231,7 @@ Action declare_render(VerbOptions& verb, const Session& session) {
   verb.add("--columns", options->columns, "sets the number of frames per row of the film strip")
       .whole(1, 64)
       .shows_default();
-  verb.add("--robots", options->robots, "draws this number of robots along the path").whole(1, 64).shows_default();
+  verb.add("--robots", options->robots, "shows this number of robots along the path").whole(1, 64).shows_default();
   verb.add("--width", options->width, "sets the width of a picture or frame, pixels").whole(64, 4096).shows_default();
   verb.add("--height", options->height, "sets the height of a picture or frame, pixels")
       .whole(64, 4096)

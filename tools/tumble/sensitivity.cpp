@@ -31,16 +31,16 @@ struct SensitivityVerbOptions {
   bool motion = false, all = false, dependence = false;
 };
 
-/// Throws BadInput for a database made with other models or scenarios, because the numbers of the simulated runs would
-/// differ.
+/// Throws BadInput if the database comes from other models or scenarios: the parameters of its runs could not be
+/// computed.
 void require_same_data(const scenarios::Results& results, const scenarios::DataRoot& data,
                        const std::filesystem::path& database) {
   const std::string made_of = results.note("data"), found = scenarios::data_digest(data);
   if (made_of != found)
     throw BadInput(
         fmt::format("{}: these results come from models and scenarios with digest '{}', but the models and scenarios "
-                    "of this installation have digest {}. The numbers of the draws are therefore unknown; use --motion "
-                    "for the influence of the motions",
+                    "of this installation have digest {}. The random parameters of the draws are therefore unknown; "
+                    "use --motion for the influence of the motions",
                     database.string(), made_of, found));
 }
 
@@ -54,7 +54,7 @@ std::map<std::string, scenarios::NumbersOfDraws> numbers_of(const Session& sessi
   return numbers_of_catalogue(session, data, summary);
 }
 
-/// Returns the strongest influences that chance does not explain, or all influences on request.
+/// Returns the strongest significant influences, or all on request.
 std::vector<Influence> shown(const Sensitivity& row, bool all) {
   std::vector<Influence> out;
   for (const Influence& each : row.influences) {
@@ -69,7 +69,7 @@ std::vector<Table> tables_of(const std::vector<Sensitivity>& rows, bool all) {
   for (const Sensitivity& row : rows) {
     if (open == nullptr || open->scenario != row.scenario || open->kind != row.kind) {
       tables.emplace_back(
-          fmt::format("{}: {}, influence of the numbers", row.scenario, to_string(row.kind)),
+          fmt::format("{}: {}, influence of the random parameters", row.scenario, to_string(row.kind)),
           std::vector<std::string>{"method", "metric", "draws", "number", "first order", "rank correlation", "95 %",
                                    "Holm p", "median, lowest quarter", "highest"});
       tables.back().align_right_from(4);
@@ -77,7 +77,7 @@ std::vector<Table> tables_of(const std::vector<Sensitivity>& rows, bool all) {
     }
     const std::vector<Influence> strongest = shown(row, all);
     if (strongest.empty())
-      tables.back().add_row({row.method, row.metric, std::to_string(row.draws), "(no influence beyond chance)"});
+      tables.back().add_row({row.method, row.metric, std::to_string(row.draws), "(no significant influence)"});
     bool first = true;
     for (const Influence& each : strongest) {
       tables.back().add_row({first ? row.method : "", first ? row.metric : "", first ? std::to_string(row.draws) : "",
@@ -91,9 +91,9 @@ std::vector<Table> tables_of(const std::vector<Sensitivity>& rows, bool all) {
   return tables;
 }
 
-/// Returns one row per class of the number, for each influence that is shown.
+/// Returns one row per class of parameter values, for each influence that is shown.
 Table dependence_table(const std::vector<Sensitivity>& rows, bool all) {
-  Table table("partial dependence: median score, or share of failures, for each class of values of a number",
+  Table table("partial dependence: median score, or share of failures, for each class of values of a parameter",
               {"scenario", "method", "metric", "number", "from", "to", "draws", "score", "95 %"});
   table.align_right_from(4);
   for (const Sensitivity& row : rows) {
@@ -160,12 +160,14 @@ int sensitivity(const Session& session, const SensitivityVerbOptions& options) {
       summary, numbers_of(session, options, results, summary), {options.methods, options.metrics});
   if (rows.empty())
     throw BadInput(fmt::format(
-        "{}: this database contains too few draws; a scenario needs at least {} draws and one number that varies",
+        "{}: this database contains too few draws; a scenario needs at least {} draws and one random parameter",
         options.database.string(), scenarios::kSensitivityDrawsMin));
   std::vector<Table> tables = tables_of(rows, options.all);
   if (options.dependence) tables.push_back(dependence_table(rows, options.all));
   session.print(tables, {{"sensitivity", to_json(rows)}});
-  session.note("a correlation above 0 means that larger numbers give worse scores; see docs/maths/statistics.md");
+  session.note(
+      "a correlation above 0 means that larger values of the parameter give worse scores; see "
+      "docs/maths/statistics.md");
   return kDone;
 }
 
@@ -180,12 +182,12 @@ Action declare_sensitivity(VerbOptions& verb, const Session& session) {
   verb.add("--metric", options->metrics,
            "shows this metric; repeat the option for more metrics [default: the headline metrics of the kind]")
       .one_at_a_time();
-  verb.add_flag("--motion", options->motion, "uses measures of the motions instead of the drawn numbers");
-  verb.add_flag(
-      "--all", options->all,
-      "lists every number [default: only the three with the strongest influence that chance does not explain]");
+  verb.add_flag("--motion", options->motion,
+                "shows the influence of the motions (for example the largest rate) instead of the random parameters");
+  verb.add_flag("--all", options->all,
+                "lists every parameter [default: the three parameters with the strongest significant influence]");
   verb.add_flag("--dependence", options->dependence,
-                "also lists the score by class of each listed number, with intervals");
+                "also lists the score and its interval for each class of values of a listed parameter");
   return [&session, options] { return sensitivity(session, *options); };
 }
 

@@ -36,8 +36,8 @@ struct ShrinkVerbOptions {
   std::filesystem::path file;
 };
 
-/// Returns the method with true input (oracle) of the method's kind, if it applies to the robot. A simulated run on
-/// which even this method fails is not a useful case.
+/// Returns the oracle (method with true input) of the method's kind, if it can run on the robot. A run on which even
+/// the oracle fails is no useful case.
 scenarios::MethodPointer control_of(const ShrinkVerbOptions& options, const scenarios::Method& method,
                                     const scenarios::Scenario& scenario, double time_limit_s) {
   if (options.control == "none") return nullptr;
@@ -109,7 +109,7 @@ std::string command_of(const ShrinkVerbOptions& options, std::uint64_t seed) {
   return words + fmt::format(" --budget {} -o ", options.budget) + shell_word(options.file.filename().string());
 }
 
-/// Returns the name of the case, which is the file's name and must be a valid name.
+/// Returns the name of the case: the file's name, which must be an identifier.
 std::string name_of(const std::filesystem::path& file) {
   const std::string name = file.stem().string();
   const auto allowed = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; };
@@ -122,7 +122,7 @@ std::string name_of(const std::filesystem::path& file) {
                   file.string()));
 }
 
-/// A case can be named wherever a scenario or a suite can, so a case must not have the name of a scenario or suite.
+/// A case can be named in place of a scenario or a suite, so its name must differ from theirs.
 void require_own_name(const scenarios::DataRoot& data, const std::string& name) {
   for (const std::vector<std::string>& known : {scenarios::scenario_names(data), scenarios::suite_names(data)}) {
     if (std::find(known.begin(), known.end(), name) != known.end())
@@ -141,8 +141,11 @@ void require_whole(const ShrinkVerbOptions& options) {
 std::string control_text(const Shrunk& shrunk, const scenarios::ShrinkOptions& options) {
   if (!options.control) return "no control method was used";
   const std::string& name = options.control->info.name;
-  return shrunk.controlled ? fmt::format("{} does not fail on the smaller draw", name)
-                           : fmt::format("{} also fails on the draw, so the control method checks nothing", name);
+  return shrunk.controlled ? fmt::format("the control method {} does not fail on the smaller draw", name)
+                           : fmt::format(
+                                 "the control method {} also fails on the draw, so it cannot confirm that the failure "
+                                 "comes from the method",
+                                 name);
 }
 
 int run_shrink(const Session& session, const ShrinkVerbOptions& options) {
@@ -174,13 +177,14 @@ int run_shrink(const Session& session, const ShrinkVerbOptions& options) {
       shrunk, name, own ? full : options.method, shrinking.failure, program_version(), command_of(options, seed));
   scenarios::replace_file(options.file, scenarios::to_yaml(made));
   session.print({lines_table(shrunk, metric), outcomes_table(shrunk, metric)}, to_json(shrunk, metric, options));
-  session.note(fmt::format(
-      "{}: {} runs, {}; {}; {}; case file: {}", shrunk.failure, shrunk.runs,
-      shrunk.complete ? "no further part can be removed" : "the budget is used up; a larger --budget may remove more",
-      control_text(shrunk, shrinking),
-      shrunk.cure.empty() ? "no single true input cures the failure"
-                          : "the true input " + shrunk.cure + " cures the failure",
-      options.file.string()));
+  session.note(fmt::format("{}: {} runs, {}; {}; {}; case file: {}", shrunk.failure, shrunk.runs,
+                           shrunk.complete ? "no further part can be removed"
+                                           : "the budget of runs is used up; a larger --budget may remove more parts",
+                           control_text(shrunk, shrinking),
+                           shrunk.cure.empty()
+                               ? "no replacement of a single input by its truth cures the failure"
+                               : "replacing the input " + shrunk.cure + " by its truth cures the failure",
+                           options.file.string()));
   return kDone;
 }
 
@@ -195,8 +199,8 @@ Action declare_shrink(VerbOptions& verb, const Session& session) {
            "sets the seed of the failing draw [default: for a named case, the seed of the case]");
   verb.add("--method", options->method, "names the method that fails on the draw").required();
   verb.add("--metric", options->metric,
-           "names the metric that decides about failure, together with --worse-than [default: only status and verdicts "
-           "decide]");
+           "names the metric that defines a failure, together with --worse-than [default: a run fails by its status or "
+           "by a pass-fail metric]");
   verb.add("--worse-than", options->worse_than,
            "sets the limit of the metric in SI units; a run with a worse value fails");
   verb.add("--control", options->control,

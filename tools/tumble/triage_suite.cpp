@@ -95,17 +95,18 @@ json to_json(const std::vector<InputWorth>& worths, const std::vector<DrawTriage
           {"draws", std::move(all)}};
 }
 
-/// Names the true input that prevents the failure of most simulated runs. The replacement of all inputs together is
-/// only a bound, so it is not considered.
+/// Names the true input that prevents the failure of most runs. The replacement of all inputs is only a bound and is
+/// not considered.
 std::string conclusion(const std::vector<InputWorth>& worths) {
   if (worths.empty()) return "no draw could be run";
-  const std::string& whole = worths.back().scenario;  // the summary over all scenarios, if there are several
+  const std::string& whole = worths.back().scenario;  // all scenarios, if there are several
   const auto is_single = [&](const InputWorth& worth) { return worth.scenario == whole && worth.input != "all"; };
   const auto first = std::find_if(worths.begin(), worths.end(), is_single);
   if (first == worths.end()) return "no input could be replaced";
   const std::string name = first->input + " (" + first->doc + ")";
   if (first->cured > 0)
-    return fmt::format("{} matters most: it cures {} of {} failures", name, first->cured, first->failed);
+    return fmt::format("the input {} has the strongest influence: its truth cures {} of {} failures", name,
+                       first->cured, first->failed);
   const std::string failures =
       first->failed == 0 ? "no run failed (--metric and --limit define a failure)" : "no single input cures a failure";
   if (first->better <= first->worse) return fmt::format("{}; no input improves most draws", failures);

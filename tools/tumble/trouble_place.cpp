@@ -35,7 +35,7 @@ std::string place_of_gap(const sim::Sensors& sensors) {
   return place;
 }
 
-/// Returns whether a reading has this error, alone or relative to its predecessor.
+/// Returns true if a reading has this error, alone or relative to the previous reading.
 bool has_trouble(ErrorCode error_code, const sim::ImuRecord& imu, std::size_t k) {
   if (error_code == ErrorCode::time_order) return k > 0 && imu.time_ns[k] <= imu.time_ns[k - 1];
   ImuSample sample;

@@ -3,32 +3,33 @@
 
 namespace tumble::arrow {
 
-// rate_smoother.md (R27)
+// See rate_smoother.md (R27).
 bool eliminate(Block& block, Block* next, Corner& corner) {
   return System::eliminate(block, next, corner);
 }
 
-// rate_smoother.md (R28)
+// See rate_smoother.md (R28).
 bool solve_corner(const Corner& corner, BorderVector& step, BorderMatrix& covariance) {
   return System::solve_corner(corner, step, covariance);
 }
 
-// rate_smoother.md (R29)
+// See rate_smoother.md (R29).
 StateVector back_substitute(const Block& block, const StateVector* next_step, const BorderVector& border_step) {
   return System::back_substitute(block, next_step, border_step);
 }
 
-// rate_smoother.md (R33), (R34)
+// See rate_smoother.md (R33), (R34).
 Conditional back_conditional(const Block& block, const Conditional* next) {
   return System::back_conditional(block, next);
 }
 
-// rate_smoother.md (R35)
+// See rate_smoother.md (R35).
 Marginal marginal(const Conditional& conditional, const BorderMatrix& border_covariance) {
   return System::marginal(conditional, border_covariance);
 }
 
-// Eliminates one block from the derivatives of the gradients with respect to the sensor errors: rate_smoother.md (R27).
+// Eliminates one block from the equations for the derivatives with respect to the sensor errors: rate_smoother.md
+// (R27).
 void eliminate_errors(const Block& block, ErrorMatrix& errors, ErrorMatrix* next, BorderErrors& border) {
   errors = (block.diagonal.lazyProduct(errors)).eval();
   border.noalias() -= block.border.transpose().lazyProduct(errors);

@@ -13,12 +13,14 @@ namespace {
 using Matrix = SensorErrors::Matrix;
 using Vector = SensorErrors::Vector;
 
-// kOddsEvidenceWeight is the weight of the readings when DeviceUncertainty decides whether a device is calibrated. The
-// weight is ten times kEvidenceWeight, the weight of the readings in estimates of sensor errors. With a weight of 1,
-// half of the calibrated devices would count as uncalibrated if the rig's calibration is uncertain.
+// DeviceUncertainty tests whether a device is calibrated, and multiplies the information of the readings by
+// kOddsEvidenceWeight in this test. kOddsEvidenceWeight is ten times kEvidenceWeight, the weight for estimates of
+// sensor errors. With a weight of 1, half of the calibrated devices would count as uncalibrated if the rig's
+// calibration is uncertain.
 constexpr double kOddsEvidenceWeight = 0.3;
 
-// Computes the matrix I + share U L U; L is the information matrix of the sensor errors, made symmetric.
+// Computes I + share U L U. L is the symmetrised information matrix of the sensor errors; U contains their standard
+// deviations.
 void set_system(const SensorErrorEvidence& evidence, const Vector& deviation, double share, Matrix& system) {
   for (int j = 0; j < SensorErrors::kSize; ++j) {
     for (int i = 0; i < SensorErrors::kSize; ++i) {
@@ -38,14 +40,14 @@ double log_odds(const SensorErrorEvidence& evidence, const Vector& deviation, Ma
   return 0.5 * z.dot(factor.solve(z)) - system.diagonal().array().log().sum();
 }
 
-// Computes the second moment of one device's sensor errors (covariance plus squared mean): rate_stream.md (R102).
+// Computes the second moment (covariance plus squared mean) of one device's sensor errors: rate_stream.md (R102).
 // Returns false if the information matrix is indefinite.
 bool corrected_covariance(const SensorErrorEvidence& evidence, const Vector& deviation, DeviceUncertainty::Work& work) {
   constexpr int kRest = SensorErrors::kSize - SensorErrors::kGSensitivity;
   constexpr double kEvidenceWeight = DeviceUncertainty::kEvidenceWeight;
   set_system(evidence, deviation, kEvidenceWeight, work.system);
-  // Scale and misalignment remain uncorrected, because errors of the flight model look like scale and misalignment
-  // errors.
+  // The estimated scale and misalignment errors stay zero, because errors of the flight model look like scale and
+  // misalignment errors.
   Vector mean = Vector::Zero();
   const Eigen::Matrix<double, kRest, kRest> rest = work.system.bottomRightCorner<kRest, kRest>();
   mean.tail<kRest>() = rest.llt().solve(kEvidenceWeight * deviation.cwiseProduct(evidence.gradient).tail<kRest>());

@@ -11,19 +11,20 @@ namespace tumble {
 
 namespace {
 
-// A cross-axis sensitivity is known if its standard deviation is below kDeterminedSlopeSigma. A known cross-axis
+// A cross-axis sensitivity counts as determined if its standard deviation is below kDeterminedSlopeSigma. A cross-axis
 // sensitivity below kNegligibleSlope counts as zero.
 constexpr double kDeterminedSlopeSigma = 2e-3, kNegligibleSlope = 3e-3;
-// If a device clips its digital output, its positive and negative saturation levels differ by at most this fraction.
+// For a device that clips its digital output, the relative difference of positive and negative saturation levels is at
+// most kUnequalLevelsRatio.
 constexpr double kUnequalLevelsRatio = 1e-4;
 // `kUprightSigma` is the standard deviation of a saturation plane's tilt for a device that clips its digital output.
 // `kSlopeSigmaMin` is the minimum standard deviation of a cross-axis sensitivity, due to residual misalignment.
 constexpr double kUprightSigma = 1e-5, kSlopeSigmaMin = 3e-4;
-// The reading of a partly saturated sample differs from the saturation level by at most the fraction kEdgeStepRatio of
-// the step from the previous reading.
+// A reading next to a saturated reading is partly saturated if |level - reading| < kEdgeStepRatio |reading - other
+// neighbour|.
 constexpr double kEdgeStepRatio = 0.5;
 
-// Returns the sign of the saturation level that is on the same side of zero as the reading of sensing element j.
+// Returns the sign of element j's reading, which is also the sign of the saturation level if the reading is clipped.
 int side(const ImuSample& sample, Triad triad, std::size_t j) {
   return reading_of(sample, triad)[static_cast<Eigen::Index>(j)] < 0.0 ? -1 : 1;
 }
@@ -36,8 +37,8 @@ bool at_rail(const ImuSample& sample, Triad triad, const RailPlane& rail, std::s
          rail.holds(reading, 1);
 }
 
-// Returns whether the sample next to a clipped sample was saturated for a part of its averaging window. The test
-// compares the distances of both readings from the saturation level: rails.md (R54).
+// Returns whether `now`, a sample next to a clipped sample, was saturated for a part of its averaging window. The test
+// compares the distances of `now` and its other neighbour `outside` from the saturation level: rails.md (R54).
 bool meets(const RailPlane& rail, Triad triad, const ImuSample& now, const ImuSample* outside, int sign) {
   const double depth = rail.margin_rad_s(reading_of(now, triad), sign);
   if (depth > kNearRailRatio * rail.distance_rad_s) return false;
@@ -46,17 +47,16 @@ bool meets(const RailPlane& rail, Triad triad, const ImuSample& now, const ImuSa
   return depth < kEdgeStepRatio * (before - depth);
 }
 
-// Returns whether the saturation levels of positive and negative readings differ. The two levels differ if the device
-// subtracts the element's offset after clipping.
+// Returns whether the saturation levels of positive and negative readings differ. The levels of both signs differ if
+// the device subtracts the element's offset after clipping.
 bool has_unequal_levels(const RailPlane& rail) {
   return rail.seen(-1) && rail.seen(1) &&
          std::abs(rail.offset_rad_s) >
              kUnequalLevelsRatio * rail.distance_rad_s + 4.0 * std::sqrt(rail.covariance(3, 3));
 }
 
-// Returns two finders of saturation planes, with and without a stated range. The first finder uses the range of the
-// data sheet. If the data sheet states no range, the first finder uses the saturation levels that were detected for
-// single axes.
+// Returns two finders of saturation planes, with and without a range. The range is that of the data sheet. If the data
+// sheet states none, the saturation levels that were detected for single axes replace the range.
 std::array<RailPlaneFinder, 2> finders_with_and_without_range(RailPlaneFinder::Params params,
                                                               const std::optional<double>& stated) {
   RailPlaneFinder::Params unstated = params;
@@ -86,7 +86,7 @@ bool are_upright(std::span<const Eigen::Vector3d> readings, const RailPlanes& pl
     const double plateau = rails.channels[first_channel(triad) + j].rail;
     if (rail && has_unequal_levels(*rail)) return false;
     if (rail && plateau > 0.0) {
-      // on a tilted saturation plane, most clipped samples have unequal readings
+      // On a tilted saturation plane, most clipped samples have unequal readings.
       const auto equal = std::count_if(readings.begin(), readings.end(), [&](const Eigen::Vector3d& y) {
         return std::abs(std::abs(y[static_cast<Eigen::Index>(j)]) - plateau) <= kEqualReadingsRatio * plateau;
       });

@@ -13,11 +13,11 @@ namespace tumble {
 
 namespace {
 
-// kHalfScaleRun_s is the shortest flight that reveals a gyro that reports half the rate. With doubled rates, hand-held
+// A flight of at least kHalfScaleRun_s proves that a gyro reports half the true rate. With doubled rates, hand-held
 // motion looks like flight for up to 0.05 s. Real flights are longer.
 constexpr double kHalfScaleRun_s = 0.08;
-constexpr double kAcross = 0.05;    // minimum squared component of the lever arm across a saturated axis, as a fraction
-constexpr double kBelowRail = 0.1;  // fraction of the saturation level by which a recovered rate may be below the level
+constexpr double kAcross = 0.05;    // (minimum lever arm component across a saturated axis)^2 / |lever arm|^2
+constexpr double kBelowRail = 0.1;  // fraction of the reading by which a recovered rate may be below it
 
 struct Axes {
   std::array<int, 3> axis;
@@ -33,8 +33,8 @@ constexpr Axes kUnchangedAxes{{0, 1, 2}, {1, 1, 1}}, kXFlipped{{0, 1, 2}, {-1, 1
     kYZSwapped{{0, 2, 1}, {1, 1, 1}}, kZXSwapped{{2, 1, 0}, {1, 1, 1}}, kTwice{{0, 1, 2}, {2, 2, 2}},
     kHalf{{0, 1, 2}, {0.5, 0.5, 0.5}};
 
-/// ReadingHypothesis is a possible fault of a sensor (sign, axis order or scale), with the conversion that corrects its
-/// readings.
+/// ReadingHypothesis is a possible fault of a sensor (sign, axis order or scale). `force` and `rate` convert the faulty
+/// readings to correct readings.
 struct ReadingHypothesis {
   Axes force, rate;
   const char* name;
@@ -42,26 +42,27 @@ struct ReadingHypothesis {
 
 constexpr std::array<ReadingHypothesis, FlightSignCheck::kAlternatives> kReadingHypotheses = {{
     {kUnchangedAxes, kUnchangedAxes, "flight time in s"},
-    {kFlipped, kUnchangedAxes, "flight time in s that a sign error of the accelerometer explains"},
-    {kXFlipped, kUnchangedAxes, "flight time in s that a sign error of accelerometer axis x explains"},
-    {kYFlipped, kUnchangedAxes, "flight time in s that a sign error of accelerometer axis y explains"},
-    {kZFlipped, kUnchangedAxes, "flight time in s that a sign error of accelerometer axis z explains"},
-    {kXYSwapped, kUnchangedAxes, "flight time in s that exchanged accelerometer axes x and y explain"},
-    {kYZSwapped, kUnchangedAxes, "flight time in s that exchanged accelerometer axes y and z explain"},
-    {kZXSwapped, kUnchangedAxes, "flight time in s that exchanged accelerometer axes z and x explain"},
-    {kUnchangedAxes, kFlipped, "flight time in s that a sign error of the gyro explains"},
-    {kUnchangedAxes, kXFlipped, "flight time in s that a sign error of gyro axis x explains"},
-    {kUnchangedAxes, kYFlipped, "flight time in s that a sign error of gyro axis y explains"},
-    {kUnchangedAxes, kZFlipped, "flight time in s that a sign error of gyro axis z explains"},
-    {kUnchangedAxes, kXYSwapped, "flight time in s that exchanged gyro axes x and y explain"},
-    {kUnchangedAxes, kYZSwapped, "flight time in s that exchanged gyro axes y and z explain"},
-    {kUnchangedAxes, kZXSwapped, "flight time in s that exchanged gyro axes z and x explain"},
-    {kUnchangedAxes, kHalf, "flight time in s that a gyro with twice the true scale explains"},
-    {kUnchangedAxes, kTwice, "flight time in s that a gyro with half the true scale explains"},
+    {kFlipped, kUnchangedAxes, "flight time in s that agrees with an inverted accelerometer"},
+    {kXFlipped, kUnchangedAxes, "flight time in s that agrees with an inverted accelerometer axis x"},
+    {kYFlipped, kUnchangedAxes, "flight time in s that agrees with an inverted accelerometer axis y"},
+    {kZFlipped, kUnchangedAxes, "flight time in s that agrees with an inverted accelerometer axis z"},
+    {kXYSwapped, kUnchangedAxes, "flight time in s that agrees with exchanged accelerometer axes x and y"},
+    {kYZSwapped, kUnchangedAxes, "flight time in s that agrees with exchanged accelerometer axes y and z"},
+    {kZXSwapped, kUnchangedAxes, "flight time in s that agrees with exchanged accelerometer axes z and x"},
+    {kUnchangedAxes, kFlipped, "flight time in s that agrees with an inverted gyro"},
+    {kUnchangedAxes, kXFlipped, "flight time in s that agrees with an inverted gyro axis x"},
+    {kUnchangedAxes, kYFlipped, "flight time in s that agrees with an inverted gyro axis y"},
+    {kUnchangedAxes, kZFlipped, "flight time in s that agrees with an inverted gyro axis z"},
+    {kUnchangedAxes, kXYSwapped, "flight time in s that agrees with exchanged gyro axes x and y"},
+    {kUnchangedAxes, kYZSwapped, "flight time in s that agrees with exchanged gyro axes y and z"},
+    {kUnchangedAxes, kZXSwapped, "flight time in s that agrees with exchanged gyro axes z and x"},
+    {kUnchangedAxes, kHalf, "flight time in s that agrees with a gyro that reads twice the true rate"},
+    {kUnchangedAxes, kTwice, "flight time in s that agrees with a gyro that reads half the true rate"},
 }};
 
-/// Corrects a reading for a hypothetical sign, axis order or scale of the sensor: imu_merge.md (I32). `known` is true
-/// if the centripetal force gives a rate of the saturated axis above the saturation level.
+/// Corrects a reading for a hypothetical sign, axis order or scale of the sensor: imu_merge.md (I32). The rate of a
+/// single saturated axis follows from the centripetal force. `known` is false if the recovered rate contradicts the
+/// saturated reading.
 FlightSignCheck::Reading convert_reading(const FlightSignCheck::Reading& reading, const ReadingHypothesis& sense,
                                          const Eigen::Vector3d& t) {
   FlightSignCheck::Reading out = reading;
@@ -85,7 +86,7 @@ FlightSignCheck::Reading convert_reading(const FlightSignCheck::Reading& reading
   return out;
 }
 
-/// Returns whether the middle one of three readings agrees with flight if the sensor has the assumed fault:
+/// Returns whether the middle one of three readings agrees with flight, after correction of the hypothetical fault:
 /// imu_merge.md (I31).
 bool agrees_with_flight(const ReadingHypothesis& sense, const std::array<FlightSignCheck::Reading, 3>& readings,
                         const FlightSignCheck::Params& params) {
@@ -102,7 +103,7 @@ bool agrees_with_flight(const ReadingHypothesis& sense, const std::array<FlightS
 }
 
 /// Returns whether the check tests a hypothesis about a sensor fault. For a body that may be hand-held, the check tests
-/// only the clearest hypotheses.
+/// three hypotheses: no fault, an inverted force and a gyro with half scale.
 bool is_tested(std::size_t sense, FlightSignCheck::Body body) {
   constexpr std::size_t kSound = 0, kFlippedForce = 1;
   return body == FlightSignCheck::Body::thrown || sense == kSound || sense == kFlippedForce ||
@@ -147,8 +148,8 @@ FlightSignCheck::Reading FlightSignCheck::reading_of(const ImuSample& mean, doub
   return out;
 }
 
-/// Classifies the previous reading as flight or not. The previous reading's angular acceleration follows from its two
-/// neighbours.
+/// Classifies the previous reading as flight or not. The angular acceleration of the previous reading follows from the
+/// readings before and after it.
 void FlightSignCheck::process_reading(const Reading& now, State& state) const {
   const auto [first, middle] = state.before;
   state.before = {middle, now};

@@ -8,14 +8,13 @@ namespace tumble {
 
 namespace {
 
-// `kMovingRateMin_rad_s` is the minimum angular rate of a moving body. A delay is accepted if rate change and specific
-// force correlate by at least `kCorrelationMin`. `kDelaySigmaRatio` is the standard deviation of the delay, as a
-// fraction of the slower sensor's sample period.
+// `kMovingRateMin_rad_s` is the minimum angular rate of a moving body. A delay is accepted if the correlation of rate
+// change and specific force is at least `kCorrelationMin`. The standard deviation of the delay is `kDelaySigmaRatio`
+// times the slower sensor's sample period.
 constexpr double kMovingRateMin_rad_s = 1.0, kCorrelationMin = 0.6, kDelaySigmaRatio = 0.15;
 constexpr double kCorrelatedImpactsMin = 30.0;
-// `kImpactForceMin_m_s2` is the minimum specific force of an impact. `kFlightForceMax_m_s2` is the maximum specific
-// force of free flight. `kFlightFractionMin` is the minimum fraction of the time in flight. A body with impacts but
-// without flight counts as hand-held.
+// A specific force above `kImpactForceMin_m_s2` is an impact; a force below `kFlightForceMax_m_s2` is free flight. A
+// body counts as hand-held if it has impacts but is in flight for less than `kFlightFractionMin` of the time.
 constexpr double kImpactForceMin_m_s2 = 30.0, kFlightForceMax_m_s2 = 5.0, kFlightFractionMin = 0.1;
 constexpr double kImpactsMin = 10.0;
 
@@ -27,7 +26,7 @@ double correlation(const ImpactSums& sums, int i) {
   return spread > 0.0 ? (n * xy - x * y) / std::sqrt(spread) : 0.0;
 }
 
-// Returns correlation() at the tested delay `i`, or 0 if the body has no impacts or no flight.
+// Returns correlation() at the tested delay `i`, or 0 if the body has too few impacts or too little flight.
 double score(const ImpactSums& sums, int i) {
   if (sums.impacts[i] < kImpactsMin || sums.flying[i] < kFlightFractionMin * sums.intervals) return 0.0;
   return correlation(sums, i);

@@ -21,7 +21,7 @@ constexpr double kNextRunInflation = 4.0;
 constexpr double kElementDrift = 2e-3;
 // kSlopeDrift is the standard deviation of the change of an accelerometer's cross-axis sensitivity between runs.
 constexpr double kSlopeDrift = 2e-3;
-// Saturation planes with lower log odds are not saved, because the readings at a peak of the motion can resemble a
+// Saturation planes with lower log odds are not saved, because the readings at a maximum of the motion can resemble a
 // plane.
 constexpr double kCertainLogOdds = 10.0;
 // kSlopeSigmaMin is the smallest standard deviation of a cross-axis sensitivity: rails.md (R59).
@@ -35,13 +35,13 @@ std::optional<double> lowest_rail(const CalibratedRig& rig, std::size_t first) {
   return out;
 }
 
-// A reading counts as saturated if it is within the fraction kLevelToleranceRatio of the saturation level. Saturation
-// levels are stable to 0.05 %, but the sensor's bias shifts the readings.
+// A reading counts as saturated if |reading - level| <= kLevelToleranceRatio * level. Saturation levels are stable to
+// 0.05 %, but the sensor's bias shifts the readings.
 constexpr double kLevelToleranceRatio = 2e-3;
 
-// Returns whether the intercept of a saturation plane is known more precisely than the next run's tolerance (two
-// standard deviations). If two sensing elements only clip together, the readings determine neither their cross-axis
-// sensitivity nor the intercept.
+// Returns whether the saturation level is known precisely enough for the next run: two standard deviations must be
+// within the tolerance. If two sensing elements only clip together, the readings determine neither their cross-axis
+// sensitivity nor the saturation level.
 bool is_level_known(const RailPlane& plane, int sign) {
   const Eigen::Vector4d cut(0.0, 0.0, sign, 1.0);
   const double variance = cut.dot(plane.covariance * cut), most = 0.5 * kLevelToleranceRatio * plane.distance_rad_s;
@@ -63,7 +63,7 @@ void CalibratedRig::keep(const RailPlanes& planes, Triad triad) {
   for (std::size_t j = 0; j < 3; ++j) {
     const std::optional<RailPlane>& plane = planes.element[j];
     if (plane && plane->log_odds < kCertainLogOdds) {
-      // The next run also starts with a larger covariance of the plane's cross-axis sensitivities.
+      // The next run also starts with a larger covariance of this element's cross-axis sensitivities.
       const double sigma = RateModelParams{}.element_sigma;
       const Eigen::Index at = RigConstants::kElements + 2 * static_cast<Eigen::Index>(j);
       if (triad == Triad::gyro) calibration.covariance.diagonal().segment<2>(at).array() += sigma * sigma;
@@ -84,7 +84,8 @@ void CalibratedRig::keep(const RailPlanes& planes, Triad triad) {
 
 namespace {
 
-// Stores in `rig` the cross-axis sensitivities and intercepts of a sensing element with a certain saturation plane.
+// Stores in `rig` the cross-axis sensitivities and saturation level of a sensing element whose saturation plane is
+// certain.
 void store_element(const RailPlane& plane, Triad triad, std::size_t j, CalibratedRig& rig) {
   const auto first = static_cast<Eigen::Index>(2 * j), at = RigConstants::kElements + first;
   const Eigen::Vector2d slopes(plane.row[static_cast<Eigen::Index>((j + 1) % 3)],
@@ -185,7 +186,7 @@ void apply_saved_calibration(const CalibratedRig& rig, RateSmoother::Params& par
   covariance.diagonal().tail<RigConstants::kSize - RigConstants::kElements>().array() += kElementDrift * kElementDrift;
   covariance.middleRows<kBiases>(kBias).setZero();
   covariance.middleCols<kBiases>(kBias).setZero();
-  // The covariance of the calibration may not exceed the default prior.
+  // Limits the covariance of the calibration to the default prior.
   const RigConstants::Matrix floor = (1.0 - 1.0 / kNextRunInflation) * prior.inverse();
   RigConstants::Matrix filled = covariance;
   filled.block<kBiases, kBiases>(kBias, kBias).setIdentity();

@@ -10,13 +10,14 @@ namespace tumble {
 
 namespace {
 
-// Near a saturation level, a reading is compared with `kReach` neighbouring readings on each side. A gyro's filter can
-// lower the first and last saturated readings by the fraction `kRoundedPeakRatio` of the saturation level. One
-// hand-held wand reported readings up to 2 % below the saturation level while the rate exceeded the level.
+// A reading close to a saturation level is compared with `kReach` neighbours on each side. "Close" means within the
+// fraction `kRoundedPeakRatio` of the level. A gyro's filter may lower the first and last saturated readings by up to
+// `kRoundedPeakRatio` of the level. One hand-held wand reported readings up to 2 % below the saturation level while the
+// rate exceeded the level.
 constexpr std::size_t kReach = 2;
 constexpr double kRoundedPeakRatio = 0.03;
 
-// gyro readings in time order, without repetitions
+// gyro readings in time order, without repeated readings
 using Rates = std::span<const Eigen::Vector3d>;
 
 double largest_step(Rates readings, std::size_t at, std::size_t reach, Eigen::Index axis) {
@@ -27,7 +28,7 @@ double largest_step(Rates readings, std::size_t at, std::size_t reach, Eigen::In
   return out;
 }
 
-// Returns a bit mask of the axes that may be saturated for a part of reading `at`: rails.md (R76).
+// Returns a bit mask of the axes that may have been saturated for a part of the averaging window: rails.md (R76).
 std::uint8_t axes_near_rails(Rates readings, std::size_t at, const RailPlanes& planes) {
   const Eigen::Vector3d& reading = readings[at];
   std::uint8_t out = 0;

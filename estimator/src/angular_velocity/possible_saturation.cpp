@@ -10,15 +10,15 @@ namespace tumble {
 
 namespace {
 
-// `kMaxPlaneTilt` is the maximum tilt between the saturation planes of two sensing elements, in addition to
-// kNearRailRatio. `kDeficitStepRatio` is the expected saturation deficit of a few saturated samples, as a fraction of
-// the step to the previous or next reading.
+// `kMaxPlaneTilt` is the maximum tilt between the saturation planes of two sensing elements. If few samples are
+// saturated, the standard deviation of the saturation deficit is `kDeficitStepRatio` times the larger step to a
+// neighbouring reading.
 constexpr double kMaxPlaneTilt = 0.06, kDeficitStepRatio = 0.5;
 
-// A reading belongs to a flat maximum if it is within the fraction `kTopRatio` of the largest reading of the segment. A
-// tilt of kMaxPlaneTilt changes a reading by the fraction kTopRatio if the rate about the other axes is a sixth of the
-// saturation level. `kMaxElementSigmas` is the maximum difference between the saturation levels of two sensing
-// elements, in standard deviations.
+// A reading belongs to a flat maximum if it is within the fraction `kTopRatio` of the segment's largest reading.
+// Example: on a plane tilted by kMaxPlaneTilt, saturated readings vary by `kTopRatio` if the rate about the other axes
+// is a sixth of the level. The saturation levels of two sensing elements differ by at most `kMaxElementSigmas` standard
+// deviations.
 constexpr double kTopRatio = 0.01, kMaxElementSigmas = 3.0;
 
 // Returns the lowest known saturation level, or 0 if no level is known.
@@ -30,8 +30,8 @@ double lowest_rail(const RailPlanes& planes) {
   return rail;
 }
 
-// Returns how far the rate may exceed a flat maximum of `count` equal readings. Two straight lines with the slopes
-// before and after the maximum meet at this height: rails.md (R74).
+// Returns how far the rate may exceed a flat maximum of `count` equal readings: rails.md (R74). The rate is
+// extrapolated by straight lines from both sides of the maximum; their intersection is the highest possible rate.
 double rise_above_plateau(double count, double entered, double left) {
   const double both = std::max(0.0, entered) + std::max(0.0, left);
   return both > 0.0 ? count * std::max(0.0, entered) * std::max(0.0, left) / both : 0.0;
@@ -45,7 +45,8 @@ double other_axes_rate(const Eigen::Vector3d& rate_rad_s, Eigen::Index axis) {
 
 }  // namespace
 
-// Raises the lower bounds of the saturation levels to a reading, which no level can be below: rails.md (R75).
+// Raises the lower bounds of the saturation levels, because every reading is below its saturation level: rails.md
+// (R75).
 void MinSaturationLevels::add(const Eigen::Vector3d& rate_rad_s) {
   for (Eigen::Index j = 0; j < 3; ++j) {
     double& least = min_levels_rad_s_[rate_rad_s[j] < 0.0 ? 0 : 1][j];

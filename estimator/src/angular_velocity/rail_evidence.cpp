@@ -16,42 +16,41 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// kConstantRateFraction is the prior fraction of segments in which the rate is constant (spins, turntables). A long
-// segment of equal readings may therefore be a constant rate instead of saturation.
+// A long segment of equal readings may be a constant rate (spin, turntable) instead of saturation.
+// kConstantRateFraction is the prior probability of a constant rate.
 constexpr double kConstantRateFraction = 0.05;
-// A flat segment counts as saturated only if `bend` in SegmentShape is at least kBendRatioMin times `flat`.
+// A segment counts as flat only if SegmentShape::bend >= kBendRatioMin * SegmentShape::flat.
 constexpr double kBendRatioMin = 3.0;
-// kLevelRangeFraction is the assumed range of constant rates, as a fraction of the axis' largest reading.
+// Constant rates are assumed to vary over kLevelRangeFraction times the saturation level.
 constexpr double kLevelRangeFraction = 0.2;
-// The noise estimate uses the residuals of a parabola fit in windows of kNoiseWindow readings. The window at the
-// quantile `kNoiseQuantile` of the residuals determines the noise.
+// Each window of kNoiseWindow readings yields an estimate of the gyro's noise. The quantile `kNoiseQuantile` of the
+// estimates of all windows is the noise of the gyro.
 constexpr std::size_t kNoiseWindow = 9;
 constexpr double kNoiseQuantile = 0.2;
-// kMaxKinkLogLikelihood is the largest log-likelihood of one kink. A kink is an end of a segment at which the clipped
-// axis bends and the other axes move smoothly.
+// A kink is an end of a segment at which the clipped axis bends and the other axes move smoothly. One kink contributes
+// at most kMaxKinkLogLikelihood to the log odds of saturation.
 constexpr double kMaxKinkLogLikelihood = 2.5;
-// A kink at the end of a segment counts only if the other axes change there by at least kMotionSigmasMin standard
-// deviations.
+// A kink counts only if the other axes change there by at least kMotionSigmasMin standard deviations of the noise.
 constexpr double kMotionSigmasMin = 10.0;
-// If the readings of a segment scatter far less than noise (log-likelihood above kThinLogLikelihoodMin), the test
-// ignores kinks at its ends.
+// A segment without a flat maximum counts only if thin_log_likelihood() is at least kThinLogLikelihoodMin, that is, if
+// its readings scatter far less than noise.
 constexpr double kThinLogLikelihoodMin = 8.0;
-// The scatter of a segment has kThinLostFreedom fewer degrees of freedom: two for the fitted line and two for the
-// partly saturated ends.
+// The scatter of a segment of n readings has n - kThinLostFreedom degrees of freedom. The fitted line and the partly
+// saturated ends of the segment each cost two degrees of freedom.
 constexpr std::size_t kThinLostFreedom = 4;
-// A reading is at the saturation level if it is within kAtRailSigmas standard deviations of the saturation plane. The
-// tolerance is at most the fraction kAtRailRatioMax of the level.
+// A reading is at the saturation level if its distance from the saturation plane is at most kAtRailSigmas standard
+// deviations of the noise. The distance is also limited to kAtRailRatioMax times the level.
 constexpr double kAtRailSigmas = 4.0, kAtRailRatioMax = 0.006;
-// `kBeyondPenalty` is the amount by which each reading beyond a saturation plane decreases the log odds of the plane.
-// `kOutlierFraction` is the fraction of readings that may be beyond the plane without effect on the log odds.
+// Each reading beyond a saturation plane decreases the log odds of the plane by `kBeyondPenalty`. The fraction
+// `kOutlierFraction` of the readings may be beyond the plane without penalty.
 constexpr double kBeyondPenalty = 5.0, kOutlierFraction = 0.02;
 
-// Returns the noise of a reading, computed from the root mean square of third differences: rails.md (R56).
+// Returns the noise of one axis' readings, from the root mean square of their third differences: rails.md (R56).
 double window_noise(std::span<const Vector3d> window, int axis) {
   double squares = 0.0;
   const std::size_t count = window.size() - 3;
   for (std::size_t i = 0; i < count; ++i) {
-    // the third difference of white noise has variance 20
+    // The third difference of white noise with variance 1 has variance 20.
     const double d = window[i + 3][axis] - 3.0 * window[i + 2][axis] + 3.0 * window[i + 1][axis] - window[i][axis];
     squares += d * d;
   }
@@ -63,17 +62,17 @@ struct Segment {
   std::size_t size() const { return last - first + 1; }
 };
 
-// Returns the next segment of consecutive inliers, starting at index `at`. The function then sets `at` to the first
-// inlier after the segment.
+// Returns the next segment of consecutive inliers, starting at index `at`. Then sets `at` to the first inlier after the
+// segment.
 Segment next_segment(std::span<const std::size_t> inliers, std::size_t& at) {
   Segment out{inliers[at], inliers[at]};
   for (++at; at < inliers.size() && inliers[at] == out.last + 1; ++at) ++out.last;
   return out;
 }
 
-// Returns a log-likelihood ratio, positive if the readings of a segment scatter less than sensor noise about a straight
-// line: rails.md (R65). Readings of an angular rate contain sensor noise. Saturated readings contain no noise if the
-// device clips after the noise is added. The ratio is zero if quantisation hides the noise.
+// Returns the log-likelihood ratio of two explanations for the scatter of a segment about a straight line: saturation
+// and gyro noise, rails.md (R65). Unsaturated readings contain gyro noise; saturated readings contain none if the
+// device adds the noise before it clips. The log-likelihood ratio is zero if quantisation hides the noise.
 double thin_log_likelihood(const DistinctReadings& readings, const RailFacet& facet, const Segment& s) {
   if (s.size() <= kThinLostFreedom) return 0.0;
   const std::size_t first = s.first + 1, count = s.size() - 2;
@@ -95,19 +94,20 @@ double thin_log_likelihood(const DistinctReadings& readings, const RailFacet& fa
   const double least = std::max(digit, kEqualReadingsRatio * facet.level);
   const double noise = std::hypot(readings.noise[facet.axis], digit);
   const double scatter = std::max(least, std::sqrt(squares / free));
-  // the result is the log ratio of two Gaussian likelihoods, with the standard deviations of scatter and noise
+  // log ratio of two Gaussian likelihoods, with the standard deviations of scatter and noise
   return scatter < noise ? free * (std::log(noise / scatter) - 0.5 * (1.0 - std::pow(scatter / noise, 2))) : 0.0;
 }
 
-// `bend` is the height that a rounded maximum would have within a segment of readings. `flat` is the difference between
-// the largest and the smallest reading of the segment.
+// SegmentShape describes a segment of readings close to a possible saturation level. `bend` is the height of a rounded
+// maximum (parabola) that is as long as the segment. `flat` is the difference between the largest and the smallest
+// reading.
 struct SegmentShape {
   double bend = 0.0, flat = 0.0;
   bool bends() const { return bend >= kBendRatioMin * flat; }
 };
 
-// Computes the shape of a segment of consecutive readings. The shape is empty for a single reading, and for a segment
-// close to either end of the recording.
+// Computes the shape of a segment of consecutive readings. Returns nothing for a single reading, and for a segment
+// close to an end of the recording.
 std::optional<SegmentShape> shape_of(const DistinctReadings& readings, const RailFacet& facet, const Segment& s) {
   const std::vector<Vector3d>& rates = readings.rates;
   const auto value = [&](std::size_t k) { return facet.sign * facet.row.dot(rates[k]); };
@@ -121,14 +121,14 @@ std::optional<SegmentShape> shape_of(const DistinctReadings& readings, const Rai
     low = std::min(low, value(k));
     high = std::max(high, value(k));
   }
-  // height, within the segment, of a parabola through the readings next to the segment: rails.md (R61)
+  // height of a parabola within the segment, extrapolated from the readings around the segment: rails.md (R61)
   const double n = static_cast<double>(s.size()), inside = (n - 1.0) / (n + 3.0);
   return SegmentShape{depth * inside * inside, std::max(high - low, 2.0 * facet.deviation)};
 }
 
-// Returns the log-likelihood that the readings have a kink at one end of a segment: rails.md (R64). The test compares
-// the second difference of the clipped axis with those of the other axes. An impact causes a kink on all axes;
-// saturation causes a kink on one axis.
+// Returns the log-likelihood that saturation causes a kink at one end of a segment: rails.md (R64). The test compares
+// the second difference of the clipped axis with the second differences of all other axes. An impact causes a kink on
+// all axes; saturation causes a kink on one axis.
 double kink_evidence(const DistinctReadings& readings, const RailFacet& facet, const Segment& s, bool after) {
   const std::vector<Vector3d>& rates = readings.rates;
   if (s.size() < 3 || (after ? s.last + 3 >= rates.size() : s.first < 3)) return 0.0;
@@ -164,7 +164,7 @@ DistinctReadings distinct_readings(std::span<const Vector3d> readings, std::vect
     out.peak = out.peak.cwiseMax(y.cwiseAbs());
     for (int j = 0; j < 3 && !out.rates.empty(); ++j) {
       const double change = std::abs(y[j] - out.rates.back()[j]);
-      // the rounding error of a floating-point sum is smaller than any quantisation step of a sensor
+      // The rounding error of a floating-point sum is smaller than any quantisation step of a sensor.
       if (change > 1e-9 * (1.0 + std::abs(y[j]))) out.digit[j] = std::min(out.digit[j], change);
     }
     out.rates.push_back(y);
@@ -198,20 +198,20 @@ double segment_evidence(const DistinctReadings& readings, const Eigen::Matrix2d&
     const Segment s = next_segment(inliers, at);
     const std::optional<SegmentShape> shape = shape_of(readings, facet, s);
     if (!shape) continue;
-    // the readings of a moving gyro scatter at least by the gyro's noise
+    // Unsaturated readings scatter at least by the gyro's noise.
     const double thin = thin_log_likelihood(readings, facet, s);
     if (!shape->bends() && thin < kThinLogLikelihoodMin) continue;
     ++facet.segments;
     odds += std::max(0.0, thin);
     if (!shape->bends()) continue;
-    // The log odds of saturation increase with the flatness of a segment: rails.md (R62). The log odds also increase if
-    // several segments have similar mean readings: rails.md (R63).
+    // Two properties increase the log odds of saturation: the flatness of a segment, rails.md (R62), and the number of
+    // segments with similar mean reading, (R63).
     const double flatness = static_cast<double>(s.size() - 1) * std::log(shape->bend / shape->flat);
     odds += std::min(flatness, -std::log(kConstantRateFraction)) + of_level;
     for (const bool after : {false, true}) odds += kink_evidence(readings, facet, s, after);
     H += information_of(readings, facet, s);
   }
-  // readings beyond a saturation level contradict the level
+  // Readings beyond a saturation level contradict the level.
   const auto beyond = std::count_if(inliers.begin(), inliers.end(), [&](std::size_t k) {
     return facet.sign * facet.row.dot(readings.rates[k]) > facet.level + facet.tolerance;
   });
@@ -221,8 +221,8 @@ double segment_evidence(const DistinctReadings& readings, const Eigen::Matrix2d&
   // A reading counts as saturated if its distance from the saturation plane is within the noise or the error of the
   // plane.
   facet.tolerance = std::max(facet.tolerance, std::min(kAtRailSigmas * noise, kAtRailRatioMax * facet.level));
-  // The Occam factor is the ratio of posterior to prior parameter volume: rails.md (R66). The factor penalises the free
-  // choice of saturation level and cross-axis sensitivities.
+  // The Occam factor is the ratio of posterior to prior parameter volume: rails.md (R66). The Occam factor penalises
+  // the fitted saturation level and cross-axis sensitivities.
   const Eigen::Matrix3d posterior_covariance = H.inverse();
   const double of_slopes =
       0.5 * std::log(std::max(1.0, 1.0 / (posterior_covariance.topLeftCorner<2, 2>().determinant() *

@@ -7,33 +7,32 @@
 
 namespace tumble {
 
-/// DistinctReadings contains the readings of a gyro without repetitions (sample and hold), and the gyro's noise and
-/// quantisation.
+/// DistinctReadings contains the readings of a gyro without repeated readings, and the gyro's noise and quantisation.
 struct DistinctReadings {
   std::vector<Eigen::Vector3d>& rates;
-  Eigen::Vector3d noise = Eigen::Vector3d::Zero();  ///< noise of a reading, from the slowest motion [rad/s]
+  Eigen::Vector3d noise = Eigen::Vector3d::Zero();  ///< lower quantile of the noise of all windows [rad/s]
   Eigen::Vector3d digit = Eigen::Vector3d::Zero();  ///< smallest change between two readings [rad/s]
   Eigen::Vector3d peak = Eigen::Vector3d::Zero();   ///< largest magnitude of each axis [rad/s]
 };
-/// Computes noise and quantisation of a gyro from its readings in time order, and stores the distinct readings in
-/// `rates`. `noises` is a work buffer.
+/// Computes noise and quantisation of a gyro from its readings in time order. The function stores the readings without
+/// repetitions in `rates`. `noises` is a work buffer.
 DistinctReadings distinct_readings(std::span<const Eigen::Vector3d> readings, std::vector<Eigen::Vector3d>& rates,
                                    std::vector<double>& noises);
 
-/// RailFacet is a possible saturation plane, sign * row . y = level for readings y, with the readings close to the
-/// plane.
+/// RailFacet is a possible saturation plane with the readings close to it. A reading y is on the plane if sign * row .
+/// y = level.
 struct RailFacet {
   int axis = 0, sign = 1;
   Eigen::Vector3d row = Eigen::Vector3d::Zero();
   double level = 0.0;
   double deviation = 0.0, tolerance = 0.0;
-  int segments = 0;  ///< number of runs of readings on the plane that no rounded maximum explains
+  int segments = 0;  ///< number of runs of readings on the plane, without rounded maxima
 };
 
-/// Returns the log-likelihood ratio between saturation and natural causes (maxima of the motion, constant rates), from
-/// the readings on `facet`. The function also counts the segments of consecutive readings on the plane.
-/// `slope_information` is the prior information about the cross-axis sensitivities. `inliers` contains the indices of
-/// these readings in DistinctReadings::rates, in ascending order.
+/// Returns the log-likelihood ratio between saturation and natural causes (maxima of the motion, constant rates) for
+/// the readings on `facet`. The function also counts the segments of consecutive readings on the plane. `inliers`
+/// contains the ascending indices of the readings on the plane, in DistinctReadings::rates. `slope_information` is the
+/// prior information about the cross-axis sensitivities.
 double segment_evidence(const DistinctReadings& readings, const Eigen::Matrix2d& slope_information,
                         std::span<const std::size_t> inliers, RailFacet& facet);
 

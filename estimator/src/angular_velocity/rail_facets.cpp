@@ -16,12 +16,13 @@ using Workspace = RailPlaneFinder::Workspace;
 
 constexpr double kGridStep = 0.01;  // step of the search grid over cross-axis sensitivities
 constexpr int kRefinements = 10;
-// `kSlabDeviations` is half the thickness of the layer of readings around a saturation plane, in standard deviations.
-// The half thickness is limited to fractions between kSlabRatioMin and kSlabRatioMax of the saturation level.
+// A reading is on a saturation plane if its distance from the plane is at most `kSlabDeviations` standard deviations of
+// the distances of all such readings. The maximum distance is limited to the range from kSlabRatioMin to kSlabRatioMax
+// times the saturation level.
 constexpr double kSlabDeviations = 4.0, kSlabRatioMin = 2e-4, kSlabRatioMax = 0.006;
 
-// Collects the readings that are within `slab` of the largest reading along any sensing direction with cross-axis
-// sensitivities up to `steepest`. Returns the smallest collected value.
+// Collects readings that may be within `slab` of the largest reading along a sensing direction, for any cross-axis
+// sensitivities up to `steepest`. Returns the lower limit of the collected readings.
 double candidates(const DistinctReadings& readings, int axis, int sign, double steepest, double slab,
                   std::vector<std::size_t>& out) {
   double sure = -std::numeric_limits<double>::max();
@@ -45,8 +46,8 @@ void collect(const DistinctReadings& readings, double from, Side& side, Workspac
 }
 
 // Fits the saturation level and cross-axis sensitivities to the inliers, by least squares with a prior on the
-// sensitivities. The function also computes the standard deviation of the readings about the fitted plane. Cauchy
-// weights reduce the effect of partly saturated readings, which are below the plane: rails.md (R58).
+// sensitivities: rails.md (R58). Cauchy weights reduce the effect of partly saturated readings, which are below the
+// plane. The function also computes the standard deviation of the distances from the plane.
 void fit(const DistinctReadings& readings, const FacetPrior& prior, double deviation, RailFacet& facet,
          Workspace& workspace) {
   const int axis = facet.axis;
@@ -59,7 +60,7 @@ void fit(const DistinctReadings& readings, const FacetPrior& prior, double devia
   const double weight = 1.0 / (deviation * deviation);
   for (const std::size_t k : workspace.inliers) {
     const Vector3d& y = readings.rates[k];
-    // linear model of the saturation level: level = sign * (y_j + slopes . others)
+    // Linear model of the saturation level: level = sign * (y_j + slopes . others).
     Vector3d A;
     A << -facet.sign * others(y, axis), 1.0;
     const double off = level > 0.0 ? (facet.sign * row.dot(y) - level) / deviation : 0.0;

@@ -27,22 +27,22 @@ using rails::Gate;
 using rails::others;
 using rails::Side;
 
-// kInitialSigmaRatios contains two initial standard deviations of the robust fit, as fractions of the thickness of the
-// layer of readings. The small value suits a thin layer with a few partly saturated readings below it. The large value
-// suits a thick layer.
+// kInitialSigmaRatios contains two initial standard deviations for the robust fit of a plane to a layer of readings, as
+// fractions of the layer's thickness. The small standard deviation suits a thin layer with a few partly saturated
+// readings below it. The large standard deviation suits a thick layer.
 constexpr double kInitialSigmaRatios[] = {0.5, 0.02};
 // The saturation levels of one device's sensing elements usually differ by less than the fraction kElementLevelRatio.
-// If another axis reads far above a saturation level, the log odds of the level decrease.
+// If another axis reads above a level by more than kElementLevelRatio, the log odds of the level decrease.
 constexpr double kElementLevelRatio = 0.04;
-// `kNearElementLogOdds` increases the log odds of a saturation level that is near the level of another sensing element.
-// `kNearStatedLogOdds` applies to a level near the stated range, and `kOppositeSignLogOdds` to a level near that of the
-// opposite sign. `kImpossibleLogOdds` are the log odds of an impossible level.
+// The log odds of a saturation level increase by `kNearElementLogOdds` near the level of another sensing element. The
+// log odds increase by `kOppositeSignLogOdds` near the level of the opposite sign, and by `kNearStatedLogOdds` near the
+// data sheet's range. An impossible level has the log odds `kImpossibleLogOdds`.
 constexpr double kNearElementLogOdds = 5.0, kNearStatedLogOdds = 3.0, kOppositeSignLogOdds = 5.0,
                  kImpossibleLogOdds = -100.0;
-// `kNearKnownLogOdds` increases the log odds of a saturation level that is near its level in an earlier run.
-// `kKnownLevelSigmaRatio` is the standard deviation of the difference between the levels of two runs, as a fraction of
-// the level. `kFarFromKnownLogOdds` decreases the log odds of a level far from the earlier level, since the device may
-// have been replaced.
+// The log odds of a saturation level increase by `kNearKnownLogOdds` near the same element's level in an earlier run.
+// `kKnownLevelSigmaRatio` is the relative standard deviation between the levels of two runs. The log odds of a level
+// far from the earlier level decrease by no more than |`kFarFromKnownLogOdds`|, since the device may have been
+// replaced.
 constexpr double kNearKnownLogOdds = 6.0, kKnownLevelSigmaRatio = 0.003, kFarFromKnownLogOdds = -3.0;
 // kKnownSlopeSigma is the standard deviation of the change of a cross-axis sensitivity between two runs.
 constexpr double kKnownSlopeSigma = 2e-3;
@@ -52,7 +52,7 @@ double log_normal_ratio(double value, double sigma) {
   return std::max(kImpossibleLogOdds, -0.5 * z * z);
 }
 
-// Returns the log odds of a saturation level before its readings are considered: rails.md (R67).
+// Returns the prior log odds of a saturation level, without the evidence of the readings on it: rails.md (R67).
 double level_log_odds(const RailPlaneFinder::Params& params, const DistinctReadings& readings, const RailPlanes& known,
                       const Side& side) {
   const double level = side.facet.level;
@@ -100,7 +100,7 @@ RailPlane joined(const RailPlaneFinder::Params& params, const DistinctReadings& 
     for (const Vector3d& y : readings.rates) {
       if (!(side->sign * gate.row.dot(y) >= gate.from)) continue;
       if (!(rails::highest_value(y, axis, side->sign, gate.steepest) >= gate.near_min)) continue;
-      // linear model of a saturation plane: y_j = sign * r + b - slopes . others, rails.md (R59)
+      // Linear model of a saturation plane: y_j = sign * r + b - slopes . others, rails.md (R59).
       Eigen::Vector4d A;
       A << -others(y, axis), side->sign, 1.0;
       H += weight * A * A.transpose();
@@ -139,7 +139,7 @@ struct SideSearch {
   const DistinctReadings& readings;
   RailPlaneFinder::Workspace& workspace;
 
-  // Returns the saturation plane with the highest log odds among those near the known cross-axis sensitivities:
+  // Searches near the known cross-axis sensitivities, and returns the saturation plane with the highest log odds:
   // rails.md (R60).
   Side about(int axis, int sign, const RailPlanes& known, const FacetPrior& prior, double range) const {
     Side side{axis, sign, {}, {}};
@@ -158,9 +158,9 @@ struct SideSearch {
     return side;
   }
 
-  // Searches the saturation plane of one sign of a sensing element. If the element's sensing direction is known, the
-  // search starts near the known direction. Otherwise the search starts near zero cross-axis sensitivities, or near
-  // those of an earlier run.
+  // Searches the saturation plane of one sign of a sensing element. The search starts near the element's known sensing
+  // direction. If the direction is unknown, the search starts near zero cross-axis sensitivities, or near those of an
+  // earlier run.
   Side search_side(int axis, int sign, const RailPlanes& known) const {
     const auto element = static_cast<std::size_t>(axis);
     if (const auto& rail = known.element[element]) {
@@ -173,7 +173,7 @@ struct SideSearch {
     const Side side = about(axis, sign, known, {Vector2d::Zero(), unknown}, params.slope_max);
     const auto& earlier = params.known.element[element];
     if (!earlier) return side;
-    // the device may be that of the earlier run or another device
+    // The device may be that of the earlier run or another device.
     const Matrix2d changed =
         earlier->covariance.topLeftCorner<2, 2>() + kKnownSlopeSigma * kKnownSlopeSigma * Matrix2d::Identity();
     const double range = std::min(params.slope_max, 3.0 * std::sqrt(changed.trace()));
@@ -181,8 +181,9 @@ struct SideSearch {
     return same.log_odds > side.log_odds ? same : side;
   }
 
-  // Searches the saturation plane of sign `i` of a sensing element, using the planes in `found`. Returns whether `pair`
-  // contains a plane of sign `i`. `kept` states whether the previous search accepted the plane.
+  // Searches the saturation plane of sign `i` of a sensing element, given the planes in `found`, and stores an accepted
+  // plane in `pair`. `kept` states whether the previous search accepted the plane. Returns whether `pair` contains a
+  // plane of sign `i`.
   bool add(int axis, std::size_t i, bool kept, const RailPlanes& found, Pair& pair) const {
     const int sign = i == 0 ? -1 : 1;
     const Side side = search_side(axis, sign, found);
@@ -192,13 +193,13 @@ struct SideSearch {
     }
     const auto& rail = found.element[static_cast<std::size_t>(axis)];
     if (rail || !(side.log_odds > -std::numeric_limits<double>::infinity())) return false;
-    // an element's positive and negative plane may be accepted together although each plane alone is rejected
+    // An element's positive and negative plane may be accepted together although each plane alone is rejected.
     Pair alone;
     alone[i] = side;
     RailPlanes supposed = found;
     supposed.element[static_cast<std::size_t>(axis)] = joined(params, readings, alone);
     const Side other = search_side(axis, -sign, supposed);
-    // the prior odds of the saturation level count once for both planes of an element: rails.md (R68)
+    // The prior odds of the saturation level count only once for both planes of an element: rails.md (R68).
     if (side.log_odds + other.log_odds - params.log_odds_before < params.log_odds_min) return false;
     pair[i] = side;
     pair[1 - i] = other;

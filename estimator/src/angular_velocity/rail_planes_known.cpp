@@ -10,10 +10,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-// A reading contradicts a saturation plane if it is beyond the plane by kBeyondTolerance times the plane's tolerance.
+// A reading contradicts a saturation plane if it is beyond the plane by more than kBeyondTolerance times the plane's
+// tolerance.
 constexpr double kBeyondTolerance = 4.0;
 constexpr int kMinContradictions = 2;
-// kSameShare is the maximum relative difference between saturation levels of one device in two runs.
+// Saturation levels of one device in two runs differ by at most the fraction kSameShare.
 constexpr double kSameShare = 0.003;
 
 }  // namespace
@@ -28,7 +29,7 @@ RailPlanes RailPlaneFinder::merge_with_known_planes(const RailPlanes& found,
     if (!earlier) continue;
     if (!rail && !earlier->contradicted_by(readings_rad_s)) rail = earlier;
     for (const int sign : {-1, 1}) {
-      // the saturation levels of both runs are close enough to come from one device
+      // Both runs used the same device if their saturation levels are equal within kSameShare.
       if (!rail || rail->seen(sign) || !earlier->seen(sign)) continue;
       const double apart = std::abs(rail->distance_rad_s - earlier->distance_rad_s);
       const std::size_t i = sign > 0 ? 1 : 0;

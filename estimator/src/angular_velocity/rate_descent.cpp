@@ -12,16 +12,17 @@ namespace tumble {
 
 namespace {
 
-// kRestartThresholds contains alternative contact thresholds for a restart, as multiples of the parameter. The smoother
-// restarts if few clipped samples are in flight (below kFlightShareExpected).
+// If less than the fraction kFlightShareExpected of the clipped samples is in flight, the optimisation restarts with
+// other contact thresholds. The thresholds are multiplied by kRestartThresholds.
 constexpr double kRestartThresholds[] = {16.0, 0.25};
 constexpr double kFlightShareExpected = 0.5;
 
-// The iteration has converged when no combination of unknowns changes by more than kStepDeviations standard deviations:
-// rate_smoother.md (R30). A rate that the readings hardly determine may still change by several rad/s at convergence.
+// The iteration has converged if each linear combination of unknowns changes by at most kStepDeviations of its standard
+// deviation: rate_smoother.md (R30). A rate that the readings hardly determine may still change by several rad/s at
+// convergence.
 constexpr double kStepDeviations = 0.1;
 
-// Computes for each sample the weight of the flight model and the contact force: rate_smoother.md (R16) to (R19).
+// Computes the weight of the flight model and the contact force of each sample: rate_smoother.md (R16) to (R19).
 void compute_flight_weights(const RateModel& model, std::span<const RateObservation> observations,
                             const RigConstants& rig, const RigConstants::Matrix& rig_covariance,
                             double threshold_factor, std::span<RateEstimate> estimates) {
@@ -32,7 +33,7 @@ void compute_flight_weights(const RateModel& model, std::span<const RateObservat
       const double dt_s = seconds(observations[k + 1].sample.time_ns - observations[k].sample.time_ns);
       after = model.jump(estimates[k].knot, estimates[k + 1].knot, dt_s);
     }
-    // if the gyro measures all axes, a large flight residual cannot come from a wrong rate
+    // If the gyro measures all axes, a wrong rate cannot cause a large flight residual.
     const int clipped = observations[k].unmeasured_axes();
     model.compute_flight_weight(observations[k], rig, rig_covariance, clipped != 0 ? threshold_factor : 1.0,
                                 std::min(before, after), estimates[k]);
@@ -40,8 +41,8 @@ void compute_flight_weights(const RateModel& model, std::span<const RateObservat
   }
 }
 
-// Runs the Gauss-Newton optimisation of rates and calibration from their initial values. Returns false if the normal
-// equations are not positive definite.
+// Runs the Gauss-Newton optimisation of rates and calibration from first_guess() and the prior calibration. Returns
+// false if the normal equations are not positive definite.
 bool run_gauss_newton(const RateSmoother::Params& params, const RateModel& model,
                       std::span<const RateObservation> observations, double threshold_factor, RateSolution& solution,
                       RateReport& health) {
@@ -85,9 +86,8 @@ bool run_gauss_newton(const RateSmoother::Params& params, const RateModel& model
   return true;
 }
 
-// Returns how well free flight explains the rates that the gyro does not measure: rate_smoother.md (R31). Among several
-// local minima of the optimisation, the best has the largest result. `share` receives the fraction of flight samples
-// among the samples with an unmeasured rate.
+// Returns how well free flight explains the samples: rate_smoother.md (R31). The best local minimum of the optimisation
+// has the largest result. `share` receives the fraction of flight samples among the samples with a clipped axis.
 double explained(std::span<const RateObservation> observations, std::span<const RateEstimate> estimates,
                  double& share) {
   double sum = 0.0, unmeasured_axes = 0.0, flight = 0.0;
@@ -122,8 +122,8 @@ bool RateIteration::factorise(const RateModel& model, std::span<const RateEstima
   return arrow::solve_corner(corner_, rig_step_, rig_covariance_);
 }
 
-// Computes the decrease of the cost that the next step should cause, block by block: rate_smoother.md (R30). After the
-// elimination, the blocks contain L^-1 g.
+// Computes the predicted decrease of the cost by the next step, block by block: rate_smoother.md (R30). The gradients
+// of the eliminated blocks are L^-1 g.
 double RateIteration::newton_decrement() const {
   double sum = rig_step_.dot(corner_.gradient);
   for (const arrow::Block& block : blocks_) sum += block.gradient.squaredNorm();
@@ -149,7 +149,7 @@ double RateIteration::apply(const RateModel& model, double step_max, std::span<R
 }
 
 // Computes the derivatives of the estimated rates with respect to the sensor errors, and the information about the
-// sensor errors: rate_smoother.md (R37), (R38), (R39).
+// sensor errors. See rate_smoother.md (R37), (R38), (R39).
 RateIteration::SensorErrorDerivatives RateIteration::error_derivatives(const RateModel& model,
                                                                        std::span<const RateEstimate> estimates,
                                                                        const RigConstants& rig) const {
@@ -161,7 +161,7 @@ RateIteration::SensorErrorDerivatives RateIteration::error_derivatives(const Rat
     model.add_errors(observations_[k], estimates[k], rig, errors, border, out.evidence);
     const bool last = k + 1 == blocks_.size();
     arrow::eliminate_errors(blocks_[k], errors, last ? nullptr : &out.of_sample[k + 1], border);
-    // subtracts the part of the sensor errors that the unknowns of the sample can explain
+    // Subtracts the part of the information that the unknowns of the sample can explain.
     out.evidence.information.noalias() -= errors.transpose() * errors;
     out.evidence.gradient.noalias() += errors.transpose() * blocks_[k].gradient;
   }

@@ -17,12 +17,12 @@ class RateIteration {
 
   /// Returns false if the normal equations are not positive definite.
   bool factorise(const RateModel& model, std::span<const RateEstimate> estimates, const RigConstants& rig);
-  /// Adds the step of the last factorisation to the estimates, limited to step_max. Returns the largest change of an
-  /// angular rate.
+  /// Adds the step of the last factorisation to the estimates. No angular rate changes by more than step_max. Returns
+  /// the largest change of an angular rate before the limitation to step_max.
   double apply(const RateModel& model, double step_max, std::span<RateEstimate> estimates, RigConstants& rig) const;
 
-  /// Calls use(k, conditional) for each sample k, from the last sample to the first, with the conditional distribution
-  /// of its unknowns.
+  /// Calls use(k, conditional) for each sample k, from the last to the first. `conditional` is the conditional
+  /// distribution of the unknowns of sample k.
   template <typename Use>
   void for_each_conditional(Use use) const {
     arrow::Conditional conditional;
@@ -32,10 +32,9 @@ class RateIteration {
     }
   }
 
-  /// SensorErrorDerivatives contains the derivatives of all unknowns with respect to the sensor errors.
-  /// SensorErrorDerivatives also contains the information about the sensor errors from the readings, with all other
-  /// unknowns optimised. The derivatives hold for the last factorisation, with its `estimates` and `rig`, before
-  /// apply().
+  /// SensorErrorDerivatives contains the derivatives of all unknowns with respect to the sensor errors. `evidence` is
+  /// the information about the sensor errors after elimination of all other unknowns. Derivatives and evidence belong
+  /// to the last factorisation, with its `estimates` and `rig`, before apply().
   struct SensorErrorDerivatives {
     std::vector<arrow::ErrorMatrix> of_sample;
     arrow::BorderErrors calibration_by_errors;
@@ -45,8 +44,8 @@ class RateIteration {
                                            const RigConstants& rig) const;
 
   const RigConstants::Matrix& rig_covariance() const { return rig_covariance_; }
-  /// Returns twice the decrease of the cost that the last factorisation predicts. The result is also the squared
-  /// largest change of any linear combination of unknowns, in standard deviations.
+  /// Returns twice the decrease of the cost that the last factorisation predicts. The Newton decrement is also the
+  /// largest squared change of a linear combination of unknowns, divided by the variance of the combination.
   double newton_decrement() const;
 
  private:
@@ -64,10 +63,10 @@ struct RateSolution {
   RateIteration iteration;
 };
 
-/// Optimises all rates and the calibration. If most clipped samples are classified as contact, solve() repeats the
-/// optimisation with larger and smaller contact thresholds. A wrong initial lever arm may lead to a local minimum in
-/// which no sample is in flight. Returns false if the normal equations are not positive definite. `health` receives
-/// iterations, restarts, convergence and the Mahalanobis distance of the calibration.
+/// Optimises all rates and the calibration. A wrong initial lever arm may lead to a local minimum in which no sample is
+/// in flight. If most clipped samples are classified as contact, solve() therefore repeats the optimisation with other
+/// contact thresholds. Returns false if the normal equations are not positive definite. `health` receives iterations,
+/// restarts, convergence and the Mahalanobis distance of the calibration.
 bool solve(const RateSmoother::Params& params, const RateModel& model, std::span<const RateObservation> observations,
            RateSolution& solution, RateReport& health);
 

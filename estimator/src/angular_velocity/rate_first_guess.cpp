@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kVarianceUnknown = 100.0;  // variance of a clipped axis at the start of the iteration, (rad/s)^2
+constexpr double kVarianceUnknown = 100.0;  // variance of a clipped axis at the start, (rad/s)^2
 
 }  // namespace
 
@@ -35,7 +35,7 @@ std::vector<RateEstimate> first_guess(std::span<const RateObservation> observati
   std::vector<WnojSmoother::Measurement> readings(observations.size());
   for (std::size_t k = 0; k < observations.size(); ++k) {
     const RateObservation& o = observations[k];
-    // the samples were checked before, so the only possible error is a gap
+    // The caller has checked the samples, so only a gap can cause an error.
     if (!saave.step(o.sample, state, recovered).ok()) {
       state = {};
       (void)saave.step(o.sample, state, recovered);

@@ -10,7 +10,7 @@ namespace tumble {
 namespace {
 
 using Eigen::Vector3d;
-// derivative of a residual with respect to rate and scaled angular acceleration
+// Derivative of a residual with respect to the rate and the scaled angular acceleration.
 using AuxiliaryRow = Eigen::Matrix<double, 1, 6>;
 
 void add_row(const AuxiliaryRow& row, double residual, double sigma, arrow::Block& block) {
@@ -19,8 +19,8 @@ void add_row(const AuxiliaryRow& row, double residual, double sigma, arrow::Bloc
   block.gradient.noalias() -= information * residual * row.transpose();
 }
 
-// Returns whether the force along an axis of an auxiliary IMU follows from the unclipped force components of the
-// primary IMU. A saturation deficit of element i acts along column i of the inverse of the sensing directions.
+// Returns whether the force along `axis` of an auxiliary IMU depends only on unclipped readings of the primary IMU. A
+// saturation deficit of the primary's element i changes the force by column i of the inverse of the sensing directions.
 bool depends_on_unclipped_axes(const Eigen::RowVector3d& axis, const RateObservation& observation) {
   constexpr double kNegligibleCoupling = 0.02;
   if (observation.clipping.accel == 0) return true;
@@ -32,15 +32,15 @@ bool depends_on_unclipped_axes(const Eigen::RowVector3d& axis, const RateObserva
   return true;
 }
 
-// Returns the matrix that converts the primary IMU's specific force to the axes or sensing elements of an auxiliary
-// IMU.
+// Returns the matrix that converts specific force from the primary IMU's axes to the axes of an auxiliary IMU. If an
+// element of the auxiliary IMU is clipped, the matrix converts to its sensing directions.
 Eigen::Matrix3d axes_of_auxiliary(const Eigen::Matrix3d& R_CI, const SensingDirections& elements,
                                   bool is_element_clipped) {
   return is_element_clipped ? Eigen::Matrix3d(elements.rows * R_CI) : R_CI;
 }
 
-// Returns the standard deviation of an unsaturated reading that is due to the uncertain direction of the sensing
-// element. `most` is the largest possible saturation deficit of the other sensing elements.
+// Returns the standard deviation of a reading due to its uncertain sensing direction. `most` is the largest possible
+// saturation deficit of the other sensing elements.
 double sensing_direction_sigma(const SensingDirections& elements, bool is_element_clipped, int j, double most) {
   return is_element_clipped ? elements.slope_sigma[j] * most : 0.0;
 }
@@ -53,7 +53,7 @@ void RateModel::add_auxiliary_imus(const RateObservation& observation, const Rat
     const AuxiliaryImu& mount = params_.auxiliary_imus[i];
     const AuxiliaryReading& reading = observation.auxiliary_imus[i];
     const Eigen::Matrix3d R_CI = mount.T_IC.linear().transpose();
-    // the lever arm of an auxiliary IMU starts at the primary IMU, not at the centre of mass: rate_smoother.md (R15)
+    // The lever arm of an auxiliary IMU starts at the primary IMU, not at the centre of mass: rate_smoother.md (R15).
     const RateFactor rotation =
         flight_factor(estimate.knot, {.lever_arm_m = mount.T_IC.translation()}, Vector3d::Zero());
     const Vector3d force = observation.sample.specific_force_m_s2 - rig.accel_bias_m_s2 + rotation.residual;

@@ -16,11 +16,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-// initial precision (inverse variance) of the lower bound from a clipped reading, (rad/s)^-2
+// Initial precision (inverse variance) of the lower bound from a clipped reading, (rad/s)^-2.
 constexpr double kStartPrecision = 0.25;
 
-// Limits of search_flight(): number of Newton steps and longest step [rad/s]. `kFlightForceRatioMax` is the maximum
-// force that the flight model leaves unexplained, as a fraction of the reading.
+// Limits of search_flight(): number of Newton steps, longest step [rad/s], and the fraction of the measured force that
+// the flight model may leave unexplained.
 constexpr int kFlightSearchSteps = 6;
 constexpr double kFlightSearchStepMax = 3.0, kFlightForceRatioMax = 0.25;
 
@@ -33,7 +33,7 @@ void RateModel::search_flight(const RateObservation& observation, const RigConst
   const Vector3d reading = corrected_rate(observation, estimate);
   RateEstimate flight_estimate = estimate;
   const Eigen::Matrix3d J = rig.inertia_matrix();
-  // the saturation deficit of one sensing element changes the readings of all axes by a column of M^-1: rails.md (R51)
+  // The saturation deficit of one sensing element changes the readings of all axes by a column of M^-1: rails.md (R51).
   Eigen::Matrix3d rows;
   for (int j = 0; j < 3; ++j) rows.row(j) = rig.sensing_direction(j);
   const Eigen::Matrix3d deficit_directions = rows.inverse();
@@ -96,8 +96,8 @@ void RateModel::update_bounds(const RateObservation& observation, const RigConst
     for (int i = 0; i < 3; ++i) jacobian_calibration += row[i] * conditional.jacobian_border.row(i);
     const Eigen::Matrix<double, 1, RigConstants::kSize> cross = jacobian_calibration.lazyProduct(rig_covariance);
     const Vector3d by_state = conditional.state.topLeftCorner<3, 3>().lazyProduct(row);
-    // Multiplied by the sign of the saturated reading, each bound is a lower bound: rate_smoother.md (R22). The
-    // variance of the residual follows from the covariance of the rate: rate_smoother.md (R35).
+    // The sign of the saturated reading converts each bound to a lower bound: rate_smoother.md (R22). The variance of
+    // the residual follows from the covariance of the rate: rate_smoother.md (R35).
     const NormalMoments marginal{sign * off.residual[j], row.dot(by_state) + cross.dot(jacobian_calibration)};
     const GaussianSite site =
         refined_bound(marginal, {estimate.bound_precision[j], sign * estimate.bound_shift[j]}, 0.0,
@@ -118,7 +118,7 @@ void mark_subsample_saturation(const RailDetector& rails, const RailDetector::St
     const double reading = now.sample.angular_velocity_rad_s[j], sign = std::copysign(1.0, reading);
     const double neighbour = unsaturated_neighbour(std::abs(reading), *rail, j, before, after,
                                                    [&](const Vector3d& beside) { return sign * beside[j]; });
-    // a dip within a run of saturated readings: the saturation deficit is unknown
+    // the reading is a dip between saturated readings, so the saturation deficit is unknown
     if (neighbour > std::abs(reading)) continue;
     const SubsampleSaturation loss = subsample_saturation(std::abs(reading), neighbour, *rail, noise_rad_s);
     if (!loss.saturated) continue;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// rate_model_errors.cpp contains the functions of RateModel that correct sensor errors and compute the reported
-// covariance. Other functions exclude samples in contact from the calibration.
+// rate_model_errors.cpp contains the functions of RateModel that correct sensor errors, compute the reported
+// covariance, or exclude samples in contact from the calibration.
 #include "tumble/angular_velocity/detail/rate_model.hpp"
 
 namespace tumble {
@@ -10,7 +10,7 @@ using Eigen::Vector3d;
 namespace {
 
 // A sample updates the calibration only if its flight weight is at least kRigWeightMin. In contact, the force residual
-// could change uncertain calibration constants strongly.
+// could strongly change calibration constants with a large uncertainty.
 constexpr double kRigWeightMin = 0.05;
 
 }  // namespace
@@ -19,17 +19,17 @@ bool RateModel::is_uninformative(const RateEstimate& estimate) {
   return estimate.flight_weight < kRigWeightMin;
 }
 
-// Removes the derivatives of the flight residual by which a contact force could change measured rates or the
-// calibration.
+// Removes derivatives of the flight residual, so that a contact force cannot change the calibration or the rates of
+// unclipped axes.
 void RateModel::exclude_from_calibration(const RateObservation& o, RateFactor& flight) {
   flight.jacobian_calibration.setZero();
   for (int j = 0; j < 3; ++j) {
-    // a contact force that changes a measured rate would also change the gyro's bias
+    // A contact force that changes the rate of an unclipped axis would also change the gyro's bias.
     if ((o.unmeasured_axes() >> j & 1u) == 0) flight.jacobian_knot.col(j).setZero();
   }
 }
 
-// Returns angular rate and acceleration at the time of the gyro's reading: rate_smoother.md (R7).
+// Returns angular rate and angular acceleration at the time of the gyro's reading: rate_smoother.md (R7).
 RateKnot RateModel::knot_at_reading(const RateObservation& observation, const RateEstimate& estimate) const {
   const RateKnot& knot = estimate.knot;
   return {knot.rate_rad_s - observation.gyro_age_s * knot.acceleration_rad_s2, knot.acceleration_rad_s2};
@@ -49,8 +49,8 @@ RateFactor RateModel::flight(const RateObservation& observation, const RateKnot&
   if (uses_raw_readings_ && delay_s == 0.0 && jacobian_delay == nullptr) return flight_factor(knot, rig, reading);
   const Vector3d force = reading - params_.errors.accel * reading;
   RateFactor out = delayed_flight_factor(knot, rig, force, delay_s, jacobian_delay);
-  // Averaging over the window changes the force in proportion to its second time derivative: rate_smoother.md (R13).
-  // The derivatives of this small term are neglected.
+  // Averaging over the accelerometer's window changes the force in proportion to the second time derivative of the
+  // force: rate_smoother.md (R13). The derivatives of this small force change are neglected.
   out.residual += 0.5 * params_.errors.accel_filter_time_variance_s2 * flight_curvature(knot, rig);
   return out;
 }
@@ -126,7 +126,7 @@ void RateModel::add_errors(const RateObservation& observation, const RateEstimat
   }
 }
 
-// Computes the reported covariance of a rate from the covariance of the fit: rate_smoother.md (R49).
+// Computes the reported covariance of a rate from the covariance of the optimisation: rate_smoother.md (R49).
 Eigen::Matrix3d RateModel::reported(const Eigen::Matrix3d& covariance, const RateObservation& observation,
                                     const RateEstimate& estimate) const {
   const double factor = 1.0 + (params_.expert.contact.sigma_factor - 1.0) * (1.0 - estimate.flight_weight);
@@ -138,7 +138,7 @@ Eigen::Matrix3d RateModel::reported(const Eigen::Matrix3d& covariance, const Rat
   const Vector3d late = params_.expert.readings.gyro_time_sigma_s * estimate.knot.acceleration_rad_s2;
   Eigen::Matrix3d timed = covariance + late * late.transpose();
   if (observation.is_element_clipped()) {
-    // A contact force changes the rate within the averaging window of a sample, also on measured axes.
+    // A contact force also changes the rate of unclipped axes within the averaging window of a sample.
     const double struck = params_.expert.readings.gyro_time_sigma_s * params_.expert.contact.gain_rad_m *
                           estimate.contact_force_m_s2.norm();
     timed.diagonal().array() += struck * struck;

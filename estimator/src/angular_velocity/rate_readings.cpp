@@ -41,8 +41,8 @@ void suspect_units(std::span<const ImuSample> samples, double rate_max_rad_s, Ra
   health.force_unit_suspect = force > 0.5 && force < 2.0;
 }
 
-// Marks the axes of each sample that were saturated for a part of its averaging window, or may be at an unknown
-// saturation level.
+// Marks the axes of each sample that were saturated for a part of the averaging window, or that may be saturated at an
+// unknown level.
 void mark_possibly_clipped(const RailPlaneFinder::Params& expected, const ClippingFinder& finder,
                            const SaturationLevels& rails, const RailPlanes& planes, double noise_rad_s,
                            std::span<const ImuSample> samples, std::span<RateObservation> observations) {

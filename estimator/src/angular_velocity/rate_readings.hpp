@@ -13,8 +13,8 @@
 
 namespace tumble {
 
-/// RateReadings contains the classified samples of a recording, and the prior calibration updated by the saturation
-/// planes.
+/// RateReadings contains the classified samples of a recording. `known` contains the prior calibration, with cross-axis
+/// sensitivities from the saturation planes.
 struct RateReadings {
   std::vector<RateObservation> observations;  ///< one per sample
   RateModelParams known;
@@ -22,8 +22,8 @@ struct RateReadings {
   std::optional<RepeatedReadings> gyro_repeated;
 };
 
-/// Finds clipped elements, partly saturated axes, suspect axes, rest and repeated readings in at least two samples.
-/// Cost: O(N). The function stores saturation levels, suspect units and repetitions in `health`.
+/// Classifies at least two samples: clipped, partly saturated and suspect axes, rest, and repeated readings. Cost:
+/// O(N). The function stores saturation levels, suspect units and repetitions in `health`.
 RateReadings read_samples(const RateSmoother::Params& params, const ClippingFinder& rails,
                           const ClippingFinder::Found& found, const std::vector<bool>& rest,
                           std::span<const ImuSample> samples,

@@ -18,10 +18,10 @@ struct RateFit {
 };
 
 /// Repeats the optimisation, each time with readings corrected by the last estimated sensor errors. A linear correction
-/// follows at the end. If an optimisation mistakes contact for flight and thereby changes the calibration, the function
-/// fixes the calibration at its prior. Contact was mistaken for flight if the calibration changes by more than its
-/// uncertainty and the sensor errors allow. Before that, the first optimisation repeats with the other accelerometer
-/// delay (assumed, or estimated from impacts).
+/// follows at the end. If the calibration changes by more than its uncertainty and the sensor errors allow, the
+/// optimisation has classified contact as flight. The optimisation then restarts with the other accelerometer delay
+/// (assumed, or estimated from impacts). If the calibration still changes too much, the function fixes the calibration
+/// at its prior.
 Status fit_rounds(const RateSmoother::Params& params, const RateModelParams& known, std::span<const ImuSample> samples,
                   std::span<const Clipping> clippings, std::span<RateObservation> observations, RateFit& fit,
                   RateReport& health);

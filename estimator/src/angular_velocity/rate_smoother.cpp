@@ -28,7 +28,8 @@ Status check_auxiliary_imus(const RateModelParams& params,
   return {};
 }
 
-/// Returns the parameters with a large zero offset of the gyro as nominal bias, unless the user states a bias.
+/// Returns the parameters with the gyro's zero offset as nominal bias, if the offset is large and the user states no
+/// bias.
 RateSmootherParams with_offset(const RateSmootherParams& params, std::span<const ImuSample> samples) {
   RateSmootherParams out = params;
   Eigen::Vector3d& nominal = out.model.nominal.gyro_bias_rad_s;
@@ -44,7 +45,7 @@ RateSmoother::RateSmoother(const Params& params)
       rest_detector_(params.expert.rests) {
   require_valid_fields(params);
   if (params.calibrated_errors) require_known(*params.calibrated_errors);
-  (void)RateModel(params.model, 0.01);  // the constructor throws for invalid parameters
+  (void)RateModel(params.model, 0.01);  // throws for invalid parameters
 }
 
 Status RateSmoother::estimate(std::span<const ImuSample> samples,

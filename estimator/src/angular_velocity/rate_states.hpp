@@ -10,11 +10,11 @@
 
 namespace tumble {
 
-/// Computes angular rates and covariances at the samples. Cost: O(N n) for n samples within the common delay. The
-/// covariances include the uncertainty of sensor errors, calibration, and a delay that gyro and accelerometer share
+/// Computes angular rates and covariances at the samples. Cost: O(N n) for n samples within the common delay of gyro
+/// and accelerometer. The covariances include the uncertainty of sensor errors, calibration and common delay
 /// (rate_smoother.md). The rates are valid at the times of the gyro's readings. If the gyro is slower than its log,
-/// interpolated readings replace estimates that are less accurate. `health` receives the numbers of recovered, bounded,
-/// unusable and flight samples.
+/// interpolated readings replace less accurate estimates. `health` receives the numbers of recovered, bounded, unusable
+/// and flight samples.
 std::vector<RateState> rate_states(const RateSmoother::Params& params, std::span<const ImuSample> samples,
                                    const RateReadings& readings, const RateFit& fit, RateReport& health);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // RateStream estimates the accelerometer's delay first from impacts, then from the information about sensor errors.
-// Each force reading is combined with the rate at the time of the force.
+// Each force reading is paired with the rate at the time of the force.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,7 +12,7 @@ namespace tumble {
 namespace {
 
 constexpr int kBeside = ImpactSums::kDelayMax_samples;
-// The sums over impacts decay with this time constant, a number of intervals between readings.
+// Time constant with which the sums over impacts decay, in intervals between readings.
 constexpr double kMemory = 2000.0;
 // `kUpdatePeriod_ns` is the time between two estimates of the delay. RateStream ignores changes of the delay below
 // `kDelayChangeMin_s`.
@@ -22,10 +22,11 @@ constexpr double kDelayChangeMin_s = 3e-4;
 // sheet. A delay estimated from impacts replaces the current delay if they differ by more than `kGuessSigmasMax`
 // standard deviations.
 constexpr double kContradictionOdds = 0.05, kGuessSigmasMax = 3.0;
-// An estimated delay needs at least `kIntervalsMin` intervals between readings. The correlation at the estimated delay
-// must exceed that at the stated delay by `kCorrelationGainMin`, because the first few impacts correlate by chance.
+// A delay is estimated from at least `kIntervalsMin` intervals between readings. At the estimated delay, the
+// correlation of force and rate change must exceed the correlation at the stated delay by `kCorrelationGainMin`. The
+// first few impacts may correlate by chance.
 constexpr double kIntervalsMin = 150.0, kCorrelationGainMin = 0.06;
-// Maximum delay, as a multiple of the prior standard deviation for an uncalibrated device.
+// Maximum delay, in prior standard deviations of an uncalibrated device.
 constexpr double kReach = 3.0;
 
 double seconds_to(const RateStream::Knot& a, const RateStream::Knot& b) {
@@ -70,8 +71,8 @@ std::ptrdiff_t RateStream::force_shift(const State& state) const {
   return std::lround(state.device.front().delay.applied_delay_s / params_.period_s);
 }
 
-// Stores in sample k the specific force at the time of the sample, or the closest force in the window. The function
-// also stores the remaining delay between the force and the sample: rate_stream.md (R105).
+// Stores in sample k the force reading that was measured at the time of sample k, or the closest in the window. The
+// function also stores the remaining time difference: rate_stream.md (R105).
 void RateStream::pair_force(std::size_t k, State& state) const {
   Knot& knot = state.window[k];
   const auto last = static_cast<std::ptrdiff_t>(state.window.size()) - 1;
@@ -86,7 +87,7 @@ void RateStream::pair_force(std::size_t k, State& state) const {
   o.accel_age_s = (state.device.front().delay.applied_delay_s - prior_delay_s_) - seconds_to(knot, source);
 }
 
-// Updates the forces of those samples for which the newest sample contains a force that is closer in time.
+// Updates samples for which the newest force reading is closer in time than the stored force.
 std::size_t RateStream::pair_newest(State& state) const {
   const std::size_t newest = state.window.size() - 1;
   if (state.device.front().delay.applied_delay_s == prior_delay_s_ && force_shift(state) == 0) return newest;
@@ -96,8 +97,8 @@ std::size_t RateStream::pair_newest(State& state) const {
   return first;
 }
 
-// Adds an interval between two consecutive readings to the sums over impacts: rate_stream.md (R104). The interval is so
-// old that its clipped axes and all forces up to the maximum delay are known.
+// Adds an old interval between two consecutive readings to the sums over impacts: rate_stream.md (R104). The interval
+// is old enough if its clipped axes and all forces up to the maximum delay are known.
 void RateStream::accumulate_impacts(State& state) const {
   if (!delay_is_estimated_ || state.window.size() < ForceNormIntegral::kReadings) return;
   const std::size_t first = state.window.size() - ForceNormIntegral::kReadings, after = first + kBeside + 1;
@@ -119,8 +120,8 @@ void RateStream::accumulate_impacts(State& state) const {
   impacts.add((end - begin).norm() / span_s, mean);
 }
 
-// Returns the delay estimated from impacts. The estimate is empty if the log repeats readings, because a repetition
-// must not count as a reading.
+// Returns the delay estimated from impacts. Returns an empty delay if the log repeats readings, because repeated
+// readings would falsify the correlation.
 TriadDelay RateStream::guessed_delay(const State& state) const {
   const ImpactSums& impacts = state.device.front().delay.impacts;
   if (repeats_readings(state) || impacts.intervals < kIntervalsMin) return {};
@@ -151,8 +152,8 @@ void RateStream::update_delay(State& state) const {
   if (delay.found && std::abs(delay.estimated_s - delay.applied_delay_s) > kDelayChangeMin_s) refine_delay(state);
 }
 
-// Replaces the accelerometer's delay, restarts the window and discards the calibration estimated with the previous
-// delay.
+// Replaces the accelerometer's delay, restarts the window, and discards the calibration that was estimated with the
+// previous delay.
 void RateStream::apply_delay(double delay_s, bool found, State& state) const {
   RateStreamDelay& delay = state.device.front().delay;
   delay.applied_delay_s = delay.estimated_s = delay_s;
@@ -169,7 +170,7 @@ void RateStream::apply_delay(double delay_s, bool found, State& state) const {
   }
 }
 
-// Applies a small change of the accelerometer's delay. The prior from samples that left the window changes to first
+// Applies a small change of the accelerometer's delay. The prior of the samples before the window changes to first
 // order: rate_stream.md (R107).
 void RateStream::refine_delay(State& state) const {
   RateStreamDevice& device = state.device.front();

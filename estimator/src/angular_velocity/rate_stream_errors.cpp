@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // RateStream treats the sensor errors as consider parameters (Schmidt, 1966). RateStream sums the information about
-// sensor errors and adds their uncertainty to the covariances of the rates.
+// sensor errors, and adds their uncertainty to the covariances of the rates.
 #include <algorithm>
 #include <cmath>
 
@@ -12,12 +12,12 @@ namespace {
 
 using Eigen::Matrix3d;
 
-// Time between two estimates of the sensor errors. Each estimate of the sensor errors solves a system of 29 unknowns,
-// which costs more than a step of the stream.
+// Time between two estimates of the sensor errors. Each estimate solves a system of 29 unknowns, which costs more than
+// a step of the stream.
 constexpr TimeNs kUpdatePeriod_ns = 50'000'000;
 
-// Returns the part of a rate's covariance that uncertain sensor errors cause, limited to the largest rate:
-// rate_smoother.md (R44).
+// Returns the covariance of a rate due to uncertain sensor errors: rate_smoother.md (R44). The trace of this covariance
+// is limited to rate_max_rad_s^2.
 Matrix3d considered(const arrow::ErrorMatrix& moved, const SensorErrors::Matrix& covariance, double rate_max_rad_s) {
   const Eigen::Matrix<double, 3, SensorErrors::kSize> rates = moved.topRows<3>(),
                                                       spread = rates.lazyProduct(covariance);
@@ -41,7 +41,7 @@ void RateStream::store_errors(const arrow::Block& block, arrow::ErrorMatrix& err
   device.evidence.gradient.noalias() += errors.transpose().lazyProduct(block.gradient);
 }
 
-// Deletes the prior from samples that left the window, but keeps the estimated calibration.
+// Deletes the prior of the samples before the window, but keeps the estimated calibration.
 void RateStream::reset_prior(State& state) const {
   state.prior = {};
   state.prior_corner = {};
@@ -70,7 +70,7 @@ KnownSensorErrors RateStream::sensor_errors(const State& state) const {
 }
 
 // Computes the derivatives of the estimated rates with respect to the sensor errors: rate_stream.md (R101). The caller
-// must have eliminated the blocks of the window with the current estimates and calibration.
+// must have factorised the window with the current estimates and calibration.
 void RateStream::add_sensor_error_covariance(const arrow::BorderVector& rig_step, State& state) const {
   RateStreamDevice& device = state.device.front();
   const std::size_t count = state.window.size();
@@ -105,7 +105,7 @@ void RateStream::add_sensor_error_covariance(const arrow::BorderVector& rig_step
   RateStreamDelay& delay = device.delay;
   if (delay.found) {
     if (const TriadDelay& guess = delay.guess; guess.sigma_s > 0.0) {
-      // The delay from impacts has full weight, so this division cancels kEvidenceWeight.
+      // The delay from impacts has full weight, so this division cancels the factor kEvidenceWeight.
       const double information = 1.0 / (DeviceUncertainty::kEvidenceWeight * guess.sigma_s * guess.sigma_s);
       window_evidence.information(SensorErrors::kDelay, SensorErrors::kDelay) += information;
       window_evidence.gradient[SensorErrors::kDelay] += information * (guess.delay_s - delay.applied_delay_s);
@@ -116,7 +116,7 @@ void RateStream::add_sensor_error_covariance(const arrow::BorderVector& rig_step
   device_.update(window_evidence, posterior_work, device.posterior, delay.found);
 }
 
-// Returns the part of a rate's covariance that sensor errors, and a delay common to gyro and accelerometer, cause.
+// Returns the covariance of a rate due to sensor errors and due to a delay that gyro and accelerometer have in common.
 Matrix3d RateStream::device_covariance(std::size_t k, const State& state) const {
   const Knot& knot = state.window[k];
   if (!moves(knot)) return Matrix3d::Zero();

@@ -16,11 +16,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-// `kSlopeSigmasMax` limits the errors of a plane's cross-axis sensitivities, in standard deviations. A tilted
-// saturation plane needs at least `kPlateauReadingsMin` readings within kNearRailRatio of the axis' largest reading. A
-// rounded maximum of n readings has an extrapolated height of at most (n/(n - 1))^2 <= 2.25 times the measured height.
-// If saturation cuts off a motion, the extrapolated height exceeds `kHeightRatioMin` times the measured height. The
-// extrapolated height also exceeds `kHeightNoiseSigmas` standard deviations of the noise.
+// The cross-axis sensitivities of a saturation plane may be wrong by `kSlopeSigmasMax` standard deviations. A suspect
+// run has at least `kPlateauReadingsMin` readings within kNearRailRatio of the axis' largest reading. The slopes at
+// both ends of a run predict the height of its maximum. For a rounded maximum of n readings, the predicted height is at
+// most (n/(n - 1))^2 <= 2.25 times the measured height. A run counts as cut off by saturation if the ratio exceeds
+// `kHeightRatioMin` and the predicted height exceeds `kHeightNoiseSigmas` standard deviations of the noise.
 constexpr double kSlopeSigmasMax = 3.0, kHeightRatioMin = 4.0, kHeightNoiseSigmas = 5.0;
 constexpr std::ptrdiff_t kPlateauReadingsMin = 3;
 
@@ -28,16 +28,16 @@ constexpr std::ptrdiff_t kPlateauReadingsMin = 3;
 // has a difference of 3 %.
 constexpr double kLevelDifferenceMax = 0.05;
 
-// Returns whether the largest reading of a sensing element may be its saturation level. The criterion is the distance
-// to the saturation levels of the other sensing elements.
+// Returns whether the largest reading of a sensing element is close to the saturation levels of the other sensing
+// elements. The largest reading may then be the element's saturation level.
 bool is_near_other_rails(const RailPlanes& planes, double peak_rad_s) {
   return std::all_of(planes.element.begin(), planes.element.end(), [&](const auto& element) {
     return !element || peak_rad_s >= (1.0 - kLevelDifferenceMax) * element->distance_rad_s;
   });
 }
 
-// Returns the first sample of the reading that precedes the reading of sample k. Returns nothing if the first sample of
-// the preceding reading is outside the window.
+// Returns the first sample of the reading before the reading of sample k. Returns nothing if the reading begins before
+// the window.
 std::optional<std::size_t> reading_before(std::size_t k, const std::vector<RateStream::Knot>& window) {
   while (k > 0 && window[k].repeats) --k;
   if (k == 0) return std::nullopt;
@@ -46,8 +46,8 @@ std::optional<std::size_t> reading_before(std::size_t k, const std::vector<RateS
   return k;
 }
 
-// Returns the first sample of the reading that follows the reading of sample k. If no new reading has arrived, the
-// result is the window's size.
+// Returns the first sample of the reading after the reading of sample k. Returns the window's size if no new reading
+// has arrived.
 std::size_t reading_after(std::size_t k, const std::vector<RateStream::Knot>& window) {
   const std::size_t size = window.size();
   if (k >= size) return size;
@@ -62,8 +62,8 @@ struct Beside {
   const ImuSample *before = nullptr, *after = nullptr;
 };
 
-// Returns the samples with the gyro readings before and after the reading of sample k. The result is the same for all
-// samples that repeat one reading.
+// Returns the samples with the gyro readings before and after the reading of sample k. All samples that repeat a
+// reading have the same result.
 Beside neighbour_readings(std::size_t k, const RateStream::State& state) {
   const std::optional<std::size_t> before = reading_before(k, state.window);
   const std::size_t after = reading_after(k, state.window);
@@ -89,8 +89,8 @@ void RateStream::reclassify_window(State& state) const {
   for (std::size_t k = 0; force_shift(state) != 0 && k < state.window.size(); ++k) pair_force(k, state);
 }
 
-// Classifies samples of the window again with the current saturation levels. The classification starts one reading
-// earlier, because it depends on neighbouring readings. A newly clipped sample gets a new initial rate.
+// Classifies samples of the window with the current saturation levels. The classification starts one reading before
+// `changed`, because it depends on neighbouring readings. A newly clipped sample gets a new initial rate.
 void RateStream::classify_from(std::size_t changed, State& state) const {
   const std::size_t first = reading_before(changed, state.window).value_or(0);
   const SaturationLevels& rails = state.rails.known;
@@ -129,9 +129,9 @@ void RateStream::classify_from(std::size_t changed, State& state) const {
   }
 }
 
-// Returns whether a reading may be saturated: rate_stream.md (R93). A reading at a known saturation level, within the
-// uncertainty of the saturation plane, may be saturated. If the level is unknown, the axis' largest reading so far must
-// be close to the levels of the other sensing elements.
+// Returns whether a reading may be saturated: rate_stream.md (R93). If the saturation plane is known, the reading must
+// be within the plane's uncertainty. If the plane is unknown, the axis' largest reading must be close to the levels of
+// the other sensing elements.
 bool RateStream::may_clip(const ImuSample& sample, int axis, int sign, const State& state) const {
   const Vector3d& y = sample.angular_velocity_rad_s;
   const RailPlanes planes = state.rails.known.planes_in_use();
@@ -147,8 +147,7 @@ bool RateStream::may_clip(const ImuSample& sample, int axis, int sign, const Sta
   return high && std::abs(y[axis]) >= (1.0 - kNearRailRatio) * extreme;
 }
 
-// Stores the possible saturation deficit of a single sample whose reading is near the saturation level of another
-// element.
+// Stores the possible saturation deficit of a single sample whose reading is near another element's saturation level.
 void RateStream::mark_undetected_clipping(std::size_t k, State& state) const {
   RateObservation& now = state.window[k].observation;
   now.isolated_high_axes = 0;
@@ -158,8 +157,8 @@ void RateStream::mark_undetected_clipping(std::size_t k, State& state) const {
                               now, after);
 }
 
-// Clears the marks of suspect readings in the window if a larger reading has arrived, or if the saturation level is now
-// known.
+// Removes suspect marks from samples of the window that a larger reading or a newly detected saturation level has made
+// obsolete.
 void RateStream::clear_suspects(State& state) const {
   for (std::size_t k = 0; k < state.window.size(); ++k) {
     if (state.window[k].observation.possibly_saturated_axes() == 0) continue;
@@ -168,8 +167,7 @@ void RateStream::clear_suspects(State& state) const {
   }
 }
 
-// Marks runs of three or more unflagged readings that may be saturated. RateStream repeats the marking for each new
-// sample.
+// Marks runs of three or more unflagged readings that may be saturated. The function is called for each new sample.
 void RateStream::mark_possible_saturation(State& state) const {
   const unsigned stood = state.window.front().observation.suspect;
   clear_suspects(state);
@@ -190,8 +188,8 @@ void RateStream::mark_possible_saturation(State& state) const {
   }
 }
 
-// Returns how steeply the readings change before or after a run of suspect readings, per sample; the larger slope
-// counts. Each slope is the smaller of two steps between readings, because an impact causes only a single step.
+// Returns the slope of the readings per sample at the ends of a suspect run: the larger of the slopes before and after
+// the run. Each slope is the smaller of two consecutive steps, because an impact causes a single large step.
 double RateStream::run_slope(int axis, std::size_t first, std::size_t last, const State& state) {
   const auto size = [&](std::size_t k) {
     return std::abs(state.window[k].observation.sample.angular_velocity_rad_s[axis]);
@@ -206,8 +204,8 @@ double RateStream::run_slope(int axis, std::size_t first, std::size_t last, cons
   return std::max({in, out, 0.0});
 }
 
-// Marks one run of suspect readings. A smooth motion that saturation cuts off would have continued with the slopes at
-// the ends of the run: rate_stream.md (R94).
+// Marks one run of suspect readings. The deficit follows from a smooth motion that continues with the slopes at the
+// ends of the run: rate_stream.md (R94).
 void RateStream::mark_suspect_run(int axis, std::size_t first, std::size_t last, State& state) const {
   const auto size = [&](std::size_t k) {
     return std::abs(state.window[k].observation.sample.angular_velocity_rad_s[axis]);
@@ -228,13 +226,13 @@ void RateStream::mark_suspect_run(int axis, std::size_t first, std::size_t last,
     if (((observation.clipping.gyro | observation.clipping.unusable_gyro) & bit) != 0) continue;
     observation.isolated_high_axes = static_cast<std::uint8_t>(observation.isolated_high_axes & ~bit);
     observation.suspect = static_cast<std::uint8_t>(observation.suspect | bit);
-    // the errors of all saturated readings of a run are correlated, so the run counts as one reading
+    // The errors of all saturated readings of a run are correlated, so the run counts as one reading.
     observation.expected_deficit_sigma_rad_s[axis] = std::hypot(noise, std::sqrt(samples) * cut);
   }
 }
 
-// Returns the increase of the gyro's reading per sample, before the newest sample. The growth is the smaller of two
-// steps, because an impact causes a single step. A constant spin after an impact is not saturation.
+// Returns the increase of the gyro's reading per sample, before the newest sample. The result is the smaller of two
+// steps, because an impact causes a single large step. A constant spin after an impact is not saturation.
 Vector3d RateStream::reading_growth(const std::vector<Knot>& window) {
   const std::optional<std::size_t> one = reading_before(window.size() - 1, window);
   const std::optional<std::size_t> two = one ? reading_before(*one, window) : std::nullopt;
@@ -248,8 +246,8 @@ Vector3d RateStream::reading_growth(const std::vector<Knot>& window) {
   return now.cwiseMin(before).cwiseMax(0.0);
 }
 
-// Stores the slope before a run of clipped readings. RateStream needs the slope after the first reading of the run has
-// left the window.
+// Stores the slope before a run of clipped readings. The saturation deficit of the run depends on this slope after the
+// first reading of the run has left the window.
 void RateStream::store_slope_before_clipping(const Knot& leaving, const Knot& next, State& state) {
   const auto hidden = [](const Knot& knot, int j) {
     return ((knot.observation.clipping.gyro | knot.observation.partly_saturated_axes()) >> j & 1) != 0;
@@ -261,8 +259,8 @@ void RateStream::store_slope_before_clipping(const Knot& leaving, const Knot& ne
   }
 }
 
-// Adds the saturation planes' information about the sensing directions of clipped elements. Each step adds this
-// information again, because the planes improve.
+// Adds the information of the saturation planes about the sensing directions of clipped elements. Each step adds the
+// information again, because the planes become more accurate.
 void RateStream::add_rails(const State& state, arrow::Corner& corner) const {
   const SaturationLevels& rails = state.rails.known;
   const RailPlanes planes = rails.planes_in_use();

@@ -8,7 +8,7 @@
 
 namespace tumble {
 
-// Returns whether a sample belongs to a flight that is long enough, within the window, to update the calibration.
+// Returns whether a sample belongs to a flight that is long enough to update the calibration.
 bool RateStream::in_long_flight(std::size_t at, const State& state) const {
   const std::vector<Knot>& window = state.window;
   const auto needed = static_cast<std::size_t>(params_.expert.flight_run_min);
@@ -20,8 +20,8 @@ bool RateStream::in_long_flight(std::size_t at, const State& state) const {
   return last - first + 1 + (first > 0 ? 0 : state.flight_run) >= needed;
 }
 
-// Returns the saturation deficit of a sample that the slopes before and after a run of clipped readings predict:
-// rate_stream.md (R99). The run also ends at the start of a flight, where the specific force determines the rate.
+// Returns the saturation deficit that the slopes before and after a run of clipped readings predict: rate_stream.md
+// (R99). The run also ends at the start of a flight, where the specific force determines the rate.
 double RateStream::deficit_from_slopes_rad_s(std::size_t at, int axis, const State& state) const {
   const std::vector<Knot>& window = state.window;
   const auto hidden = [&](std::size_t k) {
@@ -34,14 +34,14 @@ double RateStream::deficit_from_slopes_rad_s(std::size_t at, int axis, const Sta
   const bool from_flight = state.flight_run >= static_cast<std::size_t>(params_.expert.flight_run_min);
   const double before =
       static_cast<double>(at - first) + 0.5 + (first > 0 || from_flight ? 0.0 : state.entry_samples[axis]);
-  // the remaining part of an unfinished run is assumed to be at least as long as its past part
+  // An unfinished run is assumed to continue for at least as long as it has lasted.
   const double left = static_cast<double>(last - at) + 0.5,
                after = last + 1 < window.size() ? left : std::max(before, left);
   const double slope = run_slope(axis, first, last, state);
   return slope * before * after / (before + after);
 }
 
-// Returns the covariance of a clipped rate in contact, which is at least that of rate_stream.md (R98), (R99).
+// Returns the covariance of a clipped rate in contact, with the lower limits of rate_stream.md (R98), (R99).
 Eigen::Matrix3d RateStream::suspect_covariance(std::size_t at, const State& state) const {
   const Knot& knot = state.window[at];
   Eigen::Matrix3d out = knot.covariance_rad2_s2;
@@ -60,8 +60,8 @@ Eigen::Matrix3d RateStream::suspect_covariance(std::size_t at, const State& stat
   return out;
 }
 
-// Returns whether a reading that determines the rate may have been saturated for a part of its averaging window. The
-// rate depends on the reading of its sample. If the log repeats readings, the rate also depends on the neighbouring
+// Returns whether a rate depends on a reading that may have been saturated for a part of its averaging window. The rate
+// depends on the reading of its sample. If the log repeats readings, the rate also depends on the neighbouring
 // readings.
 bool RateStream::may_be_partly_saturated(std::size_t at, const State& state) const {
   const std::vector<Knot>& window = state.window;

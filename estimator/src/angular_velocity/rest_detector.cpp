@@ -27,7 +27,7 @@ bool RestDetector::observe(const ImuSample& sample, State& state, const Eigen::V
   }
   state.pending_rate_rad_s += sample.angular_velocity_rad_s;
   state.pending_force_m_s2 += sample.specific_force_m_s2;
-  // an averaged reading ends at the sample that makes its length closest to nominal
+  // An averaged reading ends at the sample that makes its length closest to params_.reading_s.
   const double half_s = 0.5 * seconds(sample.time_ns - state.last_ns);
   const bool whole = !state.started || seconds(sample.time_ns - state.last_reading_ns) >= params_.reading_s - half_s;
   state.started = true;
@@ -40,7 +40,7 @@ bool RestDetector::observe(const ImuSample& sample, State& state, const Eigen::V
                       sample.time_ns, bias_rad_s, state);
 }
 
-/// Adds an averaged reading to the current run of quiet readings and tests for rest: attitude.md (A15).
+/// Adds an averaged reading to the current run of quiet readings, and tests for rest: attitude.md (A15).
 bool RestDetector::observe_mean(const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& force_m_s2, TimeNs from_ns,
                                 TimeNs to_ns, const Eigen::Vector3d& bias_rad_s, State& state) const {
   const double step_s = seconds(to_ns - state.last_mean_ns);
@@ -64,7 +64,7 @@ bool RestDetector::observe_mean(const Eigen::Vector3d& rate_rad_s, const Eigen::
     state.rate_sum_rad_s.setZero();
     state.force_sum_m_s2.setZero();
   } else if (seconds(to_ns - state.first_ns) > params_.memory_s) {
-    // exponential weights limit the memory of the sums to one time constant
+    // Exponential weights limit the memory of the sums to one time constant.
     const double keep = 1.0 - std::min(1.0, step_s / params_.memory_s);
     state.weight *= keep;
     state.rate_sum_rad_s *= keep;
@@ -85,7 +85,7 @@ std::vector<bool> RestDetector::find(std::span<const ImuSample> samples, const E
   State state;
   for (std::size_t k = 0; k < samples.size(); ++k) {
     if (!observe(samples[k], state, bias_rad_s)) continue;
-    // all samples of the run so far are samples at rest
+    // All samples of the run so far are samples at rest.
     for (std::size_t i = k + 1; i-- > 0 && samples[i].time_ns >= state.first_ns && !rest[i];) rest[i] = true;
   }
   return rest;

@@ -18,8 +18,8 @@ std::uint8_t axes_beyond(const Eigen::Vector3d& rate, double bound) {
   return axes;
 }
 
-// Returns the squared rate |w|^2 from the component of the specific force that points from the IMU to the rotation
-// axis: saave.md (S1), (S2). The squared rate is NaN if the IMU is on the rotation axis.
+// Returns the squared rate |w|^2, computed from the component of the specific force towards the rotation axis: saave.md
+// (S1), (S2). Returns NaN if the IMU is on the rotation axis.
 double squared_rate(const Eigen::Vector3d& lever_arm, const Eigen::Vector3d& axis, const Eigen::Vector3d& force) {
   const Eigen::Vector3d to_axis = lever_arm.dot(axis) * axis - lever_arm;
   const double r = to_axis.norm();
@@ -47,15 +47,14 @@ Status Saave::step(const ImuSample& sample, State& state, Recovered& out) const 
   out.clipped_axes = axes_beyond(reading, params_.saturation_point_rad_s);
   out.accepted = true;
   if (out.clipped_axes != 0) {
-    // As in the publication, Saave recovers at most one axis, the first clipped axis in the order x, y, z: saave.md
-    // (S3).
+    // As in the publication, Saave recovers only the first clipped axis in the order x, y, z: saave.md (S3).
     int j = 0;
     while ((out.clipped_axes >> j & 1u) == 0) ++j;
     Eigen::Vector3d unclipped = reading;
     unclipped[j] = 0.0;
     const double others = unclipped.squaredNorm();
     const double squared = squared_rate(params_.lever_arm_m, state.axis, sample.specific_force_m_s2);
-    // if the IMU is on the rotation axis, `squared` is NaN and the comparison is false
+    // If the IMU is on the rotation axis, `squared` is NaN and the comparison is false.
     out.accepted = squared > others;
     if (out.accepted) {
       const double magnitude = std::max(std::sqrt(squared - others), std::abs(reading[j]));

@@ -14,11 +14,11 @@ namespace {
 
 using sample_hold::kMoving_rad_s, sample_hold::kRepeatsMin, sample_hold::kMovingMin, sample_hold::kMovingMax;
 
-// The search for the sensor's clock tests kPeriods periods with kPhases phases each. The periods differ from the mean
-// period by up to the fraction kPeriodRangeRatio. A finer search of kFineSteps steps follows around the best clock.
+// The search for the sensor's clock tests kPeriods periods with kPhases phases each. The periods are within the
+// fraction kPeriodRangeRatio of the mean period. A finer search around the best clock has kFineSteps steps.
 constexpr int kPeriods = 100, kPhases = 24, kFineSteps = 10;
 constexpr double kPeriodRangeRatio = 0.03;
-// Assumed averaging window of an accelerometer as a fraction of its period; the true fraction is unknown.
+// Assumed averaging window of an accelerometer, as a fraction of its period. The true fraction is unknown.
 constexpr double kAccelWindowRatio = 0.5;
 
 struct Clock {
@@ -27,15 +27,14 @@ struct Clock {
   double age(double sample) const { return sample - phase - period * reading(sample); }
 };
 
-// Returns the number of samples whose repetitions contradict a clock. The function stops counting at `most` + 1
-// samples.
+// Counts the samples for which a clock predicts a repetition wrongly. Stops counting at `most` + 1 samples.
 std::size_t count_misses(const Clock& clock, std::span<const std::size_t> moving, const std::vector<bool>& repeats,
                          std::size_t most) {
   std::size_t misses = 0;
   double last_at = -1.0, last = 0.0;
   for (const std::size_t k : moving) {
     const auto at = static_cast<double>(k);
-    // in continuous motion, the previous iteration evaluated the clock at the previous sample
+    // In continuous motion, the last iteration evaluated the clock at the previous sample.
     const double before = at - 1.0 == last_at ? last : clock.reading(at - 1.0);
     last = clock.reading(at);
     last_at = at;
@@ -44,18 +43,19 @@ std::size_t count_misses(const Clock& clock, std::span<const std::size_t> moving
   return misses;
 }
 
-// PhaseRun is the longest run of adjacent phases of a period that explain the most samples; phases form a circle.
+// PhaseRun is the longest run of adjacent phases with the fewest wrong predictions, for one period. Phases form a
+// circle.
 struct PhaseRun {
   std::size_t misses = 0;
   double first = 0.0;
   int count = 0;
 };
 
-// Finds the phases with which a period explains the most samples. The search stops early if more than `most` samples
-// remain unexplained.
+// Finds the phases with the fewest wrong predictions for one period. The search stops early if each phase has more than
+// `most` wrong predictions.
 PhaseRun best_phases(double period, std::span<const std::size_t> moving, const std::vector<bool>& repeats,
                      std::size_t most) {
-  // a change of the period does not change the phase at the middle of the motion
+  // A change of the period does not change the phase at the middle of the motion.
   const auto middle = static_cast<double>(moving[moving.size() / 2]);
   std::array<std::size_t, kPhases> misses;
   PhaseRun out{most + 1};
@@ -64,7 +64,7 @@ PhaseRun best_phases(double period, std::span<const std::size_t> moving, const s
     misses[p] = count_misses(clock, moving, repeats, std::min(most, out.misses));
     out.misses = std::min(out.misses, misses[p]);
   }
-  // two turns around the circle of phases also find a run that crosses phase 0
+  // Two turns around the circle of phases also find a run that crosses phase 0.
   int run = 0;
   for (int p = 0; p < 2 * kPhases; ++p) {
     run = misses[static_cast<std::size_t>(p % kPhases)] == out.misses ? std::min(run + 1, kPhases) : 0;
@@ -75,8 +75,8 @@ PhaseRun best_phases(double period, std::span<const std::size_t> moving, const s
   return out;
 }
 
-// Returns the middle one of the clocks near `first` that explain the most samples. Equally good clocks form an area in
-// period and phase. In the middle of the area of equally good clocks, the run of adjacent phases is longest.
+// Returns a clock near `first` with the fewest wrong predictions. Several equally good clocks form an area in period
+// and phase. The result is the clock in the middle of the area, where the run of adjacent phases is longest.
 Clock best_clock(const Clock& first, double reach, int periods, std::span<const std::size_t> moving,
                  const std::vector<bool>& repeats, double& found) {
   PhaseRun best{moving.size()};

@@ -17,8 +17,8 @@ using Vector = SensorErrors::Vector;
 using Matrix = SensorErrors::Matrix;
 using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
-// Size is one hypothesis about the standard deviations of the sensor errors. `share` ranges from 0 (data sheet) to 1
-// (uncalibrated); `probability` is the prior probability.
+// Size is a hypothesis about the standard deviations of the sensor errors. `share` is 0 for the data sheet, 1 for an
+// uncalibrated device; `probability` is the prior probability.
 struct Size {
   double share, probability;
 };
@@ -27,7 +27,7 @@ constexpr std::array<Size, 3> kCrossSizes = {{{0.0, 0.5}, {0.5, 0.2}, {1.0, 0.3}
 constexpr std::array<Size, 2> kGSensitivitySizes = {{{0.0, 0.6}, {1.0, 0.4}}};
 constexpr std::array<Size, 2> kDelaySizes = {{{0.0, 0.6}, {1.0, 0.4}}};
 
-// minimum prior standard deviation of a sensor error, so that each prior covariance is invertible
+// minimum prior standard deviation of a sensor error, which keeps the prior covariance invertible
 constexpr double kLeast = 1e-9;
 
 double between(double sheet, double unknown, double share) {
@@ -56,8 +56,9 @@ Vector deviations(const SensorErrorPriors& s, const Shares& shares) {
 // The readings clearly contradict the data sheet if the probability of its standard deviations is below kPlain.
 constexpr double kPlain = 0.05;
 
-// Weight of the readings' information in the covariance of the sensor errors. The weight is below 1, because errors of
-// the flight model last longer than a sample. The likelihood of a hypothesis uses the readings with full weight.
+// Factor on the readings' information for the covariance of the sensor errors. kEvidenceWeight is below 1, because
+// errors of the flight model last longer than a sample. The likelihood of a hypothesis uses the readings with full
+// weight.
 constexpr double kEvidenceWeight = 0.03;
 
 struct Hypothesis {
@@ -67,8 +68,8 @@ struct Hypothesis {
   Matrix covariance;
 };
 
-// Computes the posterior of the sensor errors, in units of the prior's standard deviations: rate_smoother.md (R40),
-// (R41), (R43). The input h is the gradient gamma plus information * errors.
+// Computes the posterior of the sensor errors: rate_smoother.md (R40), (R41), (R43). `h` is the gradient plus
+// information * errors.
 Hypothesis posterior(const Matrix& information, const Matrix& earlier_runs, const Vector& h, const Vector& deviation,
                      double log_prior) {
   constexpr int kRest = SensorErrors::kSize - SensorErrors::kGSensitivity;
@@ -82,8 +83,8 @@ Hypothesis posterior(const Matrix& information, const Matrix& earlier_runs, cons
   Vector sharpened = scaled_h;
   all.solve_vector(sharpened);
   out.log_odds = log_prior + 0.5 * scaled_h.dot(sharpened) - all.half_log_determinant();
-  // The correction of sensor errors leaves scale and misalignment unchanged, because errors of the flight model look
-  // like scale and misalignment errors.
+  // The estimated scale and misalignment errors stay zero, because errors of the flight model look like scale and
+  // misalignment errors.
   Vector mean = Vector::Zero();
   mean.tail<kRest>() = scaled_h.tail<kRest>();
   dense::Cholesky(sharp.bottomRightCorner<kRest, kRest>()).solve_vector(mean.tail<kRest>());
@@ -137,7 +138,7 @@ Vector prior_sigmas(const SensorErrorPriors& sizes, double share) {
 
 void discount_unobservable(double share, SensorErrorEvidence& evidence) {
   if (share >= 1.0) return;
-  // orthonormal directions in which the readings do not determine the sensor errors
+  // Orthonormal directions in which the readings do not determine the sensor errors.
   Eigen::Matrix<double, SensorErrors::kSize, 5> unobservable = Eigen::Matrix<double, SensorErrors::kSize, 5>::Zero();
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
@@ -145,7 +146,7 @@ void discount_unobservable(double share, SensorErrorEvidence& evidence) {
     unobservable(3 * j + k, 2 + i) = unobservable(SensorErrors::kAccel + 3 * j + k, 2 + i) = 0.5;
     unobservable(3 * k + j, 2 + i) = unobservable(SensorErrors::kAccel + 3 * k + j, 2 + i) = -0.5;
   }
-  // Multiplies the information matrix by (I - d U U') on both sides. The code uses only the few columns of U, because
+  // Multiplies the information matrix by (I - d U U') on both sides. The code uses only the five columns of U, because
   // the thread of a RateStream may have a small stack.
   Eigen::Matrix<double, 5, SensorErrors::kSize> said = unobservable.transpose().lazyProduct(evidence.information);
   evidence.information.noalias() -= (1.0 - share) * unobservable.lazyProduct(said);
@@ -188,7 +189,7 @@ SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const Sens
     if (one.shares.scale == 0.0) out.data_sheet_probability += one.log_odds;
     if (one.shares.delay == 0.0) out.synchronous_probability += one.log_odds;
   }
-  // the readings must clearly contradict the data sheet before the corrections deviate from it
+  // Corrections deviate from the data sheet only if the readings clearly contradict the data sheet.
   Vector mean = Vector::Zero();
   double kept = 0.0;
   for (const Hypothesis& one : all) {
@@ -197,7 +198,7 @@ SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const Sens
     kept += one.log_odds;
   }
   mean /= std::max(kept, 1e-300);
-  // the covariance includes the difference of each hypothesis from the mean in use: rate_smoother.md (R42)
+  // The covariance includes the difference between each hypothesis and the mean in use: rate_smoother.md (R42).
   for (const Hypothesis& one : all) {
     const Vector off = one.mean - mean;
     out.known.covariance += one.log_odds * (one.covariance + off * off.transpose());
@@ -214,8 +215,7 @@ SensorErrorEvidence calibration_evidence(const KnownSensorErrors& earlier_runs, 
   Vector values;
   Matrix vectors;
   dense::decompose(scaled, values, vectors);
-  // if the variance along a direction equals the prior variance, the earlier run contains no information about the
-  // direction
+  // The earlier run contains no information about a direction if the variance along it equals the prior variance.
   const Vector precision_ratio = values.cwiseMax(1e-12).cwiseInverse();
   const Vector of_mean = (precision_ratio.array() > 1.0).select(precision_ratio, Vector::Zero());
   const auto in_units = [&](const Vector& kept_values) -> Matrix {

@@ -15,19 +15,18 @@ namespace {
 
 using Eigen::Vector3d;
 
-// A reading above the fraction `kNearExtremeRatio` of an axis' largest reading may be saturated.
-// `StreamingClippingFinder` stores readings above the fraction `kStoreRatio` of the largest reading, and `kBeside`
-// neighbours of a segment.
+// A reading above `kNearExtremeRatio` times the axis' largest reading may be saturated. `StreamingClippingFinder`
+// stores readings above `kStoreRatio` times the largest reading, and `kBeside` neighbours on both sides.
 constexpr double kNearExtremeRatio = 0.9, kStoreRatio = 0.85;
 constexpr std::size_t kBeside = 4;
-// `StreamingClippingFinder` always stores the first and the latest readings of a run. The first readings determine the
+// `StreamingClippingFinder` always stores the latest readings, and the first readings of a run, which determine the
 // gyro's noise.
 constexpr std::size_t kLatestReadings = 48;
-// StreamingClippingFinder searches again when the number of readings near the extremes has grown by the fraction 1 /
-// kSearchGrowthDivisor, and by at least two readings.
+// StreamingClippingFinder repeats the search for saturation when the number n of readings near the extremes has grown
+// by n / kSearchGrowthDivisor, and by at least two.
 constexpr std::size_t kSearchGrowthDivisor = 8;
-// A reading below the fraction kLowReadingRatios of the lowest possible saturation level is not near a saturation
-// level. The larger fraction for an accelerometer excludes gravity.
+// A reading is far from saturation if it is below kLowReadingRatios (gyro, accelerometer) times the lowest possible
+// saturation level. The larger fraction for the accelerometer excludes gravity.
 constexpr double kLowReadingRatios[] = {0.5, 0.9};
 
 std::array<std::optional<double>, 6> rails_of(const RailDetector& axis_aligned_rails,
@@ -64,8 +63,8 @@ bool StreamingClippingFinder::is_near(const Vector3d& reading, Triad triad, cons
   return false;
 }
 
-// Stores a reading. If the memory is full, store() first removes readings far from the extremes. If the memory is still
-// full, store() removes the oldest readings, but keeps the first readings of the run.
+// Stores a reading. A full memory first drops readings far from the extremes, then the oldest readings. The first
+// readings of the run remain.
 void StreamingClippingFinder::store(const Vector3d& reading, Triad triad, Memory& memory) const {
   std::vector<Vector3d>& readings = memory.readings;
   if (readings.size() == readings_max_) {

@@ -11,20 +11,19 @@ namespace {
 // Maximum saturated fraction of an averaging window. If a larger fraction is saturated, the reading does not determine
 // the slope of the rate.
 constexpr double kSaturatedFractionMax = 0.85;
-// The standard deviation of the saturation deficit has two parts. The first part is the fraction `kDeficitSigmaRatio`
-// of the deficit. The second part is the fraction `kDepthSigmaRatio` of the distance from the saturation level, at most
-// `kDepthMax` [rad/s].
+// The variance of the saturation deficit is the sum of two squares: `kDeficitSigmaRatio` times the deficit, and
+// `kDepthSigmaRatio` times the distance from the saturation level (at most `kDepthMax` [rad/s]).
 constexpr double kDeficitSigmaRatio = 0.5, kDepthSigmaRatio = 0.25, kDepthMax = 1.0;
 
 }  // namespace
 
-// Computes the saturation deficit for a rate that crosses the saturation level with constant slope: rails.md (R69),
+// Computes the saturation deficit of a rate that crosses the saturation level with constant slope: rails.md (R69),
 // (R70).
 SubsampleSaturation subsample_saturation(double reading_rad_s, double neighbour_rad_s, double rail_rad_s,
                                          double noise_rad_s) {
   const double depth = rail_rad_s - reading_rad_s, slope = reading_rad_s - neighbour_rad_s;
-  // A mean of clipped values is exactly at the saturation level. Noise that is added before clipping lowers the mean by
-  // less than a tenth of the noise.
+  // If the whole window is saturated, the reading is at the saturation level. Noise that is added before clipping
+  // lowers this reading by less than a tenth of the noise.
   if (!(depth > 0.1 * noise_rad_s)) return {};
   // A constant rate does not cross the saturation level. Saturated readings on a slightly tilted plane may change
   // slowly.
@@ -36,7 +35,7 @@ SubsampleSaturation subsample_saturation(double reading_rad_s, double neighbour_
     share = (1.0 - root) / (1.0 + ratio);
   }
   if (share > kSaturatedFractionMax) return {};
-  // saturation deficit and its standard deviation: rails.md (R72), (R73)
+  // The saturation deficit and its standard deviation: rails.md (R72), (R73).
   const double free = 1.0 - share, lost = share * share / (free * free) * depth;
   return {true, lost,
           std::hypot(2.0 * noise_rad_s, kDeficitSigmaRatio * lost + kDepthSigmaRatio * std::min(depth, kDepthMax))};

@@ -9,8 +9,8 @@ namespace tumble {
 
 namespace {
 
-// Returns phi(z) / Phi(z), the ratio of the normal density to the normal distribution function. If phi and Phi
-// underflow, the function returns an asymptotic series.
+// Returns phi(z) / Phi(z), the ratio of the normal density to the normal distribution function. Below z = -8, where phi
+// and Phi may underflow, the result is an asymptotic series.
 double inverse_mills_ratio(double z) {
   if (z < -8.0) return -z / (1.0 - 1.0 / (z * z) + 3.0 / (z * z * z * z));
   const double density = std::exp(-0.5 * z * z) * std::numbers::inv_sqrtpi / std::numbers::sqrt2;
@@ -27,8 +27,8 @@ NormalMoments truncated_below(const NormalMoments& from, double bound, double bo
           from.variance - from.variance * from.variance * r * (z + r) / spread2};
 }
 
-// Updates the Gaussian factor (site) that approximates a lower bound: rate_smoother.md (R22), (R25). The update first
-// removes the old Gaussian factor from the marginal distribution, which gives the cavity distribution.
+// Updates the Gaussian factor (site) that approximates a lower bound: rate_smoother.md (R22), (R25). The cavity is the
+// marginal distribution without the old Gaussian factor.
 GaussianSite refined_bound(const NormalMoments& marginal, const GaussianSite& now, double bound, double bound_variance,
                            double variance_max, double share) {
   const double precision = std::max(1.0 / marginal.variance - now.precision, 1.0 / variance_max);

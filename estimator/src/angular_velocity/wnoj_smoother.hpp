@@ -11,20 +11,19 @@
 
 namespace tumble {
 
-/// WnojSmoother smooths angular velocity with a white-noise-on-jerk prior, exactly and linearly in the number of
-/// samples.
+/// WnojSmoother smooths angular velocity with a white-noise-on-jerk prior. The solution is exact; the cost is linear in
+/// the number of samples.
 ///
 /// The state at each sample (knot) consists of angle, rate and angular acceleration. The motion prior between samples
-/// is that of Tang, Yoon and Barfoot (RA-L 2019). The white angular jerk has the density `jerk_psd`. Each sample
-/// measures the rate, with a separate variance per axis. The angle is not measured, and the angle of the first sample
-/// is fixed. The angle can therefore be eliminated exactly, from the last sample backwards. After the elimination, the
-/// motion prior of (rate, acceleration) has the process noise Q = q [dt^3/3, dt^2/2; dt^2/2, dt]. Orthogonal
-/// (square-root information) elimination and back-substitution give mean and variance of the rate at every sample.
-/// Square-root elimination stays accurate even if the variances of the samples differ by many orders of magnitude.
+/// is that of Tang, Yoon and Barfoot (RA-L 2019): white angular jerk of density `jerk_psd`. Each sample measures the
+/// rate, with a separate variance per axis. No sample measures the angle, so the angle is eliminated exactly, from the
+/// last sample backwards. The motion prior of (rate, acceleration) then has the process noise Q = q [dt^3/3, dt^2/2;
+/// dt^2/2, dt]. Square-root information elimination and back-substitution give mean and variance of the rate at every
+/// sample. The square-root form stays accurate even if the variances of the samples differ by many orders of magnitude.
 ///
 /// WnojSmoother smooths the three axes independently. The neglected commutators of SO(3) would change the angular
 /// acceleration by about dt^2 |w x alpha| / 4. The published code uses the gyro's rates with the wrong sign for its
-/// convention. The sign matters only in the commutators, so WnojSmoother needs no parameter for the sign.
+/// convention, which matters only in the neglected commutators.
 class WnojSmoother {
  public:
   struct Params {

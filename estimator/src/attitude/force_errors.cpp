@@ -25,8 +25,8 @@ ForceErrors::ForceErrors(const Params& p) : params_(p) {
   require_within("gate_deviations", p.gate_sigmas, 1e-12, 1e3);
 }
 
-/// Averages the force differences between the IMUs, and their derivatives with respect to the accelerometer errors:
-/// imu_merge.md (I10), (I11).
+/// Adds the force differences between the IMUs, and their derivatives with respect to the accelerometer errors, to
+/// averages: imu_merge.md (I10), (I11).
 void ForceErrors::calibrate(std::span<const Eigen::Vector3d> forces, const Eigen::Vector3d& rate,
                             const Eigen::Vector3d& acceleration, double dt_s, State& state) const {
   const auto count = static_cast<std::size_t>(params_.count);
@@ -58,7 +58,7 @@ void ForceErrors::calibrate(std::span<const Eigen::Vector3d> forces, const Eigen
   if (state.span_s >= kSpan_s - 0.5 * dt_s) update(state);
 }
 
-/// Updates the estimated errors of the accelerometers by the averaged force differences: imu_merge.md (I11).
+/// Updates the estimated errors of the accelerometers with the averaged force differences: imu_merge.md (I11).
 void ForceErrors::update(State& state) const {
   const double share = 1.0 / params_.count;
   const double samples = state.samples;
@@ -84,7 +84,7 @@ void ForceErrors::update(State& state) const {
       PHt.head(used).noalias() = P * row.head(used);
       const double s = row.dot(PHt) + variance;
       const double innovation = state.difference_m_s2(axis, k) / samples - row.dot(state.x);
-      // an impact within the samples causes a large innovation
+      // An impact within the averaged samples causes a large innovation.
       if (squared(innovation) > squared(params_.gate_sigmas) * s) continue;
       state.x += PHt * (innovation / s);
       P.noalias() -= PHt.head(used) * (PHt.head(used) / s).transpose();

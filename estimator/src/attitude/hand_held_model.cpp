@@ -16,16 +16,16 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using so3::hat;
 
-// derivative of a residual with respect to rate and angular acceleration
+// Derivative of a residual with respect to rate and angular acceleration.
 using GyroRow = Eigen::Matrix<double, 1, 6>;
-// derivative of a residual with respect to the calibration constants
+// Derivative of a residual with respect to the calibration constants.
 using BorderRow = Eigen::Matrix<double, 1, kBorderSize>;
-// derivative with respect to attitude, rate, and both accelerations
+// Derivative of the force residual with respect to attitude, rate, angular acceleration and hand acceleration.
 using ForceState = Eigen::Matrix<double, 3, 12>;
 using ForceBorder = Eigen::Matrix<double, 3, kBorderSize>;
 
-// Returns phi(u)/Phi(u), the slope of log Phi(u) for the normal distribution: carried.md (C14). In the tail, phi and
-// Phi underflow, so an asymptotic series gives the result.
+// Returns phi(u)/Phi(u), the slope of log Phi(u) for the normal distribution: carried.md (C14). Below u = -12, where
+// phi and Phi may underflow, the result is an asymptotic series.
 double hazard(double u) {
   if (u < -12.0) return -u - 1.0 / u * (1.0 - 2.0 / (u * u));
   const double density = std::exp(-0.5 * u * u) / std::sqrt(2.0 * std::numbers::pi);
@@ -47,8 +47,8 @@ void add_gyro_row(const GyroRow& state, const BorderRow& border, double weight, 
   corner.gradient.noalias() -= slope * border.transpose();
 }
 
-// GyroRows contains derivatives of one sensing element's rate with respect to the errors of a node's state. `value` is
-// the derivative of one sensing element's rate, and `slope` that of its angular acceleration.
+// GyroRows contains derivatives of one sensing element: of its rate with respect to a node's state (`value`) and the
+// constants (`border`), and of its angular acceleration with respect to the state (`slope`).
 struct GyroRows {
   GyroRow value = GyroRow::Zero(), slope = GyroRow::Zero();
   BorderRow border = BorderRow::Zero();
@@ -67,8 +67,8 @@ GyroRows predict_gyro(const Eigen::RowVector3d& m, const Node& node, const Const
   return rows;
 }
 
-// Sums the difference between estimated rate and reading over the clipped and unusable sensing elements, except element
-// `except`. For a clipped sensing element, this difference is the saturation deficit.
+// Sums |estimated rate - reading| over the clipped and unusable sensing elements, without element `except`. For a
+// clipped sensing element, this difference is the saturation deficit.
 double deficit(const NodeReadings& readings, const std::array<GyroRows, 3>& rows, int except) {
   double sum = 0.0;
   for (int i = 0; i < 3; ++i) {
@@ -82,8 +82,8 @@ double deficit(const NodeReadings& readings, const std::array<GyroRows, 3>& rows
   return sum;
 }
 
-// Adds the unclipped readings of a sensing element near a node as two independent measurements: the rate at the mean
-// time, and its slope, carried.md (C13).
+// Adds the unclipped readings of a sensing element near a node. The unclipped readings form two independent
+// measurements, the rate at the mean time and the slope of the rate: carried.md (C13).
 double add_unclipped_readings(const ElementSums& e, const GyroRows& rows, double information, System::Block& block,
                               System::Corner& corner) {
   const double mean_t = e.time_sum_s / e.count;
@@ -102,7 +102,7 @@ double add_unclipped_readings(const ElementSums& e, const GyroRows& rows, double
   return cost;
 }
 
-// Adds the lower bound of the rate that a saturated sensing element provides: carried.md (C14).
+// Adds a saturated reading as lower bound of the rate: carried.md (C14).
 double add_bound(const ElementSums& e, const GyroRows& rows, double sigma, double share, System::Block& block,
                  System::Corner& corner) {
   const GyroRow row = rows.value + e.clipped_time_s * rows.slope;
@@ -112,8 +112,8 @@ double add_bound(const ElementSums& e, const GyroRows& rows, double sigma, doubl
   return minus_two_log_phi(u);
 }
 
-// Adds a measurement with information (inverse variance) `w` that three states are zero. `i` is the index of the first
-// state, and `value` contains the current values.
+// Adds a prior with mean zero and information (inverse variance) `w` for three states. `i` is the index of the first
+// state; `value` contains the current states.
 double add_zero_prior(const Vector3d& value, double w, int i, System::Block& block) {
   block.diagonal.diagonal().segment<3>(i).array() += w;
   block.gradient.segment<3>(i) -= w * value;
@@ -142,7 +142,7 @@ double add_motion_factor(const Eigen::Matrix<double, 2 * N, 2 * N>& information,
 
 }  // namespace
 
-// Adds a step of the solver to the motion state of the node: carried.md (C1).
+// Adds a solver step to the motion state of the node: carried.md (C1).
 void Node::move(const System::StateVector& step) {
   q_WI = (q_WI * so3::exp(step.segment<3>(kPhi))).normalized();
   w_WI_I_rad_s += step.segment<3>(kRate);
@@ -169,8 +169,8 @@ double add_gyro(const NodeReadings& readings, const Matrix3d& rows, const Readin
     const ElementSums& e = readings.gyro[static_cast<std::size_t>(i)];
     const GyroRows& element = elements[static_cast<std::size_t>(i)];
     if (e.count > 0.0) {
-      // All readings of a node share one tilt error of the saturation plane. Averaging over the readings does not
-      // reduce the tilt error.
+      // All readings of a node share the tilt error of the saturation plane, so averaging the readings does not reduce
+      // the tilt error.
       const double tilt = noise.deficit_error_ratio * deficit(readings, elements, i);
       cost += add_unclipped_readings(
           e, element,
@@ -252,18 +252,17 @@ Vector3d turned(const Node& from, const Node& to, double h) {
 Motion::Motion(const Params& params) : params_(params) {
   const double h = params.step_s;
   const double q = params.jerk_rad_s3_sqrts * params.jerk_rad_s3_sqrts;
-  // Q is the covariance that white jerk adds to rate and angular acceleration from one node to the next: carried.md
-  // (C2).
+  // Covariance that white jerk adds to rate and angular acceleration between two nodes: carried.md (C2).
   Eigen::Matrix2d Q;
   Q << h * h * h / 3.0, h * h / 2.0, h * h / 2.0, h;
   Eigen::Matrix<double, 2, 4> J;
   J << -1.0, -h, 1.0, 0.0, 0.0, -1.0, 0.0, 1.0;
   jerk_ = J.transpose() * (q * Q).inverse() * J;
-  // Even if rate and angular acceleration are known at both ends of a step, the rotation angle between them has this
-  // variance: carried.md (C4).
+  // The rotation angle between two nodes has this variance even if rate and angular acceleration of both nodes are
+  // known: carried.md (C4).
   phi_variance_ = q * std::pow(h, 5) / 720.0 + 1e-12;
 
-  // white noise drives the acceleration of the hand-held point of the body: carried.md (C6), (C7), (C8)
+  // White noise drives the acceleration of the hand-held point of the body: carried.md (C6), (C7), (C8).
   const double decay = std::exp(-h / params.hand_tau_s);
   const double density = (1.0 - decay * decay) * params.hand_sigma_m_s2 * params.hand_sigma_m_s2 / h;
   Eigen::Matrix<double, 1, 6> row;
@@ -317,7 +316,7 @@ double Motion::add_step(const Node& from, const Node& to, double hand, System::B
   return cost;
 }
 
-// Adds the weak priors that keep velocity and position of the held point close to zero: carried.md (C9).
+// Adds the weak priors that keep velocity and position of the hand-held point close to zero: carried.md (C9).
 double Motion::add_bounds(const Node& node, System::Block& block) const {
   const double velocity = params_.velocity_m_s * params_.velocity_m_s * params_.velocity_tau_s;
   const double position = params_.position_m * params_.position_m * params_.position_tau_s;

@@ -7,8 +7,8 @@ namespace tumble {
 
 namespace {
 
-/// Returns the sensing directions of the gyro. For an element without a known saturation plane, the direction is its
-/// output axis.
+/// Returns the sensing directions of the gyro. An element without a known saturation plane is assumed to be parallel to
+/// its output axis.
 Eigen::Matrix3d rows_of(const RailPlanes& planes) {
   Eigen::Matrix3d out = Eigen::Matrix3d::Identity();
   for (int j = 0; j < 3; ++j) {
@@ -44,7 +44,7 @@ Status HandHeldPipeline::push(const ImuSample& sample, State& state, std::option
   if (!status.ok()) return status;
   state.repeat_state = repeat_state;
   state.levels_changed = clipping_finder_.observe(sample, state.rails);
-  // this call of classify() updates the hysteresis of the clipped axes
+  // classify() updates the hysteresis of the clipped axes.
   clipping_finder_.axis_aligned_rails().classify(sample, state.rails.known.axis_aligned_rails);
   return status;
 }

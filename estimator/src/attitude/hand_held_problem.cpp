@@ -11,11 +11,11 @@ using Eigen::Vector3d;
 
 namespace {
 
-// largest change of an attitude in one step; beyond it, the linearisation is invalid
+// largest change of an attitude in one step, within which the linearisation is valid
 constexpr double kRotationMax_rad = 0.8;
-constexpr double kConvergenceTolerance = 1e-3;  // convergence limit of attitudes [rad] and, times ten, of rates [rad/s]
+constexpr double kConvergenceTolerance = 1e-3;  // attitudes [rad]; ten times for rates [rad/s]
 constexpr int kFirstAdaptIteration = 3;         // iterations before the hand's acceleration density is estimated
-// after this many iterations, the estimated density remains constant, for convergence
+// The estimated density remains constant after this many iterations, which ensures convergence.
 constexpr int kLastAdaptIteration = 8;
 constexpr double kHandAveraging_s = 0.25;  // averaging time of the hand's acceleration
 constexpr int kHalvings = 4;               // maximum number of times that a step is halved if the cost increases
@@ -52,9 +52,9 @@ ReadingNoise reading_noise(const HandHeldSmoother::Params& p, double period_s) {
 
 namespace {
 
-// Returns the reading noise for computing covariances. For covariances, a lower bound does not limit how far the rate
-// exceeds the bound. The mean of the rate over a window P differs from the rate at the window's centre. For white jerk
-// of density q, the difference between mean and centre has the variance q P^3/320: carried.md (C26).
+// Returns the reading noise for covariances. Lower bounds of the rate do not reduce a covariance. The mean rate over a
+// window P differs from the rate at the window's centre. For white jerk of density q, the variance of the difference is
+// q P^3/320: carried.md (C26).
 ReadingNoise stated_noise(const HandHeldSmoother::Params& params, ReadingNoise noise, double period_s) {
   noise.bound = 0.0;
   noise.window_rate_sigma_rad_s = params.jerk_rad_s3_sqrts * std::sqrt(period_s * period_s * period_s / 320.0);
@@ -143,7 +143,7 @@ bool Problem::eliminate(System::BorderVector& step) {
 // Makes one Gauss-Newton step: carried.md (C19).
 bool Problem::step(double& largest) {
   if (!eliminate(border_step_)) return false;
-  // the solver stores the steps in place of the gradients
+  // The steps replace the gradients in the memory of the solver.
   steps_.resize(blocks_.size());
   double turn = 0.0;
   largest = 0.0;
@@ -162,14 +162,13 @@ bool Problem::step(double& largest) {
   return true;
 }
 
-// Changes nodes and constants by the fraction `share` of the last Gauss-Newton step.
 void Problem::go(double share) {
   for (std::size_t i = 0; i < nodes_.size(); ++i) nodes_[i].move(share * steps_[i]);
   constants_.move(share * border_step_);
 }
 
-// Adapts the process noise of the hand's acceleration to the estimated acceleration around each node, with a lower
-// limit: carried.md (C10).
+// Adapts the process noise of the hand's acceleration around each node to the estimated acceleration there: carried.md
+// (C10).
 void Problem::adapt_process_noise() {
   const std::size_t count = nodes_.size();
   const double assumed = 3.0 * params_.hand_sigma_m_s2 * params_.hand_sigma_m_s2;
@@ -206,13 +205,13 @@ Status Problem::solve(HandHeldSmoother::Report& report) {
     before = Iterate{nodes_, constants_, report.cost};
     double largest = 0.0;
     if (!step(largest))
-      return {kLost, "iteration of the smoother for hand-held motion", k + 1.0, static_cast<double>(k)};
+      return {kLost, "iteration in which the smoother for hand-held motion failed", k + 1.0, static_cast<double>(k)};
     report.iterations = k + 1;
     report.converged = largest < kConvergenceTolerance;
     if (report.converged && k > kFirstAdaptIteration) break;
   }
   if (before && !report.converged) {
-    // cost after the last Gauss-Newton step
+    // The last Gauss-Newton step may have increased the cost.
     report.cost = linearise();
     (void)halve_step_until_decrease(*before, report.cost);
   }
@@ -221,8 +220,8 @@ Status Problem::solve(HandHeldSmoother::Report& report) {
   return {};
 }
 
-// Tries shorter Gauss-Newton steps if the last step increased the cost. If no shorter step decreases the cost, the
-// function restores the nodes, linearises again, and returns false.
+// Halves the last Gauss-Newton step if it increased the cost. If no shorter step decreases the cost, the function
+// restores the nodes, linearises again, and returns false.
 bool Problem::halve_step_until_decrease(const Iterate& before, double& cost) {
   const auto cost_decreases = [&] { return cost < before.cost + kCostRiseMax; };
   for (int k = 0; k < kHalvings && !cost_decreases(); ++k) {
@@ -238,8 +237,8 @@ bool Problem::halve_step_until_decrease(const Iterate& before, double& cost) {
   return false;
 }
 
-// Computes the covariances of the nodes, carried.md (C21), (C22), with the inflated jerk density (C23). For the
-// covariances, a lower bound does not limit how far a rate exceeds the bound.
+// Computes the covariances of the nodes, carried.md (C21), (C22), with the inflated jerk density (C23). Lower bounds of
+// the rate do not reduce the covariances.
 Status Problem::covariances(HandHeldSmoother::Report& report) {
   for (std::size_t i = 0; i < jerk_.size(); ++i)
     jerk_[i] = std::max(params_.expert.jerk_inflation, measured_jerk_[i] / params_.jerk_rad_s3_sqrts);
@@ -248,7 +247,8 @@ Status Problem::covariances(HandHeldSmoother::Report& report) {
   noise_ = assumed;
   std::fill(jerk_.begin(), jerk_.end(), 1.0);
   System::BorderVector unused;
-  if (!eliminate(unused)) return {kLost, "covariance of the smoother for hand-held motion", report.cost, 0.0};
+  if (!eliminate(unused))
+    return {kLost, "cost when the covariance of the smoother for hand-held motion failed", report.cost, 0.0};
   report.constants_covariance = constants_covariance_;
   covariances_.resize(nodes_.size());
   System::Conditional here, next;
@@ -262,8 +262,8 @@ Status Problem::covariances(HandHeldSmoother::Report& report) {
   return {};
 }
 
-// Compares the mean acceleration of the hand over windows with its motion model: carried.md (C30). The model is a
-// random process with standard deviation s and correlation time tau. The mean of this process over a window T has the
+// Compares the hand's mean acceleration over windows with its motion model: carried.md (C30). The model is a random
+// process with standard deviation s and correlation time tau. The mean of the random process over a window T has the
 // variance s^2 2 tau/T (1 - tau/T (1 - exp(-T/tau))).
 double Problem::hand_acceleration_ratio() const {
   const auto window = static_cast<std::size_t>(std::max(1.0, kHandAveraging_s / params_.expert.node_s));

@@ -13,17 +13,17 @@ namespace tumble::hand_held {
 /// Returns the parameters of the motion model. `jerk` multiplies the root density of the angular jerk.
 Motion::Params motion_params(const HandHeldSmoother::Params& params, double jerk = 1.0);
 ReadingNoise reading_noise(const HandHeldSmoother::Params& params, double period_s);
-/// Adds to a block the measurements of one node: gyro, specific force, weak priors of velocity and position, and rest.
+/// Adds the measurements of one node to its block: gyro, specific force, weak priors of velocity and position, and
+/// rest.
 double add_node(const NodeReadings& readings, const Eigen::Matrix3d& rows, const ReadingNoise& noise,
                 const Eigen::Vector3d& g_W_m_s2, const Motion& motion, const Node& node, const Constants& constants,
                 System::Block& block, System::Corner& corner);
-/// Adds the zero-mean priors of the calibration constants.
 double add_constants_prior(const HandHeldSmoother::Params& params, const Constants& constants, System::Corner& corner);
 /// Returns the difference between the states of two nodes, as a step for Node::move.
 System::StateVector moved(const Node& from, const Node& to);
 
-/// Message contains the prior on a node from all earlier or all later nodes, as a quadratic function about its current
-/// state.
+/// Message is a prior on a node that summarises all earlier or all later nodes. The prior is a quadratic function of
+/// the difference from the state `about`.
 struct Message {
   Node about;
   System::StateMatrix information = System::StateMatrix::Zero();
@@ -31,8 +31,8 @@ struct Message {
   double add(const Node& node, System::Block& block) const;
 };
 
-/// Part is the range of nodes [first, last] of a problem, with the priors on both ends from all other nodes, for fixed
-/// constants.
+/// Part is the range of nodes [first, last] of a problem. `before` and `after` summarise the other nodes as priors on
+/// both ends, for fixed constants.
 struct Part {
   std::size_t first = 0, last = 0;
   Message before = {}, after = {};
@@ -43,7 +43,7 @@ class Problem {
   Problem(const HandHeldSmoother::Params& params, const Eigen::Matrix3d& rows, const NodeData& collected,
           std::vector<Node> nodes);
   /// Constructs the sub-problem of `part`; condense_rest() must have set `part.before` and `part.after`. The
-  /// calibration constants, and the noise density of the held point's acceleration, are fixed copies from `whole`.
+  /// sub-problem keeps the constants and the density of the hand's acceleration of `whole`.
   Problem(const Problem& whole, const Part& part);
 
   /// Estimates all nodes and constants by Gauss-Newton iteration. Returns `diverged` if the normal equations are not
@@ -51,7 +51,7 @@ class Problem {
   Status solve(HandHeldSmoother::Report& report);
   /// Computes the covariances of all nodes at the solution.
   Status covariances(HandHeldSmoother::Report& report);
-  /// Answer is a copy of the estimated nodes and their covariances, for restore().
+  /// Answer is a copy of nodes, constants and covariances, for restore().
   struct Answer {
     std::vector<Node> nodes;
     Constants constants;
@@ -77,7 +77,7 @@ class Problem {
   const Eigen::Vector3d& gravity_W_m_s2() const { return g_W_m_s2_; }
   const NodeReadings& readings(std::size_t node) const { return readings_[node]; }
   std::span<const Node> nodes() const { return nodes_; }
-  /// Replaces the nodes from index `first` on by other initial values.
+  /// Replaces the nodes from index `first` by `nodes`.
   void place(std::size_t first, std::span<const Node> nodes);
   void widen(std::size_t node, const Eigen::Matrix<double, 9, 9>& by) { covariances_[node] += by; }
   /// Returns the joint covariance of attitude error (sensor axes), rate and angular acceleration.
@@ -102,16 +102,16 @@ class Problem {
   HandHeldSmoother::Params params_;
   Eigen::Matrix3d rows_;
   std::span<const NodeReadings> readings_;
-  std::span<const double> measured_jerk_;  // jerk density of each node, from NodeData
+  std::span<const double> measured_jerk_;  // jerk density near each node, from NodeData
   Motion motion_;
-  double period_s_ = 0.0;  // period of the gyro's distinct readings
+  double period_s_ = 0.0;  // period of the gyro's readings, without repetitions
   ReadingNoise noise_;
   Eigen::Vector3d g_W_m_s2_;
   std::optional<Part> part_;  // if set, this problem is a part of another problem, with fixed constants
   std::vector<Node> nodes_;
   Constants constants_;
   std::vector<double> jerk_;        // factor on the root density of the jerk, per node
-  std::vector<double> hand_;        // factor on the density of the held point's acceleration, per step between nodes
+  std::vector<double> hand_;        // factor on the density of the hand's acceleration, per step between nodes
   std::vector<double> hand_power_;  // cumulative sum of the squared multipliers
   std::vector<System::Block> blocks_;
   std::vector<System::StateVector> steps_;

@@ -45,11 +45,12 @@ double since_s(std::span<const ImuSample> samples, std::size_t from, std::size_t
   return seconds(samples[to].time_ns - samples[from].time_ns);
 }
 
-// Equal readings are repetitions of a slow sensor if a regular clock explains at least the fraction kMinClockAgreement.
+// Equal readings are repetitions of a slow sensor if a regular clock predicts at least the fraction kMinClockAgreement
+// of the equal readings.
 constexpr double kMinClockAgreement = 0.9;
-// Averaging windows longer than kLongWindow node intervals may be partly saturated. In recordings of pendulums,
-// averaging windows of 20 ms were partly saturated. In recordings of hand-held wands, averaging windows of 10 ms were
-// not partly saturated.
+// A reading may be partly saturated if its averaging window is longer than kLongWindow node intervals. In recordings of
+// pendulums, averaging windows of 20 ms were partly saturated. In recordings of hand-held wands, averaging windows of
+// 10 ms were not.
 constexpr double kLongWindow = 1.5;
 
 TimeNs nanoseconds(double s) {
@@ -90,7 +91,8 @@ void add_gyro_reading(double z, double t, int sign, ElementSums& e) {
   e.reading_time_sum += z * t;
 }
 
-/// Replaces the clipped segment [begin, end) of one sensing element by a cubic; `raw` contains all its readings.
+/// Replaces the clipped segment [begin, end) of one sensing element by a cubic. `raw` contains all readings of the
+/// element.
 void fill_segment(std::span<const ImuSample> samples, const std::vector<double>& raw, std::size_t begin,
                   std::size_t end, int sign, std::vector<double>& filled) {
   if (begin < 2 || end + 1 >= raw.size()) return;
@@ -125,13 +127,13 @@ HiddenSegment hidden_segment(std::span<const ClipSigns> signs, std::size_t eleme
     if (sign == 0 || (sign != ClipSigns::kMissing && out.sign != 0 && sign != out.sign)) break;
     if (sign != ClipSigns::kMissing) out.sign = sign;
   }
-  // If all readings of a segment are unusable, the rate is assumed to be above the saturation level, with the sign of
-  // the previous reading.
+  // If all readings of a segment are unusable, the rate is assumed to be beyond the saturation level. The rate then has
+  // the sign of the last reading before the segment.
   if (out.sign == 0) out.sign = raw[begin == 0 ? begin : begin - 1] < 0.0 ? -1 : 1;
   return out;
 }
 
-// Computes ends and centres of the readings' averaging windows, which are `period_s` long even after a missing reading.
+// Computes ends and centres of the averaging windows, which are `period_s` long even after a missing reading.
 Windows windows_of(std::span<const ImuSample> samples, TimeNs origin_ns, double period_s) {
   Windows out;
   out.period_s = period_s;
@@ -154,8 +156,8 @@ void place(double node_s, std::size_t nodes, Windows& windows) {
 }
 
 // Corrects the window centres of a slow accelerometer, which averages over an unknown part of its period: carried.md
-// (C12). The corrected centre is the middle of its possible range. The returned standard deviations cover the change of
-// the force over the possible range of the centre.
+// (C12). The corrected centre is the middle of its possible range. Returns the standard deviations of the forces due to
+// the possible range of the centre.
 std::vector<double> window_force_sigmas(TimedReadings& forces, double log_period_s) {
   const std::vector<ImuSample>& samples = forces.samples;
   std::vector<double> out(samples.size(), 0.0);
@@ -169,8 +171,8 @@ std::vector<double> window_force_sigmas(TimedReadings& forces, double log_period
   return out;
 }
 
-// Corrects unsaturated readings next to clipped readings, which may be saturated for a part of their window: rails.md
-// (R69) to (R73).
+// Corrects unsaturated readings next to clipped readings, which may have been saturated for a part of their averaging
+// window: rails.md (R69) to (R73).
 void correct_partial_saturation(double noise_rad_s, const Eigen::Matrix3d& rows, GyroReadings& rates) {
   const std::size_t count = rates.samples.size();
   const auto along = [&](std::size_t k, Eigen::Index j) {
@@ -196,7 +198,8 @@ void correct_partial_saturation(double noise_rad_s, const Eigen::Matrix3d& rows,
   for (std::size_t k = 0; k < count; ++k) rates.samples[k].angular_velocity_rad_s += inverse * lost[k];
 }
 
-// Replaces recovered rates with correlated errors by equivalent readings with independent errors: carried.md (C15).
+// Replaces recovered rates, whose errors are correlated, by equivalent readings with independent errors: carried.md
+// (C15).
 void recovered_readings(const HandHeldSmoother::Params& params, const ClippedElements& clipped, GyroReadings& rates) {
   const double nodes = std::sqrt(2.0 * params.expert.readings.recovered_tau_s / params.expert.node_s);
   for (std::size_t k = 0; k < clipped.recovered_covariance_rad2_s2.size(); ++k) {
@@ -220,7 +223,7 @@ TimedReadings timed_readings(std::span<const ImuSample> samples, const ClippedEl
     }
     ImuSample own = samples[k];
     if (repeated) own.time_ns -= nanoseconds(repeated->age_s[k]);
-    // with an inaccurate clock, two readings may be in one time step
+    // If the estimated clock is inaccurate, two readings may have the same time.
     if (repeated && !out.samples.empty())
       own.time_ns = std::max(own.time_ns, out.samples.back().time_ns + nanoseconds(0.5 * period_s));
     out.samples.push_back(own);
@@ -338,7 +341,7 @@ Status start_nodes(const HandHeldSmoother::Params& params, const Eigen::Matrix3d
     const double off = std::abs(windows.centre_s[k] - static_cast<double>(i) * params.expert.node_s);
     if (off < nearest[i]) nearest[i] = off, nodes[i].q_WI = state.q_WI;
   }
-  // a sample without a reading is between two samples with readings, or after the last reading
+  // A node without readings is between two nodes with readings, or after the last one.
   std::size_t before = 0;
   for (std::size_t i = 1; i < count; ++i) {
     if (!(readings[i] > 0.0)) continue;

@@ -51,7 +51,7 @@ HandHeldStream::HandHeldStream(const Params& params)
   require_within("window_s", params.window_s, params.lag_s + 4.0 * params.body.expert.node_s, 20.0);
   nodes_max_ = static_cast<std::size_t>(std::lround(params.window_s / params.body.expert.node_s)) + 1;
   delay_ = static_cast<std::size_t>(std::lround(params.lag_s / params.period_s));
-  // The buffer has room for twice the nominal sample rate; at higher rates, the stream drops the oldest readings.
+  // The buffer has room for twice the nominal sample rate. At higher rates, the stream drops the oldest readings.
   readings_max_ = 2 * static_cast<std::size_t>(std::ceil(params.window_s / params.period_s)) + 4;
 }
 
@@ -81,7 +81,7 @@ Status HandHeldStream::check_reading(const Reading& reading, const Reading* befo
     const Status status = check_stamp_order(time_ns, before->sample.time_ns, params_.body.expert.gap_max_s);
     if (!status.ok()) return status;
   }
-  // The time difference is unsigned, because the difference of two 64-bit time stamps may overflow a signed integer.
+  // The difference of two 64-bit time stamps may overflow a signed integer, so the difference is unsigned.
   const std::uint64_t since_ns = static_cast<std::uint64_t>(time_ns) - static_cast<std::uint64_t>(start_ns);
   if (time_ns < start_ns || since_ns > static_cast<std::uint64_t>(std::numeric_limits<TimeNs>::max()))
     return {ErrorCode::time_order, "carried.start_ns", double(start_ns), double(time_ns)};
@@ -142,7 +142,7 @@ Status HandHeldStream::push(const ImuSample& sample, const ClippedElements& know
   if (begun) extend(state);
   add(latest, state);
   if (begun) predict_newest(state);
-  // While the gyro is unsaturated, the predicted nodes are already accurate. An optimisation step every few nodes then
+  // While the gyro is unsaturated, the predicted nodes are accurate. One optimisation step per kFreeNodes nodes then
   // suffices for attitude and calibration constants.
   const bool due =
       begun && (latest.node % hand_held::kFreeNodes == 0 || latest.node < kFirstNodes || has_clipped_reading(state));
@@ -171,7 +171,7 @@ void HandHeldStream::predict_newest(State& state) const {
   }
 }
 
-// Adds a sample to the window. The averaging window of a reading after missing samples has the usual length.
+// Adds a sample to the window. After missing samples, the averaging window of the next reading has the usual length.
 void HandHeldStream::append(const ImuSample& sample, const RepeatDetector::State& repeated, State& state) const {
   Reading reading;
   reading.sample = sample;
@@ -207,16 +207,15 @@ bool HandHeldStream::reclassify(const ClippedElements& known, State& state) cons
   return changed;
 }
 
-// Assigns all readings of the window to the nodes again, except for the newest reading, which push() adds.
+// Reassigns all readings of the window to the nodes. push() adds the newest reading.
 void HandHeldStream::rebuild(State& state) const {
   for (Knot& knot : state.window) knot.readings = {};
   for (const Reading& reading : std::span(state.readings).first(state.readings.size() - 1)) add(reading, state);
 }
 
-// Adds an IMU reading to the nearest nodes of the window unless the reading is a repetition. A slow sensor averages
-// over a window as long as its period. The averaging window of a slow sensor ended at an unknown time since the
-// previous sample: rate_stream.md (R95). For a slow accelerometer, the length of the averaging window is also unknown:
-// carried.md (C12).
+// Adds an IMU reading to the nearest nodes of the window. A repetition of the last reading is ignored. A slow sensor
+// averages over its period, and the averaging window ended at an unknown time since the previous sample: rate_stream.md
+// (R95). A slow accelerometer averages over an unknown part of its period: carried.md (C12).
 void HandHeldStream::add(const Reading& reading, State& state) const {
   const double node_s = params_.body.expert.node_s;
   const auto readings_at = [&](std::int64_t node) -> hand_held::NodeReadings* {
@@ -254,7 +253,7 @@ void HandHeldStream::add(const Reading& reading, State& state) const {
   if (hand_held::NodeReadings* const own = readings_at(reading.node)) own->rest = own->rest || reading.rest;
 }
 
-// Returns the noise of the readings. If the log repeats readings, the noise is that of the gyro's longer period.
+// Returns the noise of the readings. If the log repeats readings, the noise belongs to the gyro's longer period.
 hand_held::ReadingNoise HandHeldStream::adapted_noise(const State& state) const {
   const RepeatedReading& gyro = state.readings.back().gyro;
   return gyro.is_slower_than_log() ? hand_held::reading_noise(params_.body, gyro.period_samples * params_.period_s)
@@ -270,8 +269,8 @@ Node HandHeldStream::begin(const State& state) const {
   return out;
 }
 
-// Predicts a new node from the previous node. Each unsaturated sensing element provides one component of the predicted
-// rate. For clipped elements, the predicted rate is beyond the saturation level.
+// Predicts a new node from the previous node. Each unsaturated sensing element measures one component of the rate. For
+// clipped elements, the predicted rate is at or beyond the saturation level.
 void HandHeldStream::predict(const Node& before, const Eigen::Matrix3d& rows, Knot& knot) const {
   const double h = params_.body.expert.node_s;
   Node& node = knot.node;
@@ -293,13 +292,14 @@ void HandHeldStream::predict(const Node& before, const Eigen::Matrix3d& rows, Kn
   if (knot.readings.force_count > 0.0) node.a_W_m_s2 = node.q_WI * knot.readings.force_m_s2 + g_W_m_s2_;
 }
 
-// Returns the factor by which recent motion changes the density of the hand's acceleration: carried.md (C41).
+// Returns the density factor of the hand's acceleration, which follows the recent motion: carried.md (C41).
 double HandHeldStream::hand(const State& state) const {
   return std::max(params_.body.expert.hand.hand_noise_floor_ratio,
                   1.0 + params_.body.expert.hand.hand_noise_adaptation * (state.acceleration_power_ratio - 1.0));
 }
 
-// Adds the prior on the oldest node and the constants from nodes that have left the window: rate_stream.md (R91).
+// Adds the prior on the oldest node and the constants that summarises the nodes before the window: rate_stream.md
+// (R91).
 void HandHeldStream::add_prior(const State& state, System::Block& block, System::Corner& corner) const {
   if (state.first_node == 0) {
     (void)motion_.add_initial_prior(state.window.front().node, block);
@@ -315,7 +315,7 @@ void HandHeldStream::add_prior(const State& state, System::Block& block, System:
   corner.gradient += state.prior_corner.gradient - state.prior_corner.matrix * c - state.prior.border.transpose() * x;
 }
 
-// Marginalises the oldest node, carried.md (C17), in the form of rate_stream.md (R90). The noise density of the hand's
+// Marginalises the oldest node, carried.md (C17), in the form of rate_stream.md (R90). The density of the hand's
 // acceleration follows from carried.md (C41).
 void HandHeldStream::marginalise_oldest(State& state) const {
   store_oldest_rates(state);
@@ -331,7 +331,7 @@ void HandHeldStream::marginalise_oldest(State& state) const {
     state.prior = after;
     state.prior_corner = corner;
   } else {
-    // if the prior from nodes that left the window is not positive definite, the initial prior replaces it
+    // The prior of the nodes before the window is not positive definite, so the initial prior replaces it.
     state.prior = {};
     state.prior_corner = {};
     (void)motion_.add_initial_prior(next, state.prior);

@@ -17,7 +17,7 @@ using hand_held::System;
 namespace {
 
 constexpr double kUnknown_rad2_s2 = 1e6;  // variance of a rate if the equations have no solution
-// covariances use the inflated jerk density up to this time from clipped nodes
+// Covariances use the inflated jerk density if the time from a clipped node is at most kNear_s.
 constexpr double kNear_s = 0.1;
 
 std::uint8_t clipped_axes(const ClipSigns& signs) {
@@ -29,8 +29,8 @@ std::uint8_t clipped_axes(const ClipSigns& signs) {
 
 }  // namespace
 
-// Returns the rate to report at the reading with index `at`. All readings of one node share the node's covariance until
-// the next optimisation step. `factorised` is described at report_rates().
+// Returns the rate to report for reading `at`. All readings of one node share the node's covariance until the next
+// optimisation step. `factorised` is described at report_rates().
 RateState HandHeldStream::compute_report(std::size_t at, bool due, bool factorised, State& state) const {
   const Reading& reading = state.readings[at];
   if (reading.smoothed) return *reading.smoothed;
@@ -44,13 +44,13 @@ RateState HandHeldStream::compute_report(std::size_t at, bool due, bool factoris
   return rate;
 }
 
-// Returns the first unreported reading, excluding the reading that the stream is processing.
+// Returns the first reading whose rate is unreported, without the reading that push() processes.
 std::size_t HandHeldStream::first_unreported(const State& state) const {
   return state.readings.size() - std::min(state.readings.size(), delay_ + 1);
 }
 
 // Stores the current rate of the oldest node, because the node may leave the window before its rate is reported. A node
-// leaves early if samples are sparser than stated.
+// leaves early if samples are sparser than params_.period_s.
 void HandHeldStream::store_oldest_rates(State& state) const {
   const std::size_t first = first_unreported(state);
   for (std::size_t k = first; k < state.readings.size() && state.readings[k].node <= state.first_node; ++k) {
@@ -78,7 +78,7 @@ RateState HandHeldStream::to_rate(const Reading& reading, const State& state, co
   return out;
 }
 
-// Counts the clipped segment around the reading `at` in the report if the body may have made one revolution more in it:
+// Counts the clipped segment around the reading `at` in the report if its number of revolutions is ambiguous:
 // carried.md (C43).
 void HandHeldStream::count_revolutions(std::size_t at, const RateState& rate, State& state) const {
   const Reading& reading = state.readings[at];
@@ -102,9 +102,9 @@ void HandHeldStream::count_revolutions(std::size_t at, const RateState& rate, St
   }
 }
 
-// Reports the rates of the readings [first, last] with their covariances. The covariances of nodes near clipped
-// readings follow from carried.md (C23), (C42). `factorised` states that the buffer already contains the factorised
-// equations for the assumed jerk density.
+// Reports the rates of the readings [first, last] with their covariances. Near clipped readings, the covariances follow
+// from carried.md (C23), (C42). `factorised` is true if the solver has already factorised the equations for the assumed
+// jerk density.
 void HandHeldStream::report_rates(std::size_t first, std::size_t last, bool factorised, State& state,
                                   std::span<RateState> out) const {
   const auto of = [&](std::size_t k) {
@@ -117,7 +117,7 @@ void HandHeldStream::report_rates(std::size_t first, std::size_t last, bool fact
   for (std::size_t i = from; i < to; ++i) clipped = clipped || hand_held::clips(state.window[i].readings);
   System::BorderVector unused;
   hand_held::ReadingNoise noise = adapted_noise(state);
-  // a lower bound does not limit how far a rate or a force exceeds the bound: carried.md (C42)
+  // Lower bounds of rates and forces do not reduce the covariances: carried.md (C42).
   if (clipped) noise.bound = noise.force_bound = 0.0;
   const bool known = (factorised && !clipped) || factorise(clipped ? inflated_ : motion_, noise, state, unused);
   System::Conditional here, next;

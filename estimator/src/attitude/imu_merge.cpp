@@ -18,18 +18,19 @@ namespace {
 constexpr double kBiasSigma_rad_s = 0.01, kScaleSigma = 0.01;
 constexpr double kRotating_rad_s2 = 1.0;  // minimum angular acceleration for estimating a time offset
 constexpr double kCertainDeviations = 4.0;
-constexpr int kMinImusForRecovery = 3;  // minimum number of IMUs for recovering a rate from accelerometers
-constexpr double kUnsaturatedForceRatio =
-    0.8;  // fraction of the accelerometer's range up to which errors are estimated
+constexpr int kMinImusForRecovery = 3;          // minimum number of IMUs for recovering a rate from accelerometers
+constexpr double kUnsaturatedForceRatio = 0.8;  // accelerometer errors are estimated up to this fraction of the range
 constexpr int kOffset = ImuMerge::kErrorCount - 1;
-// minimum squared lever arm effect; 1 m/s^2 for a second: a bias of 0.05 m/s^2 changes the result by 0.05
+// Minimum integral of the squared lever arm force: 1 m/s^2 for 1 s. At kArmSquareMin_m2_s3, an accelerometer bias of
+// 0.05 m/s^2 changes lever_arm_agreement() by 0.05.
 constexpr double kArmSquareMin_m2_s3 = 1.0;
 constexpr double kRepeated_s = 0.03;
 constexpr double kWindowMax_s = 0.05;  // maximum window for a central difference
 
-// duration of a suspicion after an impact: impacts come in groups, and filters prolong an impact
+// An accelerometer stays suspect for kSuspect_s after an impact, because impacts come in groups, and filters prolong
+// impacts.
 constexpr double kSuspect_s = 0.04;
-// uncertainty of an angular acceleration, as a fraction of its change per sample
+// standard deviation of an angular acceleration, as a fraction of its change per sample
 constexpr double kAccelerationSigmaRatio = 0.3;
 
 }  // namespace
@@ -41,7 +42,7 @@ ForceErrors::Params ImuMerge::force_params(const Params& p) {
   return out;
 }
 
-/// Returns parameters of RateRecovery in which the IMU positions are relative to their mean position.
+/// Returns parameters of RateRecovery in which the IMU positions are relative to their mean.
 RateRecovery::Params ImuMerge::recovery_params(const Params& p) {
   RateRecovery::Params out;
   out.count = p.count;
@@ -96,7 +97,7 @@ Status ImuMerge::step(std::span<const ImuSample> samples, State& state, std::opt
   return {};
 }
 
-/// Adds the finite readings of all IMUs, with the flags of saturated axes, to the averaging window of each IMU.
+/// Adds the finite readings of all IMUs, with their saturation flags, to the averaging window of each IMU.
 void ImuMerge::accumulate_window(std::span<const ImuSample> samples, double dt_s, State& state) const {
   const double weight_s = state.samples > 0 ? dt_s : params_.window_s;
   for (std::size_t k = 0; k < samples.size(); ++k) {
@@ -177,11 +178,11 @@ ImuSample ImuMerge::merge(State& state) const {
   return merged;
 }
 
-/// Selects those unsaturated IMUs whose rate and specific force agree with the median of all IMUs: imu_merge.md (I5).
+/// Selects the unsaturated IMUs whose rate and specific force agree with the median of all IMUs: imu_merge.md (I5).
 ImuMerge::UnitMask ImuMerge::select_units(const Readings& readings, const UnitMask& present, const Vectors& rates,
                                           const Vectors& forces, double h, State& state) const {
-  // In rotation, IMUs at different positions measure different specific forces. The tolerance of the median test must
-  // therefore grow with the rotation.
+  // If the body rotates, IMUs at different positions measure different specific forces. The tolerance of the median
+  // test therefore grows with the rotation.
   const Eigen::Vector3d middle_rate = median(rates, present), middle_force = median(forces, present);
   const auto units = std::count(present.begin(), present.end(), true);
   const double rate_tolerance =
@@ -192,16 +193,16 @@ ImuMerge::UnitMask ImuMerge::select_units(const Readings& readings, const UnitMa
     const double turned = (params_.T_CI[i].translation() - p_C_m_).norm() * middle_rate.squaredNorm() * 2.0;
     const bool agrees = units < 3 || ((rates[i] - middle_rate).norm() < rate_tolerance &&
                                       (forces[i] - middle_force).norm() < params_.expert.outliers.force_m_s2 + turned);
-    // With three or more IMUs, RateRecovery uses a clipped gyro as a lower bound. The accelerometer of an IMU with a
-    // clipped gyro therefore remains in use.
+    // With three or more IMUs, RateRecovery uses a clipped gyro as a lower bound, so the accelerometer of that IMU
+    // remains in use.
     const int clipping = units < kMinImusForRecovery ? kClipAccel | kClipGyro : kClipAccel;
     used[i] = agrees && (readings[i].device_clip_flags & clipping) == 0;
   }
   const auto kept = std::count(used.begin(), used.end(), true);
-  // If the selected IMUs are a minority, ImuMerge uses all present IMUs. If a rig has one or two IMUs, ImuMerge uses
-  // only unsaturated IMUs.
+  // If the selected IMUs are a minority of three or more IMUs, ImuMerge uses all present IMUs. If a rig has one or two
+  // IMUs, ImuMerge uses all present IMUs only if none is selected.
   if (units < kMinImusForRecovery ? kept == 0 : 2 * kept <= units && kept < units) used = present;
-  const bool apart = state.windows > 0 && h > 0.0;  // true if derivatives from a previous window exist
+  const bool apart = state.windows > 0 && h > 0.0;  // derivatives from the last window exist
   if (units >= kMinImusForRecovery && apart && middle_rate.cwiseAbs().maxCoeff() < params_.gyro_range_rad_s) {
     exclude_subsample_saturated(readings, present, forces, middle_rate, h, state, used);
   }
@@ -233,8 +234,8 @@ ImuSample ImuMerge::mean_of_used(const Vectors& rates, const Vectors& forces, co
   return merged;
 }
 
-/// Returns the ratio of the measured force differences between the IMUs to the differences that the lever arms should
-/// cause: imu_merge.md (I8).
+/// Returns the ratio of the measured force differences between the IMUs to the differences that rotation and lever arms
+/// should cause: imu_merge.md (I8).
 std::optional<double> ImuMerge::lever_arm_agreement(const State& state) {
   if (state.lever_arm_effect_m2_s3 < kArmSquareMin_m2_s3) return std::nullopt;
   return state.lever_arm_correlation / state.lever_arm_effect_m2_s3;
@@ -263,7 +264,7 @@ void ImuMerge::close_windows(const UnitMask& present, const Vectors& rates, cons
     if (unit.window.readings > 0) {
       unit.last_rate_rad_s = rates[k];
       unit.last_force_m_s2 = forces[k];
-    } else {  // the IMU's last reading is outdated: use the prediction from the other IMUs
+    } else {  // the last reading is outdated: use the merged motion of the other IMUs
       const Eigen::Vector3d& rate = merged.angular_velocity_rad_s;
       unit.last_rate_rad_s = rate;
       unit.last_force_m_s2 =
@@ -279,11 +280,11 @@ void ImuMerge::close_windows(const UnitMask& present, const Vectors& rates, cons
   ++state.windows;
 }
 
-/// Excludes IMUs whose accelerometer an impact may have saturated for a part of a sample: imu_merge.md (I6). On a rigid
-/// body, the force at one IMU predicts the force at another IMU along their connecting line. The force along the
-/// connecting line does not depend on the angular acceleration. The reference is the IMU whose force agrees with the
-/// most other IMUs. The function excludes IMUs whose force disagrees with the reference. If no two IMUs agree, the
-/// function first estimates a common angular acceleration that started within the window: imu_merge.md (I7).
+/// Excludes IMUs whose accelerometer may be saturated for a part of the window because of an impact: imu_merge.md (I6).
+/// On a rigid body, the force at one IMU predicts the force at another IMU along the line between the IMUs. The force
+/// along this line does not depend on the angular acceleration. The reference is the IMU that agrees with most other
+/// IMUs. IMUs that disagree with the reference are excluded. If no two IMUs agree, the function first estimates a
+/// common angular acceleration that started within the window: imu_merge.md (I7).
 void ImuMerge::exclude_subsample_saturated(const Readings& samples, const UnitMask& present, const Vectors& forces,
                                            const Eigen::Vector3d& rate, double h, State& state, UnitMask& used) const {
   const double since_s = 0.5 * (h + state.length_s);
@@ -339,8 +340,7 @@ void ImuMerge::recover(const Readings& readings, const UnitMask& present, double
 }
 
 /// Updates bias, scale and time offset of each gyro relative to the mean of all IMUs: imu_merge.md (I3), (I8). The
-/// angular acceleration is the difference of the rates in the next and previous window, divided by the time between
-/// them.
+/// angular acceleration is the central difference of the rates in the next and previous window.
 void ImuMerge::calibrate(const Vectors& rates, State& state) const {
   const auto count = static_cast<std::size_t>(params_.count);
   Eigen::Vector3d now = Eigen::Vector3d::Zero(), mean = Eigen::Vector3d::Zero();
@@ -366,7 +366,7 @@ void ImuMerge::calibrate(const Vectors& rates, State& state) const {
     const Eigen::Vector3d from_mean_m = params_.T_CI[k].translation() - p_C_m_,
                           by_rotation = jacobian_position * from_mean_m;
     state.sign_check.add(forces[k] - mean_force, from_mean_m, mean, acceleration, state.length_s);
-    state.lever_arm_correlation += state.length_s * by_rotation.dot(forces[k]);  // the mean of all IMUs cancels
+    state.lever_arm_correlation += state.length_s * by_rotation.dot(forces[k]);  // the mean force cancels
     state.lever_arm_effect_m2_s3 += state.length_s * by_rotation.squaredNorm();
   }
   if (acceleration.norm() < kRotating_rad_s2) return;

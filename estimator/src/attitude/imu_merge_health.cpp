@@ -121,13 +121,13 @@ void ImuMerge::add_finding(const Unit& unit, const std::string& name, SensorHeal
   const double repeated_s = std::max(unit.rate_repeat.repeated_s, unit.force_repeat.repeated_s);
   if (unit.frozen)
     health.add(Kind::unit_frozen,
-               {ErrorCode::out_of_range, "time in s for which the IMU repeats one reading while the others change",
+               {ErrorCode::out_of_range, "time in s for which the IMU repeats one reading while the other IMUs change",
                 repeated_s, params_.expert.frozen.after_s},
                name, "", unit.frozen_since_ns);
   if (unit.disagrees)
     health.add(Kind::unit_disagrees,
-               {ErrorCode::out_of_range, "time in s for which the IMU disagrees with the others", unit.disagreement_s,
-                params_.expert.disagreeing.after_s},
+               {ErrorCode::out_of_range, "time in s for which the IMU disagrees with the other IMUs",
+                unit.disagreement_s, params_.expert.disagreeing.after_s},
                name, "", unit.disagrees_since_ns);
 }
 
@@ -136,10 +136,11 @@ void ImuMerge::add_findings(const std::optional<UnitSignCheck::Detected>& mislab
                             SensorHealth& health) {
   using Kind = HealthFinding::Kind;
   if (mislabelled_axes)
-    health.add(Kind::axes_or_signs,
-               {ErrorCode::out_of_range, "differences of the IMUs' forces that other axes or signs explain (share)",
-                mislabelled_axes->share, UnitSignCheck::kExplainedRatioMin},
-               "imu");
+    health.add(
+        Kind::axes_or_signs,
+        {ErrorCode::out_of_range, "share of the force differences between the IMUs that other axes or signs explain",
+         mislabelled_axes->share, UnitSignCheck::kExplainedRatioMin},
+        "imu");
   if (!lever_arm_agreement) return;
   constexpr const char* kQuantity =
       "difference between the forces of the IMUs, relative to the value predicted from rotation and lever arms";

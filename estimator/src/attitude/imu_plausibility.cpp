@@ -240,11 +240,11 @@ Status ImuPlausibility::verdict(const State& state) const {
   if (better_axis_labels(state)) {
     const double least = *best_axis_residual(state);
     return {ErrorCode::out_of_range,
-            "rotation left unexplained by other gyro axes or signs (share of that for the stated axes)",
+            "unexplained rotation of gravity with other gyro axes or signs, divided by the value with the stated axes",
             least / state.unexplained_rad2.front(), params_.expert.naming.unexplained_ratio_max};
   }
   if (const double still = force_rotation_ratio(state); still < params_.expert.turning.still_rotation_ratio) {
-    return {ErrorCode::out_of_range, "rotation of a steady force (share of the rotation measured by the gyro)", still,
+    return {ErrorCode::out_of_range, "rotation of a steady force, divided by the rotation measured by the gyro", still,
             params_.expert.turning.still_rotation_ratio};
   }
   const double slope = rotation_slope(state);

@@ -201,7 +201,7 @@ Status PivotCheck::verdict(const Found& found) const {
   const auto better = static_cast<double>(found.better_segments), worse = static_cast<double>(found.worse_segments);
   if (found.evidence > least && better >= params_.better_segments_min &&
       better >= params_.better_worse_ratio_min * worse) {
-    return {ErrorCode::out_of_range, "evidence from rotation about a pivot for other axes, signs or scale of the gyro",
+    return {ErrorCode::out_of_range, "evidence for other axes, signs or scale of the gyro, from rotation about a pivot",
             found.evidence, least};
   }
   const double off = std::abs(found.scale - 1.0);

@@ -26,14 +26,14 @@ void update(const Row& row, double innovation, double variance, RateRecovery::St
 }
 
 // Seen contains the readings of one gyro or accelerometer. If a sensing element clips, the readings are the components
-// along the sensing directions: rails.md (R52). If no sensing element clips, the readings are the components along the
-// axes of the IMU.
+// along the sensing directions, rails.md (R52); otherwise along the axes of the IMU.
 struct Seen {
   Eigen::Matrix3d rows_C;
   Eigen::Vector3d reading, slope_sigma = Eigen::Vector3d::Zero();
   std::array<bool, 3> railed{};
 
-  // Returns the saturation deficit of the clipped sensing elements if the true values are `expected`.
+  // Returns the saturation deficit of the clipped sensing elements (root of the sum of squares) for the true values
+  // `expected`.
   double hidden(const Eigen::Vector3d& expected) const {
     double sum2 = 0.0;
     for (int axis = 0; axis < 3; ++axis) {
@@ -111,8 +111,8 @@ RateRecovery::SaturatedSensors RateRecovery::find_saturated_sensors(std::span<co
 
 void RateRecovery::step(std::span<const ImuSample> units, double dt_s, State& state, ImuSample& merged) const {
   const SaturatedSensors met = find_saturated_sensors(units);
-  // Accelerometers saturate when gravity and centripetal force add up. The mean of the unsaturated accelerometers is
-  // therefore biased in a constant direction of the world.
+  // Accelerometers saturate where gravity and centripetal force add up. The mean of the unsaturated accelerometers
+  // therefore has a bias in a constant direction of the world.
   merged.device_clip_flags = met.force ? kClipAccelX | kClipAccelY | kClipAccelZ : 0;
   const bool fast = merged.angular_velocity_rad_s.cwiseAbs().maxCoeff() >= kActiveRangeRatio * params_.gyro_range_rad_s;
   if (!fast && !met.rate) {
@@ -133,12 +133,12 @@ void RateRecovery::step(std::span<const ImuSample> units, double dt_s, State& st
   } else if (met.rate) {
     merged.device_clip_flags = static_cast<std::uint8_t>(merged.device_clip_flags | kClipGyro);
   }
-  // the filter's force replaces the mean force, which depends on a possibly wrong rate
+  // The filter's force replaces the mean force, which depends on a possibly wrong rate.
   if (met.rate || met.force) merged.specific_force_m_s2 = state.x.segment<3>(kForce);
 }
 
 void RateRecovery::start(const ImuSample& merged, State& state) const {
-  // the lever arms keep their estimates when the filter restarts
+  // The lever arms keep their estimates when the filter restarts.
   state.P.topRows<kArms>().setZero();
   state.P.leftCols<kArms>().setZero();
   auto diagonal = state.P.diagonal();
@@ -153,7 +153,7 @@ void RateRecovery::start(const ImuSample& merged, State& state) const {
 /// Predicts rate, angular acceleration and specific force: imu_merge.md (I14), (I15).
 void RateRecovery::predict(double dt_s, State& state) const {
   const Eigen::Vector3d rate = state.x.segment<3>(kRate), force = state.x.segment<3>(kForce);
-  // a force that is constant in the world rotates in C
+  // A force that is constant in the world rotates in the axes of C.
   const Eigen::Matrix3d turn = so3::exp(-dt_s * rate).toRotationMatrix();
   Eigen::Matrix<double, kArms, kArms> F = Eigen::Matrix<double, kArms, kArms>::Identity();
   F.block<3, 3>(kRate, kAcceleration) = dt_s * Eigen::Matrix3d::Identity();
@@ -183,7 +183,7 @@ void RateRecovery::measure_rates(std::span<const ImuSample> units, double dt_s, 
       const double reading = seen.reading[axis];
       const double missing = reading - seen.rows_C.row(axis).dot(state.x.segment<3>(kRate));
       if (seen.railed[static_cast<std::size_t>(axis)] && missing * reading < 0.0)
-        continue;  // the predicted reading is beyond the saturation level, as it should be
+        continue;  // the predicted reading is beyond the saturation level, as required
       Row row = Row::Zero();
       row.segment<3>(kRate) = seen.rows_C.row(axis);
       const double sigma = params_.noise.rate_rad_s + params_.noise.rate_share * std::abs(reading);

@@ -8,9 +8,8 @@ namespace tumble {
 
 namespace {
 
-constexpr double kAccelerationSpan_s =
-    0.01;  // time base of the angular acceleration, equal to model_error_s of the rate model
-// the calibration is unstable if more than this fraction of the solver steps within a lag reset it
+constexpr double kAccelerationSpan_s = 0.01;  // = model_error_s of the rate model
+// The calibration is unstable if more than kResetFraction of the solver steps within a lag reset the calibration.
 constexpr double kResetFraction = 0.5;
 
 HandHeldStream::Params joined(const RegimeStream::Params& params) {
@@ -19,7 +18,7 @@ HandHeldStream::Params joined(const RegimeStream::Params& params) {
   out.lag_s = params.rate.lag_s;
   out.window_s = std::max(out.window_s, out.lag_s + 4.0 * out.body.expert.node_s);
   // HandHeldStream restarts after a gap longer than gap_max_s. The limit on gap_max_s ensures that HandHeldStream
-  // reports samples before they leave the window.
+  // reports samples before they leave its window.
   out.body.expert.gap_max_s = std::min(out.body.expert.gap_max_s, out.window_s - out.lag_s);
   return out;
 }
@@ -29,29 +28,29 @@ bool clips(const RateStream::Knot& knot) {
   return (knot.observation.unmeasured_axes() | knot.observation.partly_saturated_axes()) != 0;
 }
 
-// Returns for each axis of a sample the sign of the saturation level if the axis is clipped. Suspect readings count as
-// clipped, because they are also lower bounds of the rate.
+// Returns the sign of the saturation level for each clipped axis of a sample. Suspect readings count as clipped,
+// because they are also lower bounds of the rate.
 ClipSigns signs_of(const RateObservation& observation) {
   Clipping clipping = observation.clipping;
   clipping.gyro = static_cast<std::uint8_t>(clipping.gyro | observation.partly_saturated_axes());
   return clip_signs(observation.sample, clipping);
 }
 
-// Combines the rates of RateStream and HandHeldStream; `share` is the weight of HandHeldStream. The rate at a suspect
-// reading has the source `bounded_only`.
+// Combines the rates of RateStream and HandHeldStream. `share` is the weight of HandHeldStream. The combined rate of a
+// suspect reading has the source `bounded_only`.
 RateState mixed_rate(const RateState& rate, const RateState& hand_held, double share) {
   RateState out = mix_rate_states(rate, hand_held, share);
   out.clipped_axes = rate.clipped_axes;
-  // only RateStream detects partly saturated readings
+  // Only RateStream detects partly saturated readings.
   if (rate.source == RateSource::bounded_only && out.source == RateSource::measured) out.source = rate.source;
   return out;
 }
 
 // Returns the angular acceleration around sample k as the derivative of the rates: carried.md (C44). The derivative
-// covers kAccelerationSpan_s seconds if the window contains enough samples. The function does not use RateStream's
-// angular acceleration, because it depends on the specific force under test.
+// covers kAccelerationSpan_s seconds if the window contains enough samples. The angular acceleration of RateStream is
+// unsuitable, because RateStream uses the specific force under test.
 Eigen::Vector3d angular_acceleration(std::span<const RateStream::Knot> window, std::size_t k) {
-  // the code subtracts integer time stamps, because seconds since the epoch would lose precision
+  // Integer time stamps are subtracted, because seconds since the epoch would lose precision.
   const auto between_s = [&](std::size_t from, std::size_t to) {
     return seconds(window[to].observation.sample.time_ns - window[from].observation.sample.time_ns);
   };
@@ -93,7 +92,8 @@ Status RegimeStream::push(const ImuSample& sample, std::span<const AuxiliaryRead
     share = hand_held_weight(*out, state);
   }
   std::optional<RateState> hand_held;
-  // HandHeldStream accepts the input of RateStream unless the sensing directions do not span three dimensions
+  // HandHeldStream rejects a sample that RateStream accepted only if the sensing directions do not span three
+  // dimensions.
   if (state.probabilities.hand_held >= params_.hand_held_probability_min) {
     if (!state.hand_held_running) {
       hand_held_.restart(state.hand_held);
@@ -133,7 +133,7 @@ RegimeProbabilities RegimeStream::next(const RegimeProbabilities& before, double
                                        std::span<const RateStream::Knot> window, std::size_t k,
                                        const RigCalibration& rig, bool unstable) const {
   const RateStream::Knot& knot = window[k];
-  // With an invalid calibration, the rate was fitted to the force, and therefore agrees with the force in any motion.
+  // With an invalid calibration, the rate was fitted to the force, so both agree in any motion.
   if (unstable && knot.observation.unmeasured_axes() != 0) return before;
   RateState rate;
   rate.w_WI_I_rad_s = knot.estimate.knot.rate_rad_s;
@@ -150,8 +150,8 @@ std::size_t RegimeStream::index_of(const RateState& rate, const State& state) co
   return k;
 }
 
-// Returns whether RateStream resets its calibration repeatedly, which indicates motion without flight. The function
-// counts only resets within the lag of RateStream, because these resets affect the reported rate.
+// Returns whether RateStream resets its calibration repeatedly, which indicates motion without flight. Only resets
+// within the lag of RateStream count, because they affect the reported rate.
 bool RegimeStream::calibration_is_unstable(const State& state) const {
   const RateStream::Params& rate = params_.rate;
   return state.resets > kResetFraction * rate.lag_s / std::max(rate.period_s, rate.step_s);
@@ -172,9 +172,8 @@ void RegimeStream::update_probabilities(const RateState& rate, State& state) con
   state.sum.hand_held += state.probabilities.hand_held;
 }
 
-// Returns the weight of HandHeldStream in the reported rate: s in carried.md (C40). The weight is the smallest
-// probability of hand-held motion among nearby samples of the clipped segment around the rate. The weight is 0 outside
-// clipped segments.
+// Returns the weight of HandHeldStream in the reported rate: s in carried.md (C40). Near a clipped segment, the weight
+// is the smallest probability of hand-held motion among the segment's nearby samples. Elsewhere, the weight is 0.
 double RegimeStream::hand_held_weight(const RateState& rate, State& state) const {
   const auto near_ns = static_cast<TimeNs>(std::llround(1e9 * params_.segment_gap_max_s));
   const std::vector<RateStream::Knot>& window = state.rate.window;
@@ -192,7 +191,7 @@ double RegimeStream::hand_held_weight(const RateState& rate, State& state) const
   if (!after && !before) return 0.0;
   double out = state.near.empty() ? 1.0 : state.near.front().hand_held;
   if (out < params_.hand_held_probability_min || !before) return out;
-  // the forward pass also uses the samples in the window, whose rates are provisional
+  // The forward pass also uses the samples in the window, whose rates are provisional.
   RegimeProbabilities probabilities = state.probabilities;
   const RigCalibration rig = rate_.calibration(state.rate);
   const bool unstable = calibration_is_unstable(state);

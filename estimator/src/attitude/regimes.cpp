@@ -22,17 +22,16 @@ double log_gaussian(double squared_norm, double variance) {
   return -1.5 * std::log(kTwoPi * variance) - 0.5 * squared_norm / variance;
 }
 
-// Returns the log density of a measured force of norm n, if the true force has length `gravity` and any direction:
-// carried.md (C35). With g for gravity and variance v, the density is N(n; 0) exp(-g^2 / 2v) sinh(x) / x, where x = n g
-// / v.
+// Returns the log density of a measured force of norm n, if the true force has norm g and any direction: carried.md
+// (C35). For variance v and x = n g / v, the density is N(n; 0) exp(-g^2 / 2v) sinh(x) / x.
 double log_about_gravity(double n, double g, double variance) {
   const double x = n * g / variance;
   const double log_sinh_x = x < 1e-3 ? 0.0 : x - std::log(2.0 * x) + std::log1p(-std::exp(-2.0 * x));
   return log_gaussian(n * n + g * g, variance) + log_sinh_x;
 }
 
-// Hand-held motion is either gentle or rough: carried.md (C33). One in kRoughly samples of hand-held motion is rough,
-// with a standard deviation kRougher times as large.
+// Hand-held motion is either gentle or rough: carried.md (C33). One in kRoughly samples of hand-held motion is rough.
+// Rough motion has a force with a standard deviation kRougher times as large.
 constexpr double kRoughly = 3.0, kRougher = 5.0;
 
 double log_hand_held(double n, double g, double hand_variance, double grip_variance) {
@@ -42,9 +41,9 @@ double log_hand_held(double n, double g, double hand_variance, double grip_varia
   return larger + std::log(((kRoughly - 1.0) * std::exp(gentle - larger) + std::exp(rough - larger)) / kRoughly);
 }
 
-// `kRolls` is the prior fraction of gentle rolling among samples in contact: carried.md (C34). All other contact
-// consists of impacts with forces of any size. A single sample of gentle rolling looks like hand-held motion; the
-// samples before and after decide.
+// Contact is either gentle rolling or an impact with a force of any size: carried.md (C34). `kRolls` is the prior
+// fraction of gentle rolling. A single sample of gentle rolling looks like hand-held motion; the samples before and
+// after decide.
 constexpr double kRolls = 0.5;
 
 double log_contact(double left, double n, double most, double g, double variance) {
@@ -144,7 +143,7 @@ Status RegimeEvidence::find(std::span<const ImuSample> samples, std::span<const 
   return {};
 }
 
-// Combines two rate estimates; `share` is the probability of the second: carried.md (C39).
+// Combines two rate estimates: carried.md (C39). `share` is the probability of the second estimate.
 RateState mix_rate_states(const RateState& first, const RateState& second, double share) {
   RateState out = share > 0.5 ? second : first;
   const Vector3d apart = second.w_WI_I_rad_s - first.w_WI_I_rad_s;

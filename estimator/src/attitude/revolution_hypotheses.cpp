@@ -21,20 +21,20 @@ using Vector9 = Eigen::Matrix<double, 9, 1>;
 using Matrix9 = Eigen::Matrix<double, 9, 9>;
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kBeyondSigmas = 3.0;      // mean rate beyond the saturation level below which a segment is tested
+constexpr double kBeyondSigmas = 3.0;      // a segment is tested if its mean rate is this close to the level
 constexpr double kRevolutionCost = 100.0;  // limit of a revolution's jerk cost: ten standard deviations
 constexpr double kSurroundings_s = 0.3;    // duration before and after a segment that is solved with the segment
 constexpr double kAcceptLogOdds = 3.0;     // log odds (20 to 1) for a change; the cost excludes model errors
 constexpr int kExtraRevolutionsMax = 2;    // maximum number of revolutions more or less than in the optimised solution
-// maximum number of rounds; each round tests all segments and solves the whole problem
+// Maximum number of rounds. Each round tests all segments and solves the whole problem.
 constexpr int kRounds = 3;
 
-/// Segment is a range of nodes [first, last] in which a sensing element was saturated and had no unsaturated reading.
+/// Segment is a range of nodes [first, last] in which all readings of a sensing element are clipped or unusable.
 struct Segment {
   std::size_t element = 0, first = 0, last = 0;
 };
 
-/// Hypothesis is a solution with an assumed number of revolutions: its nodes, starting with node `from`, and its cost.
+/// Hypothesis is the solution for an assumed number of revolutions in a segment.
 struct Hypothesis {
   std::vector<Node> nodes;
   double cost = 0.0;
@@ -73,7 +73,7 @@ std::vector<Segment> suspect_segments(const Problem& problem) {
         const Eigen::Matrix3d covariance = problem.covariance(i).block<3, 3>(kRate, kRate);
         angle_rad += problem.node_s() * std::sqrt(std::max(0.0, m.dot(covariance * m.transpose())));
       }
-      // a segment at an end of the recording has no readings on its outer side that determine the number of revolutions
+      // At an end of the recording, no readings on the outer side of a segment determine the number of revolutions.
       if (segment.first == 0 || segment.last + 1 >= count) continue;
       const bool against_rail = beyond_rad_s < kBeyondSigmas * problem.rail_sigma_rad_s() * clipped &&
                                 revolution_cost(problem, segment.last + 2 - segment.first) < kRevolutionCost;
@@ -101,7 +101,7 @@ std::vector<Node> with_more_revolutions(const Problem& part, const Vector3d& axi
   const Vector3d& g_W = part.gravity_W_m_s2();
   for (std::size_t i = a; i <= b; ++i) {
     nodes[i].q_WI = (nodes[i].q_WI * so3::exp(along(i) * missed)).normalized();
-    // the specific force in sensor axes must remain unchanged
+    // The specific force in sensor axes must remain unchanged.
     const Node& before = part.nodes()[i];
     nodes[i].a_W_m_s2 = nodes[i].q_WI * (before.q_WI.conjugate() * (before.a_W_m_s2 - g_W)) + g_W;
   }
@@ -124,7 +124,7 @@ std::vector<Hypothesis> hypotheses(const Problem& whole, const Segment& segment,
     Hypothesis found{{}, problem.converge()};
     found.nodes.assign(problem.nodes().begin(), problem.nodes().end());
     if (!std::isfinite(found.cost)) return false;
-    // discards a solution with the same number of revolutions as another hypothesis
+    // Discards a solution with the same number of revolutions as another hypothesis.
     for (const Hypothesis& other : out)
       if (std::abs(angle_between(other.nodes, found.nodes, m, whole.node_s())) < kPi) return false;
     const bool likely = out.empty() || found.cost < out.front().cost + 2.0 * kLogOdds;
@@ -142,14 +142,14 @@ std::vector<Hypothesis> hypotheses(const Problem& whole, const Segment& segment,
       if (!keep(other)) break;
     }
   }
-  // removes alternatives that are improbable compared with the best solution
+  // Removes alternatives that are improbable compared with the best solution.
   std::erase_if(out, [&](const Hypothesis& each) { return each.cost > out.front().cost + 2.0 * kLogOdds; });
   return out;
 }
 
-/// TestedSegment is the result of the test of one segment. The test finds alternative solutions for the nodes of a
-/// part, from node `from` on, with the best solution first. TestedSegment also identifies the current solution, and
-/// states whether an alternative replaces it.
+/// TestedSegment is the result of the test of one segment. `found` contains the solutions for the nodes from `from` on,
+/// best solution first; `held` is the index of the current solution. `another` states whether an alternative replaces
+/// the current solution.
 struct TestedSegment {
   std::size_t from = 0;
   std::vector<Hypothesis> found;
@@ -157,7 +157,7 @@ struct TestedSegment {
   bool another = false;
 };
 
-/// Returns the probabilities of all solutions of a segment except the current solution, which has index `standing`:
+/// Returns the probabilities of all solutions of a segment, except the current solution with index `standing`:
 /// carried.md (C29).
 AlternativeSolutions alternative_probabilities(const TestedSegment& tested, std::optional<std::size_t> standing) {
   AlternativeSolutions out{tested.from, {}};
@@ -171,8 +171,8 @@ AlternativeSolutions alternative_probabilities(const TestedSegment& tested, std:
   return out;
 }
 
-/// Returns the probable alternative solutions of all segments. `taken` states whether the best solutions have already
-/// replaced the current solutions.
+/// Returns the probable alternative solutions of all segments. `taken` is true if the best solutions have replaced the
+/// current solutions.
 std::vector<AlternativeSolutions> remaining_alternatives(const std::vector<TestedSegment>& tested, bool taken) {
   std::vector<AlternativeSolutions> out;
   for (const TestedSegment& each : tested) {
@@ -200,8 +200,9 @@ std::vector<Part> with_surroundings(const Problem& problem, std::span<const Segm
   return out;
 }
 
-/// Tests the number of revolutions in each segment. The current solution remains unless another solution is clearly
-/// better. An earlier test may have ruled out the current solution (`fallen`); the best alternative then replaces it.
+/// Tests the number of revolutions in each segment. A clearly better solution replaces the current solution. In
+/// segments marked in `fallen`, an earlier test has excluded the current solution, so the best alternative replaces the
+/// current solution.
 std::vector<TestedSegment> test_segments(const Problem& problem, std::span<const Segment> segments,
                                          std::span<const Part> parts, std::vector<bool>& fallen) {
   std::vector<TestedSegment> out;
@@ -246,8 +247,8 @@ void test_revolutions(Problem& problem, HandHeldSmoother::Report& report, SolveA
   std::vector<Part> parts = with_surroundings(problem, segments);
   std::vector<AlternativeSolutions> open;
   std::vector<bool> fallen(parts.size(), false);
-  // The tests linearise the equations of the nodes outside a part. If a solution changes, another round of tests is
-  // therefore needed.
+  // The tests linearise the equations of the nodes outside a part. If a solution changes, the tests must therefore be
+  // repeated.
   for (int round = 0; round < kRounds; ++round) {
     if (!problem.condense_rest(parts)) break;
     const std::vector<TestedSegment> tested = test_segments(problem, segments, parts, fallen);
@@ -270,7 +271,7 @@ void test_revolutions(Problem& problem, HandHeldSmoother::Report& report, SolveA
     report.revolutions_corrected += static_cast<int>(taken);
   }
   report.revolutions_ambiguous = static_cast<int>(open.size());
-  // probable alternative solutions increase the covariance: carried.md (C29)
+  // Probable alternative solutions increase the covariance: carried.md (C29).
   for (const AlternativeSolutions& segment : open) {
     for (const auto& [share, nodes] : segment.others) {
       for (std::size_t i = 0; i < nodes.size(); ++i) {

@@ -12,14 +12,14 @@
 
 namespace tumble {
 
-/// RigidForces contains the specific forces of several IMUs (units) on one rigid body over a window, in body axes.
+/// RigidForces contains the mean specific forces of several IMUs (units) on one rigid body over a window, in body axes.
 /// RigidForces finds the units whose force contradicts the common motion: imu_merge.md (I6), (I7).
 struct RigidForces {
   static constexpr std::size_t kUnits = ImuMergeState::kImus;
 
   std::array<bool, kUnits> present{};
   std::array<Eigen::Vector3d, kUnits> position_m{}, force_m_s2{};
-  std::array<double, kUnits> peak_m_s2{};    ///< largest component of the IMU's single readings
+  std::array<double, kUnits> peak_m_s2{};    ///< largest component of the IMU's readings in the window
   std::array<double, kUnits> change_m_s2{};  ///< change of the force since the last window
   Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero(), acceleration_rad_s2 = Eigen::Vector3d::Zero();
   double uncertainty_rad_s2 = 0.0;  ///< standard deviation of the angular acceleration
@@ -28,7 +28,7 @@ struct RigidForces {
 
   struct AgreeingForces {
     std::size_t unit = 0;
-    int others = -1;  ///< number of IMUs that agree with the IMU
+    int others = -1;  ///< number of other IMUs that agree with `unit`
   };
 
   Eigen::Vector3d misfit(std::size_t k, std::size_t j) const {
@@ -43,7 +43,7 @@ struct RigidForces {
            e.norm() <= hidden_force_m_s2 + uncertainty_rad_s2 * d.norm();
   }
 
-  /// Returns the IMU whose force agrees with the most other IMUs. If several IMUs have equally many, the function
+  /// Returns the IMU that agrees with most other IMUs. If several IMUs agree with equally many others, the function
   /// returns the IMU whose force changed least.
   AgreeingForces most_agreed() const {
     AgreeingForces best;

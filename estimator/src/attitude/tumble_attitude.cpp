@@ -21,8 +21,8 @@ constexpr double kDisplacementSigmaStart_m = 0.1;
 constexpr double kContradicts_sigma2 = 4.0;
 constexpr int kTilt = 0, kBias = 2, kVelocity = 5, kDisplacement = 7, kHeading = 9;
 
-/// Applies a scalar Kalman update of the state with index `index`: attitude.md (A4). `innovation` is measurement minus
-/// prediction. The update leaves the variance of the heading unchanged: attitude.md (A9).
+/// Applies a scalar Kalman update to the state with index `index`: attitude.md (A4). `innovation` is measurement minus
+/// prediction. The variance of the heading remains unchanged: attitude.md (A9).
 void update(int index, double innovation, double variance, TumbleAttitude::State& state) {
   const double heading = state.covariance(kHeading, kHeading);
   const Eigen::Matrix<double, TumbleAttitude::State::kStates, 1> correction =
@@ -38,8 +38,8 @@ double tilt_variance_rad2(const TumbleAttitude::State& state) {
   return state.covariance.diagonal().segment<2>(kTilt).maxCoeff();
 }
 
-/// Returns the tilt variance that TumbleAttitude reports. During a coarse alignment, the reported variance is at least
-/// the variance at the start of the alignment.
+/// Returns the reported tilt variance. During a coarse alignment, the reported variance is at least the variance at the
+/// start of the alignment.
 double reported_tilt_rad2(const TumbleAttitude::State& state) {
   const double filtered = tilt_variance_rad2(state);
   return state.alignment.running ? std::max(filtered, state.alignment.tilt_rad2()) : filtered;
@@ -81,7 +81,7 @@ Status TumbleAttitude::step(const ImuSample& sample, const Eigen::Matrix3d& rate
       state.last_time_ns = sample.time_ns;
       return {};
     }
-    // while readings are averaged, the attitude is extrapolated from the start of the averaging interval
+    // While readings are averaged, the attitude is extrapolated from the start of the averaging interval.
     if (state.average.readings == 0) {
       state.q_processed_WI = state.q_WI;
     } else {
@@ -104,7 +104,7 @@ Status TumbleAttitude::step(const ImuSample& sample, const Eigen::Matrix3d& rate
 Eigen::Matrix3d TumbleAttitude::attitude_covariance_rad2(const State& state) {
   constexpr std::array kAttitude = {kTilt, kTilt + 1, kHeading};
   Eigen::Matrix3d covariance = state.covariance(kAttitude, kAttitude);
-  if (state.alignment.running) {  // until the alignment is complete, it must not depend on the filter's corrections
+  if (state.alignment.running) {  // an alignment must not depend on the filter's corrections
     covariance.topLeftCorner<2, 2>() = reported_tilt_rad2(state) * Eigen::Matrix2d::Identity();
     covariance.topRightCorner<2, 1>().setZero();
     covariance.bottomLeftCorner<1, 2>().setZero();
@@ -154,7 +154,7 @@ void TumbleAttitude::integrate(const ImuSample& sample, double dt_s, State& stat
   state.node_s += dt_s;
 }
 
-/// Propagates the attitude and its covariance over a gap of the readings: attitude.md (A17), (A18).
+/// Propagates the attitude and its covariance over a gap in the readings: attitude.md (A17), (A18).
 void TumbleAttitude::bridge_gap(const ImuSample& after, const Eigen::Matrix3d& rate_covariance_rad2_s2, double gap_s,
                                 State& state) const {
   if (state.average.readings > 0) process_average(state);
@@ -162,7 +162,7 @@ void TumbleAttitude::bridge_gap(const ImuSample& after, const Eigen::Matrix3d& r
   const Eigen::Vector3d from = state.rate_rad_s;
   Eigen::Vector3d to = after.angular_velocity_rad_s - state.bias_rad_s;
   if (state.at_rest) to.setZero();
-  ImuSample straight = after;  // no force but gravity: the velocity remains constant
+  ImuSample straight = after;  // without force except gravity, the velocity is constant
   straight.angular_velocity_rad_s = 0.5 * (from + to) + state.bias_rad_s;
   const Eigen::Quaterniond q_mid = state.q_WI * so3::exp(0.25 * gap_s * (from + to));
   straight.specific_force_m_s2 = q_mid.conjugate() * Eigen::Vector3d(0.0, 0.0, params_.gravity_m_s2);
@@ -178,10 +178,10 @@ void TumbleAttitude::bridge_gap(const ImuSample& after, const Eigen::Matrix3d& r
     state.covariance.diagonal().segment<2>(kVelocity).array() += squared(gap.velocity_walk_m_s_sqrts) * gap_s;
   }
   predict_node(state);
-  // A sphere that grips before the gap is assumed to roll without slip after the gap. A change of velocity during the
+  // A sphere that gripped before the gap is assumed to roll without slip after the gap. A change of velocity during the
   // gap does not indicate slip.
   if (params_.radius_m > 0.0 && !state.slipping) state.v_W_m_s = velocity_from_rotation(state);
-  // The variance of the tilt must be computed before the correction. The new coarse alignment replaces an earlier one.
+  // The tilt variance must be computed before the correction. The new coarse alignment replaces an earlier one.
   const double tilt = reported_tilt_rad2(state);
   state.alignment = {};
   correct_node(state);
@@ -199,7 +199,7 @@ void TumbleAttitude::end_node(State& state) const {
   clear_node(state);
 }
 
-/// Returns the variance of a body's velocity per axis, as expected from its earlier motion and its rotation.
+/// Returns the expected variance of a body's velocity per axis, from its earlier motion and its rotation.
 double TumbleAttitude::body_velocity_variance_m2_s2(double power_m2_s2, const State& state) const {
   if (state.at_rest) return squared(params_.expert.at_rest.velocity_sigma_m_s);
   const double assumed = squared(params_.velocity_m_sqrts) / params_.motion_tau_s;
@@ -211,11 +211,12 @@ double TumbleAttitude::body_velocity_variance_m2_s2(double power_m2_s2, const St
 void TumbleAttitude::align(const Eigen::Quaterniond& corrected, State& state) const {
   CoarseAlignment& alignment = state.alignment;
   alignment.force_W_m_s = corrected * alignment.force_W_m_s;
-  // The alignment ignores the velocity that the filter estimated since the gap, because a wrong tilt falsifies it.
+  // The alignment ignores the velocity that the filter estimated since the gap, because a wrong tilt falsifies this
+  // velocity.
   const double velocity = body_velocity_variance_m2_s2(alignment.velocity_m2_s2, state);
   const double variance = alignment.variance_rad2(velocity, params_.gravity_m_s2);
   if (variance > squared(params_.expert.gap.aligned_tilt_rad)) {
-    // after the body came to rest, the alignment restarts and uses only later data
+    // After the body came to rest, the alignment restarts and uses only later data.
     if (state.at_rest && alignment.velocity_m2_s2 > velocity) alignment.begin(velocity, alignment.tilt_rad2());
     return;
   }
@@ -225,7 +226,7 @@ void TumbleAttitude::align(const Eigen::Quaterniond& corrected, State& state) co
   alignment = {};
 }
 
-/// Restarts the filter after the coarse alignment. The restart rotates the world frame W by `levelling`, sets the tilt
+/// Restarts the filter after the coarse alignment. The function rotates the world frame W by `levelling`, sets the tilt
 /// variance to `tilt_rad2`, and resets the velocity.
 void TumbleAttitude::restart(const Eigen::Quaterniond& levelling, double tilt_rad2, double velocity_m2_s2,
                              State& state) const {
@@ -261,8 +262,7 @@ void TumbleAttitude::add_recovered(double dt_s, State& state) const {
   state.recovered_covariance_rad2_s2.setZero();
 }
 
-/// Predicts the states of the filter and their covariance from one node to the next: attitude.md (A6), (A7), (A8),
-/// (A9).
+/// Predicts the filter states and their covariance from one node to the next: attitude.md (A6), (A7), (A8), (A9).
 void TumbleAttitude::predict_node(State& state) const {
   const double h = state.node_s;
   const double keep = std::exp(-h / params_.displacement_tau_s);
@@ -275,8 +275,8 @@ void TumbleAttitude::predict_node(State& state) const {
     F.block<2, 3>(kTilt, kBias) = -state.R_WI_s.topRows<2>();
     F.block<1, 3>(kHeading, kBias) = -state.R_WI_s.row(2);
   }
-  // The derivative of velocity with respect to tilt phi is the horizontal part of phi x f. The derivative with respect
-  // to heading is omitted, because TumbleAttitude does not correct the heading.
+  // The derivative of the velocity with respect to the tilt phi is the horizontal part of phi x f. The derivative with
+  // respect to the heading is omitted, because TumbleAttitude does not correct the heading.
   F(kVelocity, kTilt + 1) = state.force_integral_W_m_s.z();
   F(kVelocity + 1, kTilt) = -state.force_integral_W_m_s.z();
   F.block<2, 2>(kDisplacement, kVelocity) = h * Eigen::Matrix2d::Identity();
@@ -292,7 +292,7 @@ void TumbleAttitude::predict_node(State& state) const {
   state.covariance.diagonal().segment<2>(kVelocity).array() += squared(params_.expert.acceleration_noise_m_s_sqrts) * h;
 }
 
-/// Returns whether the sphere slips at the current node. The rolling constraint is unusable during slip.
+/// Returns whether the sphere slips at the current node, which makes the rolling constraint unusable.
 bool TumbleAttitude::detect_slip(const Eigen::Vector2d& misfit_m_s, State& state) const {
   const double misfit = misfit_m_s.norm();
   state.slip_duration_s = state.slipping ? state.slip_duration_s + state.node_s : 0.0;
@@ -301,7 +301,7 @@ bool TumbleAttitude::detect_slip(const Eigen::Vector2d& misfit_m_s, State& state
   if (state.slipping) {
     state.slipping = !state.at_rest && state.grip_duration_s <= params_.expert.rolling.slip_quiet_s;
     if (state.slip_duration_s > params_.expert.rolling.slip_timeout_s) {
-      // after a slip, the velocity from rolling is more accurate than the integrated velocity
+      // After a slip, the velocity from rolling is more accurate than the integrated velocity.
       state.covariance.diagonal().segment<2>(kVelocity).array() += squared(misfit);
       state.slipping = false;
     }
@@ -320,8 +320,8 @@ double TumbleAttitude::motion_variance(const Eigen::Vector2d& misfit, int index,
   return std::max({squared(sigma_sqrts) / params_.motion_tau_s, seen, decayed_power});
 }
 
-/// Corrects velocity and displacement of a body other than a sphere: attitude.md (A12), (A14). The velocity is
-/// corrected while the body moves. The displacement is corrected towards zero.
+/// Corrects the velocity of a moving body that is not a sphere, and corrects the displacement towards zero: attitude.md
+/// (A12), (A14).
 void TumbleAttitude::correct_body(const Eigen::Vector2d& turned_m_s, State& state) const {
   const double memories = params_.motion_tau_s / state.node_s;
   if (!state.at_rest) {
@@ -339,8 +339,8 @@ void TumbleAttitude::correct_body(const Eigen::Vector2d& turned_m_s, State& stat
   }
 }
 
-/// Returns the horizontal velocity of the IMU that follows from the body's rotation: attitude.md (A11). The IMU's
-/// velocity is the sum of the centre's rolling velocity and the IMU's velocity about the centre.
+/// Returns the horizontal velocity of the IMU due to the body's rotation: attitude.md (A11). The velocity is the sum of
+/// the centre's rolling velocity and the IMU's velocity about the centre.
 Eigen::Vector2d TumbleAttitude::velocity_from_rotation(const State& state) const {
   const Eigen::Vector3d w_W = state.q_WI * state.rate_rad_s;
   const Eigen::Vector3d arm_W = state.q_WI * params_.lever_arm_m + params_.radius_m * Eigen::Vector3d::UnitZ();

@@ -3,16 +3,16 @@
 
 #include <Eigen/Core>
 
-/// dense.hpp declares decompositions of large symmetric matrices, which are compiled once for all sizes. Eigen's
-/// fixed-size decompositions would be instantiated per file and size, which doubles the compile time of those files.
-/// The factorisations equal Eigen's fixed-size factorisations bit for bit; the eigenvalues are equal up to rounding.
-/// Each decomposition allocates memory, so call it at most once per sweep or run.
+/// dense.hpp declares decompositions of large symmetric matrices, which are compiled once for all sizes. Eigen
+/// instantiates fixed-size decompositions in each file and for each size, which would double the compile time of the
+/// files that decompose matrices. The factorisations equal Eigen's bit for bit; the eigenvalues are equal up to
+/// rounding. Each decomposition allocates memory, so call it at most once per sweep or run.
 namespace tumble::dense {
 
 using Symmetric = Eigen::Ref<const Eigen::MatrixXd>;  ///< only the lower triangle is read
 
-/// Cholesky computes A^-1 B in place for positive definite A, by Cholesky factorisation. If A is not positive definite,
-/// `ok()` returns false and the results are undefined.
+/// Cholesky factorises a positive definite matrix A and solves A X = B in place. If A is not positive definite, `ok()`
+/// returns false and the results are undefined.
 class Cholesky {
  public:
   explicit Cholesky(const Symmetric& A);
@@ -34,7 +34,7 @@ class Cholesky {
   bool ok_ = false;
 };
 
-/// Computes A^-1 B in place for a semidefinite A, by pivoted Cholesky factorisation without roots (LDLT).
+/// Solves A X = B in place for a semidefinite A, by pivoted Cholesky factorisation without roots (LDLT).
 void solve_semidefinite(const Symmetric& A, Eigen::Ref<Eigen::MatrixXd> B);
 void solve_semidefinite_vector(const Symmetric& A, Eigen::Ref<Eigen::VectorXd> b);
 

@@ -13,20 +13,19 @@ namespace {
 
 using Eigen::Vector3d;
 
-// The section "Thresholds" of docs/maths/outliers.md lists the measurements that justify the thresholds of the outlier
-// test.
-constexpr double kRateMin_rad_s = 1.0;   // smallest jump of a gyro reading that is an outlier
-constexpr double kForceMin_m_s2 = 30.0;  // smallest jump of an accelerometer reading that is an outlier
-constexpr double kOutlierRatio = 3.0;    // an outlier is larger than this multiple of the neighbours' difference
+// The section "Thresholds" of docs/maths/outliers.md justifies the thresholds of the outlier test by measurements.
+constexpr double kRateMin_rad_s = 1.0;                // smallest jump of a gyro reading that is an outlier
+constexpr double kForceMin_m_s2 = 30.0;               // smallest jump of an accelerometer reading that is an outlier
+constexpr double kOutlierRatio = 3.0;                 // minimum ratio of an outlier to the difference of its neighbours
 constexpr double kAccelerationPerForce_rad_m = 40.0;  // largest angular acceleration of a robot per unit of force
 constexpr double kLever_m = 10.0;                     // largest force of a robot per unit of angular acceleration
 constexpr double kRateJumpMax_rad_s = 50.0;           // largest plausible jump of the rate in a single sample
 constexpr double kVelocityJumpMax_m_s = 20.0;         // largest plausible jump of the velocity in a single sample
-constexpr double kNear_s = 0.1;                       // neighbours further away than this are not compared
-// after a longer step of the stamps, the sample is delayed, because the next stamp may be earlier
+constexpr double kNear_s = 0.1;                       // maximum time between compared neighbours
+// After a longer step between stamps, the sample is delayed, because the next stamp may be earlier.
 constexpr double kStampStepMax_periods = 1.75;
 
-// A reading may be saturated if it is above the fraction kAtRange of the stated range, or large and repeated.
+// A reading may be saturated if it exceeds kAtRange times the stated range, or if it is large and repeated.
 constexpr double kAtRange = 0.95;
 constexpr double kRepeats_rad_s = 1.0, kRepeats_m_s2 = 15.0;
 
@@ -61,8 +60,8 @@ Triad accel_of(const OutlierFilter::Device& device) {
   return {&ImuSample::specific_force_m_s2, kClipAccel, device.accel_range_m_s2, kRepeats_m_s2};
 }
 
-/// Returns the time between the stamps of two samples, in seconds. The subtraction is unsigned, since the difference of
-/// two stamps may not fit into a signed integer.
+/// Returns the time between the stamps of two samples, in seconds. The subtraction is unsigned, because the difference
+/// of two stamps may overflow a signed integer.
 double step_s(const ImuSample& from, const ImuSample& to) {
   return 1e-9 * static_cast<double>(static_cast<std::uint64_t>(to.time_ns) - static_cast<std::uint64_t>(from.time_ns));
 }
@@ -84,8 +83,8 @@ Sequence recent_sequence(const OutlierFilter::State& state) {
   return out;
 }
 
-/// Returns the largest change from one reading to the next: outliers.md (O3). The function returns kUnknown if
-/// saturation may hide a change.
+/// Returns the largest change from one reading to the next: outliers.md (O3). Returns kUnknown if saturation may hide a
+/// change.
 double largest_step(const Sequence& sequence, const Triad& triad) {
   double out = 0.0;
   for (std::size_t k = 1; k < sequence.count; ++k) {
@@ -107,8 +106,8 @@ double largest_bend(const Sequence& sequence, const Triad& triad) {
   return out;
 }
 
-/// Returns how far a reading is above or below both neighbouring readings, on the axis with the largest difference:
-/// outliers.md (O1).
+/// Returns the distance of a reading from the closer neighbour, if the reading is above or below both neighbours;
+/// otherwise 0. The axis with the largest distance counts: outliers.md (O1).
 double distance_from_neighbours(const Vector3d& before, const Vector3d& now, const Vector3d& after) {
   double out = 0.0;
   for (int axis = 0; axis < 3; ++axis) {
@@ -118,8 +117,8 @@ double distance_from_neighbours(const Vector3d& before, const Vector3d& now, con
   return out;
 }
 
-/// Returns the distance of a reading from the last accepted reading, or from the line through the last two: outliers.md
-/// (O2). The smaller distance counts.
+/// Returns the distance of a reading from the last accepted reading or from the line through the last two, whichever is
+/// smaller: outliers.md (O2).
 double distance(const ImuSample& sample, const OutlierFilter::State& state, const Triad& triad) {
   const ImuSample &first = state.recent_inliers[0], &last = state.recent_inliers[1];
   const Vector3d step = triad.of(sample) - triad.of(last);
@@ -177,8 +176,8 @@ bool OutlierFilter::must_delay(const ImuSample& sample, State& state) const {
   return true;
 }
 
-/// Returns the last time step between samples, or the nominal period if the period is longer. The function returns
-/// infinity if no nominal period is stated.
+/// Returns the larger of the nominal period and the last time step between samples. Returns infinity if no nominal
+/// period is stated.
 double OutlierFilter::period_s(const State& state) const {
   if (!(device_.period_s > 0.0)) return kUnknown;
   if (state.count < 2) return device_.period_s;
@@ -192,8 +191,8 @@ bool OutlierFilter::is_suspicious(const ImuSample& sample, const State& state) c
   return after_s > kStampStepMax_periods * period_s(state) || jumps(sample, state);
 }
 
-/// Returns whether the gyro or accelerometer reading jumps further than the reading of the other sensor explains:
-/// outliers.md (O5).
+/// Returns whether the reading of the gyro or accelerometer jumps further than the reading of the other sensor
+/// explains: outliers.md (O5).
 bool OutlierFilter::jumps(const ImuSample& sample, const State& state) const {
   const double after_s = step_s(state.recent_inliers[1], sample);
   if (after_s > kNear_s) return false;
@@ -204,7 +203,7 @@ bool OutlierFilter::jumps(const ImuSample& sample, const State& state) const {
          distance(sample, state, accel_of(device_)) > accel_threshold(device_, sequence, sample, step);
 }
 
-/// Returns whether the delayed reading is an outlier, given the next reading: outliers.md (O6).
+/// Returns whether the reading `delayed` is an outlier, given the next reading: outliers.md (O6).
 bool OutlierFilter::is_outlier(const ImuSample& delayed, const ImuSample& after, const State& state) const {
   const ImuSample& before = state.recent_inliers[1];
   if (state.count == 0 || step_s(before, delayed) > kNear_s || step_s(delayed, after) > kNear_s) return false;

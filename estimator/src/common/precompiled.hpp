@@ -15,12 +15,12 @@
 
 namespace tumble::precompiled {
 
-/// `known` instantiates the classes and evaluators of any Eigen expressions; its value is always true.
+/// `known` is always true; it instantiates the classes and evaluators of the given Eigen expressions.
 template <class... Expressions>
 constexpr bool known = (... && (sizeof(std::remove_cvref_t<Expressions>) > 0 &&
                                 sizeof(Eigen::internal::evaluator<std::remove_cvref_t<Expressions>>) > 0));
 
-/// `known_matrices` instantiates any matrix types with their constants and identities; its value is always true.
+/// `known_matrices` is always true; it instantiates the given matrix types with their constants and identities.
 template <class... Matrices>
 constexpr bool known_matrices = (... && known<Matrices, decltype(Matrices::Zero()), const Matrices>);
 template <class... Matrices>
@@ -29,7 +29,7 @@ constexpr bool known_squares = known_matrices<Matrices...>&& known<decltype(Matr
 template <int rows, int columns = 1>
 using Real = Eigen::Matrix<double, rows, columns>;
 
-// The operands of the expressions in precompiled.hpp have no definition, because the expressions are never evaluated.
+// The operands have no definition, because the expressions are never evaluated.
 extern const Eigen::Vector3d a, b;
 extern Eigen::Vector3d c;
 extern const Eigen::Matrix3d R;

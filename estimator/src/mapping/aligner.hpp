@@ -17,8 +17,8 @@ struct Scene {
   const VoxelMap& map;
 };
 
-/// Aligner registers a sweep to the map in stages. The verdict of the output `found` states whether the registration
-/// succeeded. The output `trajectory` is the registered motion, or the motion of a failed attempt.
+/// Aligner registers a sweep to the map in stages. `found.verdict` states whether the registration succeeded.
+/// `trajectory` is the registered motion, or the motion of a failed attempt.
 class Aligner {
  public:
   explicit Aligner(const LidarInertialOdometry::Params& params);
@@ -30,8 +30,8 @@ class Aligner {
   /// Registers a sweep with a subset of its points until convergence, then with all points from the converged pose.
   void align_to_convergence(const Registration::Prior& prior, const Scene& scene, SweepTrajectory& trajectory,
                             Registration::Result& found);
-  /// Registers a sweep from an initial pose that may be far from the solution. A coarse stage with few points comes
-  /// first; only if it succeeds, the registration continues to convergence.
+  /// Registers a sweep from an initial pose that may be far from the solution, in a coarse stage with few points. After
+  /// a successful coarse stage, the registration continues to convergence.
   void align_coarse_to_fine(const Registration::Prior& start, const Registration::Prior& prior, const Scene& scene,
                             SweepTrajectory& trajectory, Registration::Result& found);
 

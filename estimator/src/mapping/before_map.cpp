@@ -15,8 +15,7 @@ namespace u = unknowns;
 using Motion = Eigen::Matrix<double, 9, 9>;
 using Params = LidarInertialOdometry::Params;
 
-// The prior of the speed has standard deviation kSpeed_m_s and correlation time kSpeedTime_s. Robots rarely exceed
-// kSpeed_m_s.
+// Standard deviation and correlation time of the speed before a map exists. Robots rarely exceed kSpeed_m_s.
 constexpr double kSpeed_m_s = 10.0, kSpeedTime_s = 1.0;
 // Standard deviations of tilt and speed for a start in motion. The mean force over half a second is assumed to differ
 // from gravity by 1 m/s^2.
@@ -38,7 +37,7 @@ double yaw_rad(const Eigen::Quaterniond& q) {
 }
 
 /// Returns the matrix that transforms the errors of position, attitude and velocity to a frame with origin at the IMU,
-/// rotated by `turn`. The error of the displacement from the old origin to the IMU is included.
+/// rotated by `turn`. The transformation includes the error of the IMU's position in the old frame.
 Motion frame_jacobian(const Eigen::Matrix3d& turn, const Eigen::Vector3d& v_WI_m_s) {
   Motion T = Motion::Zero();
   T.block<2, 3>(3, 3) = turn.topRows<2>();
@@ -129,15 +128,15 @@ StateEstimate reset_origin_and_yaw(const StateEstimate& reckoned, double step_s)
   return of_motion(state, reckoned.mean.calibration, T * C * T.transpose(), T * E * T.transpose());
 }
 
-/// Returns the state estimate in the frame of the map, in which the IMU's attitude has no error. The frame of the map
-/// is rotated by the IMU's tilt error φ, so velocity v and gravity g have the errors δv + v × φ and g × φ.
+/// Returns the state estimate in the frame of the map, which is rotated by the IMU's tilt error φ. In the frame of the
+/// map, the attitude has no error, and velocity v and gravity g have the errors δv + v × φ and g × φ.
 StateEstimate estimate_at_first_sweep(const Params& params, const StateEstimate& reckoned) {
   MotionState start = reckoned.mean.state;
   start.covariance.setZero();
   u::variances(start.covariance, u::tilt)
       .setConstant(params.expert.start.level_sigma_rad * params.expert.start.level_sigma_rad);
   StateEstimate out = estimate_at_start(params, start);
-  // derivative of velocity and gravity with respect to the errors of the motion
+  // Derivative of velocity and gravity with respect to the errors of the motion.
   Eigen::Matrix<double, 6, 9> T = Eigen::Matrix<double, 6, 9>::Zero();
   T.block<3, 3>(0, 3) = so3::hat(start.v_WI_m_s);
   T.block<3, 3>(0, 6).setIdentity();

@@ -9,13 +9,14 @@
 
 namespace tumble::mapping {
 
-/// DeadReckoning predicts a second pose from the IMU. While a relocalisation is unconfirmed, the second pose is the
-/// pose without it. After later sweeps have contradicted the relocalisation, the second pose is the relocalised pose.
+/// DeadReckoning predicts an alternative pose from the IMU after a relocalisation. While the relocalisation is
+/// unconfirmed, the alternative is the pose without the relocalisation. If later sweeps contradict the relocalisation,
+/// the alternative becomes the relocalised pose.
 struct DeadReckoning {
   SweepBoundary boundary;
   LagWindow window;
   WorldCovariance world;
-  std::uint32_t inserted_from = 0;  ///< first sweep that was inserted into the map after the relocalisation
+  std::uint32_t inserted_from = 0;  ///< first sweep inserted into the map after the relocalisation
 };
 
 }  // namespace tumble::mapping

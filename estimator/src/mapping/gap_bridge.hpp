@@ -9,8 +9,7 @@
 
 namespace tumble::mapping {
 
-/// If the time between two IMU samples exceeds kGap_ns, the reading does not describe the motion in between, so the
-/// time is a gap.
+/// A time between two IMU samples above kGap_ns is a gap, because the reading does not describe the motion in between.
 inline constexpr TimeNs kGap_ns = 50'000'000;
 
 /// WindowRate is the mean angular rate over the averaging window of one IMU sample, with its standard deviation.
@@ -24,11 +23,11 @@ struct WindowRate {
   static void members(Self& s, Visitor& visit);
 };
 
-/// Appends samples that fill the gap from the end of `before` to the start of `after`. The function interpolates the
-/// angular rate linearly. The interpolated rate has the standard deviation of a random walk whose ends are known, see
-/// mapping.md (R44). All axes of the appended samples count as clipped. A registration that estimates the saturation
-/// deficit therefore also estimates the interpolation error. The specific force of the appended samples is unknown
-/// (`bridges_gap`). Each appended sample is 10 ms long, or longer in gaps beyond 0.64 s.
+/// Appends samples that fill the gap from the end of `before` to the start of `after`, see mapping.md (R44). The
+/// angular rate is interpolated linearly, with the standard deviation of a random walk whose ends are known. All axes
+/// of the appended samples count as clipped, so that a registration that estimates the saturation deficit also
+/// estimates the interpolation error. The specific force of the appended samples is unknown (`bridges_gap`). Each
+/// appended sample is 10 ms long, or longer in gaps beyond 0.64 s.
 void bridge_gap(const InertialNoiseParams& params, const WindowRate& before, const WindowRate& after,
                 std::vector<MotionSample>& samples);
 

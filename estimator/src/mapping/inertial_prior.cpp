@@ -46,7 +46,7 @@ Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& 
       .setConstant(std::pow(params.expert.prior.sigma_m_s * span, 2) +
                    std::pow(params.expert.prior.force_share * velocity_change_m_s, 2) + gap_m2_s2);
   u::variances(noise, u::position).array() += gap_m2;
-  // a robot at rest has zero velocity, so its velocity error does not affect the position
+  // A robot at rest has zero velocity, so the velocity error does not affect the position.
   const auto rests = [&](const MotionSample& sample) {
     return sample.at_rest || seconds(sample.from_ns - start_ns) >= trajectory.duration_s();
   };
@@ -57,7 +57,7 @@ Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& 
   return noise;
 }
 
-/// Computes the velocity variance that saturated accelerometer readings cause: mapping.md (R45).
+/// Computes the covariance of the velocity due to saturated accelerometer readings: mapping.md (R45).
 Eigen::Matrix3d clipped_velocity_variance(const LidarInertialOdometry::Params& params,
                                           const SweepTrajectory& trajectory, std::span<const MotionSample> samples) {
   std::size_t hint = 0;

@@ -16,7 +16,7 @@ using Params = LidarInertialOdometry::Params;
 
 constexpr TimeNs kArcStep_ns = 5'000'000;
 constexpr TimeNs kArcMost_ns = 10'000'000'000;  // longest bridged flight; no flight lasts longer
-// additional tolerance of the rate after a flight; impacts change the rate by more
+// Additional tolerance [rad/s] of the rate after a flight. Impacts change the rate by more.
 constexpr double kArcOff_rad_s = 0.5;
 
 WindowRate rate_of(const MotionSample& sample) {
@@ -36,8 +36,8 @@ std::uint8_t accel_saturated_axes(const Params& params, const ImuSample& sample)
 }  // namespace
 
 RestDetector::Params mapper_rest(const LidarInertialOdometry::Params& params) {
-  // The parameter `rate_rad_s` limits the norm of the rate at rest, but the rest detector limits each axis. The
-  // parameter is therefore divided by sqrt(3).
+  // The parameter `rate_rad_s` limits the norm of the rate at rest. The rest detector limits each axis, so the
+  // parameter is divided by sqrt(3).
   return {.rate_max_rad_s = params.expert.rest.rate_rad_s,
           .rate_spread_rad_s = params.expert.rest.rate_rad_s / std::numbers::sqrt3,
           .force_min_m_s2 = std::max(params.expert.gravity_m_s2 - params.expert.rest.force_m_s2, 0.0),
@@ -62,7 +62,7 @@ Status InertialTrack::check(const ImuSample& sample) const {
 
 void InertialTrack::take(const Params& params, const ImuSample& sample, const RateState& rate) {
   const TimeNs from_ns = last_ns().value_or(sample.time_ns);
-  // The first sample has no earlier time stamp, so its averaging window gets the length of the second window.
+  // The first sample has no earlier time stamp, so its averaging window is as long as the second window.
   if (!boundary_ns_ && samples_.size() == 1) samples_[0].from_ns = 2 * from_ns - sample.time_ns;
   MotionSample next;
   next.from_ns = from_ns;
@@ -74,7 +74,7 @@ void InertialTrack::take(const Params& params, const ImuSample& sample, const Ra
   next.clipped_axes = static_cast<std::uint8_t>(rate.clipped_axes & kClipGyro);
   next.accel_saturated_axes = accel_saturated_axes(params, sample);
   const bool after_gap = next.time_ns - next.from_ns > kGap_ns;
-  // the first averaging window after a gap is as long as the last window before the gap
+  // The first averaging window after a gap is as long as the last window before the gap.
   if (after_gap && newest_ && !next.at_rest)
     next.from_ns = std::max(from_ns, next.time_ns - (newest_->time_ns - newest_->from_ns));
   next.bridges_gap = after_gap && next.from_ns == from_ns;
@@ -91,14 +91,14 @@ void InertialTrack::fill_gap(const Params& params, bool in_flight) {
   if (!in_flight || !bridge_flight(params, *before_newest_, *newest_))
     bridge_gap(params.expert.prior, *before_newest_, *newest_, samples_);
   if (pending_rates_rad_s_.empty()) return;
-  // The rest detector averages readings. The list contains the rates of the samples whose averaged reading is not
-  // complete.
+  // The rest detector averages readings. pending_rates_rad_s_ contains the rates of the samples in the incomplete
+  // average.
   for (const MotionSample& part : std::span(samples_).subspan(first))
     pending_rates_rad_s_.insert(pending_rates_rad_s_.end() - 1, part.w_WI_I_rad_s);
 }
 
-/// Bridges a gap by ballistic flight if the predicted rate agrees with the next reading: flight_arc.md (A12). The rate
-/// is predicted for free flight up to the end of the gap.
+/// Fills a gap with a ballistic flight. Returns false if the rate predicted for free flight contradicts the reading
+/// after the gap: flight_arc.md (A12).
 bool InertialTrack::bridge_flight(const Params& params, const WindowRate& before, const WindowRate& after) {
   if (after.from_ns - before.time_ns > kArcMost_ns) return false;
   const std::size_t first = samples_.size();
@@ -118,9 +118,9 @@ bool InertialTrack::bridge_flight(const Params& params, const WindowRate& before
   return true;
 }
 
-/// Decides whether the newest sample belongs to a flight: flight_arc.md (A3), (A4), (A5). The flight test uses the
-/// angular rates before and after the sample. If a gap follows the sample, the rate after the sample is predicted for
-/// free flight.
+/// Decides whether the newest sample belongs to a flight: flight_arc.md (A3), (A4), (A5). The test uses the angular
+/// rates before and after the sample. If a gap follows the sample, the rate after the sample is predicted for free
+/// flight.
 bool InertialTrack::detect_flight(const Params& params, const MotionSample& next, bool after_gap) {
   MotionSample& now = samples_.back();
   if (now.in_flight) return true;
@@ -143,7 +143,7 @@ void InertialTrack::update_rest(const Params& params, const ImuSample& sample, c
   ImuSample received = sample;
   received.angular_velocity_rad_s = rate.w_WI_I_rad_s;
   const bool clipped = (rate.clipped_axes & kClipGyro) != 0;
-  // during the initial rest, the mean rate is the bias of the gyro
+  // During the initial rest, the mean rate is the gyro's bias.
   const Eigen::Vector3d bias = initial_.lasts ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : initial_.gyro_bias_rad_s;
   if (clipped) rest_ = {};
   if (!clipped && rest_detector_.observe(received, rest_, bias)) next.rest_start_ns = rest_.first_ns;
@@ -166,7 +166,8 @@ void InertialTrack::update_rest(const Params& params, const ImuSample& sample, c
   pending_rates_rad_s_.clear();
 }
 
-/// Marks all samples since the start of the last averaged reading as motion if this reading shows motion.
+/// Marks all samples of the last averaged reading as motion. The caller has found that no rest continues through this
+/// averaged reading.
 void InertialTrack::revoke_rest(std::optional<TimeNs> rest_start_ns) {
   const std::size_t count = std::min(pending_rates_rad_s_.size(), samples_.size());
   for (std::size_t back = 1; back <= count; ++back) {
@@ -182,8 +183,7 @@ bool InertialTrack::starts_at_rest(double lasted_s) const {
   const auto rests = [&](const MotionSample& sample) {
     return sample.at_rest || seconds(sample.from_ns - samples_.front().from_ns) >= lasted_s;
   };
-  // A rest of at least `lasted_s` has already determined the gyro bias. The first samples of the rest may have been
-  // deleted.
+  // A rest of at least `lasted_s` has determined the gyro bias, but its first samples may have been deleted.
   return !initial_.gyro_bias_rad_s.isZero(0.0) || std::all_of(samples_.begin(), samples_.end(), rests);
 }
 

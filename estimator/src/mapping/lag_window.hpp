@@ -14,11 +14,11 @@ struct Estimated {
   Registration::Matrix errors = Registration::Matrix::Zero();
 };
 
-/// WindowSweep is a sweep of the lag window. Later sweeps refine the estimate of this sweep. The unknowns of a
-/// WindowSweep refer to the start of the sweep.
+/// WindowSweep is a sweep of the lag window, whose estimate later sweeps refine. The unknowns of a WindowSweep refer to
+/// the start of the sweep.
 struct WindowSweep {
   Estimated predicted;
-  /// derivative of the unknowns with respect to the previous sweep's
+  /// derivative of the unknowns with respect to the unknowns of the previous sweep
   Registration::Matrix jacobian_previous = Registration::Matrix::Identity();
   Estimated filtered, smoothed;
   std::vector<MotionSample> samples;
@@ -35,7 +35,7 @@ class LagWindow {
   LagWindow() = default;
   explicit LagWindow(int sweeps) : length_(static_cast<std::size_t>(sweeps)) {}
 
-  /// Adds an empty sweep to the lag window. If the lag window is full, the function first removes the oldest sweep.
+  /// Adds an empty sweep to the lag window. A full lag window first drops its oldest sweep.
   WindowSweep& enter();
   /// Returns whether the oldest sweep of the lag window has its final estimate.
   bool is_full() const { return sweeps_.size() == length_; }
@@ -43,8 +43,8 @@ class LagWindow {
   void smooth();
   /// Moves the map points of all sweeps except the newest to their smoothed positions.
   void move_inserted(LocalMap& map) const;
-  /// Clears the lists of inserted points after the point indices of the map have changed. Smoothing then no longer
-  /// moves the points.
+  /// Clears the lists of inserted points, because the point indices of the map have changed. Smoothing then no longer
+  /// moves the inserted points.
   void clear_inserted();
 
   /// Calls `change` for each sweep, oldest first.

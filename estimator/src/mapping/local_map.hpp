@@ -25,10 +25,11 @@ struct SweepToInsert {
   const Registration::Matrix& covariance;
   std::span<const SweepPoint> points;
   bool has_ring_numbers;
-  bool pose_certain;  ///< the pose is certain, so the sweep's free space may contradict map points
+  bool pose_certain;  ///< certain pose: the sweep's free space may contradict map points
 };
 
-/// LocalMap is the map around the sensor: points, their scan lines, and the sensor position at each observation.
+/// LocalMap is the map around the sensor: points, their scan lines, and the sensor positions from which the points were
+/// observed.
 class LocalMap {
  public:
   using Params = LidarInertialOdometry::Params;
@@ -38,29 +39,29 @@ class LocalMap {
   const VoxelMap& voxels() const { return map_; }
   bool empty() const { return map_.size() == 0; }
 
-  /// Adds the points of a sweep to the map, and appends the added points to `inserted`. The argument `noise` computes
-  /// the variance of a lidar return. If the pose of the sweep is certain, the function removes map points that the
-  /// sweep saw through. Cost: O(points of the map).
+  /// Adds the points of a sweep to the map, and appends the added points to `inserted`. `noise` computes the variance
+  /// of a lidar return. If the pose of the sweep is certain, the function counts the map points that the sweep saw, and
+  /// the map points that the sweep saw through. Cost: O(points of the map).
   std::size_t insert(const Params& params, const SweepToInsert& sweep, const Registration& noise,
                      std::vector<InsertedPoint>& inserted);
-  /// Moves inserted points to their refined positions, with `later_s` added to their times, see mapping.md (R3).
+  /// Moves inserted points to their positions on the refined trajectory, with `later_s` added to their times, see
+  /// mapping.md (R3).
   void move(const SweepTrajectory& trajectory, const Eigen::Isometry3d& T_IL, double later_s,
             std::span<const InsertedPoint> inserted);
 
-  /// Replaces the map by the points of a prior map. The normals of map points point towards the sensor. To keep the
-  /// signs of the prior map's normals, the points are attributed to six distant sensor positions along the axes. If
-  /// `T_MW` is given, the function also keeps the points of the replaced map, transformed to the prior map's frame.
+  /// Replaces the map by the points of a prior map. Normals of map points are directed towards the sensor. The points
+  /// are therefore attributed to six distant sensor positions on the axes, which preserve the signs of the prior map's
+  /// normals. If `T_MW` is given, the points of the replaced map are also kept, transformed to the prior map's frame.
   void start_from(const Params& params, std::span<const MapPoint> points, const Eigen::Isometry3f* T_MW);
 
-  /// Returns the number of sweeps that have added points to the map. Each map point stores the number of the sweep that
-  /// added the point.
+  /// Returns the number of sweeps that have added points to the map. Each map point stores the number of its sweep.
   std::uint32_t sweeps() const { return static_cast<std::uint32_t>(seen_from_W_m_.size()); }
-  /// Removes the points of `first_sweep` and of all later sweeps from the map. Cost: O(number of points). The removal
-  /// changes the indices of map points.
+  /// Removes the points of `first_sweep` and all later sweeps. Cost: O(number of points). The removal changes the
+  /// indices of map points.
   void remove_sweeps_since(std::uint32_t first_sweep);
 
   /// Removes distant map points if the sensor has moved far enough since the last removal. Returns whether points were
-  /// removed, which changes the indices of map points.
+  /// removed; if so, the indices of map points have changed.
   bool prune(const Params& params, const Eigen::Vector3d& p_WI_m);
 
   std::size_t bytes() const { return map_.bytes() + seen_from_W_m_.capacity() * sizeof(Eigen::Vector3f); }
@@ -72,11 +73,11 @@ class LocalMap {
   static void members(Self& s, Visitor& visit);
 
  private:
-  /// Counts for each map point how many sweeps saw through it, according to the free space that a sweep observed.
+  /// Counts for each map point how many sweeps saw through it.
   void check_free_space(const FreeSpaceGrid& sight);
 
   VoxelMap map_;
-  std::vector<Eigen::Vector3f> seen_from_W_m_;  // sensor position per sweep that contributed points
+  std::vector<Eigen::Vector3f> seen_from_W_m_;  // sensor position of each sweep with map points
   Eigen::Vector3f pruned_at_W_m_ = Eigen::Vector3f::Zero();
   ScanLines scan_lines_;
   std::vector<Eigen::Vector3f> levers_W_m_;

@@ -46,7 +46,8 @@ Status Localisation::current_verdict() const {
           second_largest_innovation_, innovation_max()};
 }
 
-/// Returns an error if tracking failed, mapping.md (R70), or if sweeps contradict their predicted poses, (R71).
+/// Returns an error if tracking failed, mapping.md (R70), or if sweeps contradict their predicted poses, mapping.md
+/// (R71).
 Status Localisation::verdict() const {
   if (largest_sigma_m_ > matched_m_)
     return {ErrorCode::out_of_range, "standard deviation in m of a sweep's position", largest_sigma_m_, matched_m_};

@@ -12,17 +12,17 @@ namespace {
 // kMinSurfaceSine is sin 10 deg. Two neighbouring returns belong to one surface if the angle between their connecting
 // line and the beam exceeds 10 deg (Bogoslavskyi, Stachniss).
 constexpr float kMinSurfaceSine = 0.17365f;
-// kGrazingSine is sin 2 deg. At a smaller angle between a beam and its surface, the surface counts as an edge. For
-// example, a lidar 0.5 m above the ground sees the ground at 2 deg in a distance of 14 m.
+// kGrazingSine is sin 2 deg. If the angle between a beam and its surface is smaller, the surface counts as an edge. A
+// lidar 0.5 m above the ground sees the ground at 2 deg in a distance of 14 m.
 constexpr float kGrazingSine = 0.0349f;
-constexpr float kBend = 0.15f;                     // tolerance of the range difference on uneven ground, as a fraction
+constexpr float kBend = 0.15f;                     // relative tolerance of ranges on uneven ground
 constexpr int kNeighbours = 2;                     // number of neighbours on each side along the ring
 constexpr float kReachSteps = kNeighbours + 0.5f;  // angular steps; beams further apart are not neighbours
 constexpr float kStepMax = 0.05f;                  // rad; the rings of 16-channel lidars are 0.035 rad apart
 constexpr float kDeviations = 3.0f;
-// In clear air, at most the fraction kClearAirFraction of a sweep's returns are lone returns. In clear air, lone
-// returns come from thin objects, edges and distant ground. The measured fraction of lone returns is 0.05 % at rest,
-// 0.3 to 0.7 % in motion, and 1.6 % for a thrown rig that sees little ground.
+// In clear air, at most the fraction kClearAirFraction of a sweep's returns are lone returns, which come from thin
+// objects, edges and distant ground. The measured fraction is 0.05 % at rest, 0.3 to 0.7 % in motion, and 1.6 % for a
+// thrown rig that sees little ground.
 constexpr float kClearAirFraction = 0.02f;
 
 float square(float x) {
@@ -46,7 +46,7 @@ bool LoneReturns::same_range(const RangeNoise& noise, const Beam& a, const Beam&
   return square(a.range_m - b.range_m) <= square(kDeviations) * (variance_m2(noise, a) + variance_m2(noise, b));
 }
 
-/// Returns whether the angle between the beam and the line through two returns has a sine of at least `sine`:
+/// Returns whether the sine of the angle between the beam and the line through two returns is at least `sine`:
 /// mapping.md (R14).
 bool LoneReturns::is_steep_surface(float sine, const Beam& a, const Beam& b) {
   const float farther = std::max(a.range_m, b.range_m);
@@ -75,7 +75,7 @@ struct LoneReturns::Beside {
   auto end() const { return beam.begin() + count; }
 };
 
-/// Returns whether two beams, given by their indices in ring order, are neighbours on one ring.
+/// Returns whether two beams are neighbours on one ring. `at` and `other` are indices in ring order.
 bool LoneReturns::is_neighbour(std::size_t at, std::size_t other, float reach2) const {
   if (other >= beams_.size() || beams_[other].ring != beams_[at].ring) return false;
   const bool next = other + 1 == at || at + 1 == other;
@@ -85,8 +85,8 @@ bool LoneReturns::is_neighbour(std::size_t at, std::size_t other, float reach2) 
 
 bool LoneReturns::is_confirmed(const RangeNoise& noise, std::size_t at, float reach2) const {
   const Beam& beam = beams_[at];
-  // The previous beam usually confirms a return, so it is checked first. An index below 0 wraps around to a number
-  // beyond the end of the list.
+  // The previous beam usually confirms a return, so the previous beam is checked first. An index below 0 wraps around
+  // to a number beyond the end of the list.
   const bool has_before = is_neighbour(at, at - 1, reach2);
   if (has_before && is_steep_surface(kMinSurfaceSine, beam, beams_[at - 1])) return true;
   const bool has_after = is_neighbour(at, at + 1, reach2);
@@ -110,8 +110,8 @@ bool LoneReturns::is_confirmed(const RangeNoise& noise, std::size_t at, float re
   });
 }
 
-/// Sorts the points by lidar ring, and within each ring by firing time. The function changes the stored start indices
-/// of the rings.
+/// Sorts the points by lidar ring, and within each ring by firing time. The function modifies the start indices of the
+/// rings (ring_next_).
 void LoneReturns::sort_by_ring(const std::vector<SweepPoint>& points) {
   ring_next_.assign(1, 0);
   for (const SweepPoint& point : points) {
@@ -128,8 +128,8 @@ void LoneReturns::sort_by_ring(const std::vector<SweepPoint>& points) {
   }
 }
 
-/// Computes the angular step from each beam to the previous beam on its ring. The first beam of each ring gets a step
-/// of 1.
+/// Computes the squared sine of the angle from each beam to the previous beam on its ring. The first beam of each ring
+/// gets the value 1.
 void LoneReturns::measure_steps() {
   steps2_.assign(beams_.size(), 1.0f);
   sorted_steps2_.clear();

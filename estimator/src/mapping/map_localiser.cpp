@@ -8,11 +8,11 @@ namespace tumble::mapping {
 
 namespace {
 
-// At a wrong pose, a surface point near the prior map's surfaces agrees with them by chance, with at most the
-// probability kChanceAgreementMax.
+// kChanceAgreementMax is the maximum probability that a surface point near the prior map's surfaces agrees with the
+// prior map at a wrong pose.
 constexpr double kChanceAgreementMax = 0.8;
-// The second best pose of a search shows how many points agree with the prior map by chance. As a margin for sampling
-// errors, the fraction kChanceMargin of the points that disagree at the second pose also counts as agreeing.
+// The second best pose of a search is wrong. The fraction of points that agree at this pose measures agreement by
+// chance. As a margin for sampling errors, the fraction kChanceMargin of the disagreeing points is added.
 constexpr double kChanceMargin = 0.3;
 constexpr double kFalseAcceptance = 1e-6;  // maximum probability that a search accepts a wrong pose
 constexpr std::size_t kMinPoints = 100;    // minimum number of surface points for a search
@@ -20,7 +20,7 @@ constexpr double kMinCoveredRatio = 0.4;   // minimum fraction of surface points
 constexpr int kAcceptSweeps = 3;           // number of successive sweeps that accept a pose
 constexpr int kRejectSweeps = 2;           // number of successive sweeps that reject a pose
 constexpr int kSearchSweeps = 5;           // number of sweeps between two searches
-// half size of the search region about an approximate pose, in standard deviations
+// Half size of the search region around an approximate pose, in standard deviations.
 constexpr double kSigmas = 3.0;
 constexpr double kMinReach_m = 1.0, kMinReach_rad = 0.15;
 
@@ -75,7 +75,7 @@ std::optional<FramePose> MapLocaliser::observe(const VoxelMap& local, const Eige
 /// therefore measures how many points agree by chance.
 void MapLocaliser::propose(const std::vector<SurfacePoint>& points, const Eigen::Vector3d& p_WI_m) {
   SearchRegion region;
-  if (map().T_MI) {  // the stated pose has already defined the local frame, so the heading of W in M is about zero
+  if (map().T_MI) {  // the stated pose defines the local frame, so the heading of W in M is about zero
     region.p_WI_m = region.p_MI_m = map().T_MI->translation();
     region.reach_m = std::max(kSigmas * map().sigma_m, kMinReach_m);
     region.reach_rad = std::max(kSigmas * map().sigma_rad, kMinReach_rad);
@@ -101,7 +101,7 @@ bool MapLocaliser::passes(const FramePose& pose) const {
 
 Status MapLocaliser::status() const {
   if (!has_map() || localised_) return {};
-  return {ErrorCode::degenerate, "sweeps that agree with the prior map: not localised in the prior map",
+  return {ErrorCode::degenerate, "number of sweeps that agree with the prior map (too few to localise the run)",
           double(passed_), double(kAcceptSweeps)};
 }
 

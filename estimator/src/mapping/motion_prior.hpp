@@ -12,23 +12,23 @@ struct SweepBoundary;
 struct MotionWindow;
 struct Prediction;
 
-/// motion_prior.hpp defines kinds of information about a sweep's motion, in addition to the previous sweeps. The
-/// function `apply_velocity_prior` replaces the velocity at the start of the sweep, before the sweep's process noise is
-/// added. The function `weigh` fuses a measurement with the prediction, after the process noise has been added.
+/// motion_prior.hpp defines kinds of information about a sweep's motion, in addition to the previous sweeps.
+/// `apply_velocity_prior` replaces the velocity at the start of the sweep, before the process noise of the sweep is
+/// added. `weigh` fuses a measurement with the prediction, after the process noise has been added.
 
 /// InertialPrior adds no information: the IMU propagates the velocity from the end of the last sweep.
 struct InertialPrior {};
 
-/// KnownVelocity is the velocity at the start of the sweep, in IMU axes, with its standard deviation per axis. The
-/// known velocity replaces the velocity of the last sweep, for example for a rolling robot.
+/// KnownVelocity is the velocity at the start of the sweep, in IMU axes, with its standard deviation per axis.
+/// KnownVelocity replaces the velocity of the last sweep, for example for a rolling robot.
 struct KnownVelocity {
   Eigen::Vector3d v_WI_I_m_s = Eigen::Vector3d::Zero();
   double sigma_m_s = 0.0;
 };
 
-/// ConstantVelocity is for an absent or always saturated accelerometer. ConstantVelocity assumes a constant velocity,
-/// with the uncertainty that impacts cause. ConstantVelocity still uses the gyro. ConstantVelocity treats all samples
-/// like those of a gap (InertialTrack::exclude_accelerometer), so it has neither `apply_velocity_prior` nor `weigh`.
+/// ConstantVelocity is for an absent or always saturated accelerometer. The velocity is assumed constant, with the
+/// uncertainty that impacts cause; the gyro is still used. All samples count as samples of a gap
+/// (InertialTrack::exclude_accelerometer), so neither `apply_velocity_prior` nor `weigh` exists for ConstantVelocity.
 struct ConstantVelocity {};
 
 using MotionPrior = std::variant<InertialPrior, KnownVelocity, OdometerReading, ConstantVelocity>;
@@ -41,9 +41,9 @@ inline void apply_velocity_prior(const MotionPrior& prior, Prediction& predictio
   if (const auto* const velocity = std::get_if<KnownVelocity>(&prior)) apply_velocity_prior(*velocity, prediction);
 }
 
-/// Updates the prediction of a sweep by an odometer reading from within the sweep, see mapping.md (R34) to (R37).
-/// `within` is the part of the process noise that arises within the sweep. The function ignores an unusable reading,
-/// and a reading outside of the motion window.
+/// Updates the prediction of a sweep with an odometer reading from within the sweep, see mapping.md (R34) to (R37).
+/// `within` is the part of the process noise that arises within the sweep. Unusable readings, and readings outside of
+/// the motion window, have no effect.
 void fuse_reading(const OdometerReading& reading, const SweepBoundary& boundary, const MotionWindow& window,
                   const MotionNoise& within, Prediction& prediction);
 inline void weigh(const MotionPrior& prior, const SweepBoundary& boundary, const MotionWindow& window,

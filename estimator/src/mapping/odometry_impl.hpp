@@ -28,8 +28,8 @@ struct UpdatedSweep {
   const SweepTrajectory& trajectory;
 };
 
-/// SweepScratch contains work buffers for processing a sweep, so that sweeps allocate no memory. The contents do not
-/// matter between sweeps.
+/// SweepScratch contains work buffers for processing a sweep, so that sweeps allocate no memory. The contents are
+/// undefined between sweeps.
 struct SweepScratch {
   explicit SweepScratch(const LidarInertialOdometry::Params& params) : points(params), aligner(params) {}
 
@@ -40,7 +40,7 @@ struct SweepScratch {
 
 }  // namespace mapping
 
-/// Impl contains the state of the odometry between sweeps, and the steps of processing one sweep, see README.md.
+/// Impl contains the state of the odometry between sweeps, and the processing steps of one sweep, see README.md.
 struct LidarInertialOdometry::Impl {
   explicit Impl(const Params& given);
 
@@ -51,50 +51,48 @@ struct LidarInertialOdometry::Impl {
   /// Computes the initial state from the IMU at rest, before the first sweep.
   Status level_at_first();
   Status level_start(MotionState& levelled) const;
-  /// Starts the map if the sweep has enough usable points. If the sweep has too few points, the function propagates the
-  /// state inertially to the end of the sweep.
+  /// Starts the map if the sweep has enough usable points. Otherwise the function propagates the state inertially to
+  /// the end of the sweep.
   Status start_map(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> returns, SweepReport& report);
   Status dead_reckon(TimeNs end_ns);
   bool rests(const mapping::InertialTrack& inertial, const SweepTrajectory& motion, TimeNs end_ns) const;
-  /// Registers a sweep to the map. On entry, `trajectory` is the IMU's predicted motion from the start of the sweep on.
-  /// On return, `trajectory` is the registered motion, or the motion of a failed attempt.
+  /// Registers a sweep to the map. On entry, `trajectory` is the motion that the IMU predicts from the start of the
+  /// sweep. On return, `trajectory` is the registered motion, or the motion of a failed attempt.
   void register_to_map(const mapping::Prediction& prediction, const mapping::MotionWindow& motion,
                        mapping::SweepPoints& points, SweepTrajectory& trajectory, SweepReport& report,
                        mapping::Placed& placed);
-  /// Returns the state after the update by the registered sweep. If the robot is at rest after a tracking failure, the
-  /// predicted velocity is zero.
+  /// Returns the state after the update by the registered sweep. The predicted velocity is zero if the robot is at rest
+  /// after a tracking failure.
   mapping::StateEstimate update(const mapping::MotionWindow& motion, const mapping::Placed& placed,
                                 mapping::Prediction& prediction) const;
   std::vector<mapping::InsertedPoint> insert(const mapping::UpdatedSweep& sweep, mapping::SweepPoints& points,
                                              bool has_ring_numbers, const mapping::Placed& placed, SweepReport& report);
   void propagate(const mapping::UpdatedSweep& sweep, const mapping::Placed& placed, const mapping::MotionWindow& motion,
                  std::vector<mapping::InsertedPoint> inserted, SweepReport& report);
-  /// Adds a registered sweep to the lag window.
   static mapping::WindowSweep& enter_window(const mapping::UpdatedSweep& sweep, const mapping::MotionWindow& motion,
                                             const mapping::SweepBoundary& from, mapping::LagWindow& into);
-  /// Sets the predicted velocity to zero if the robot is at rest after a tracking failure, and only the IMU measures
-  /// the motion.
+  /// Sets the predicted velocity to zero if the robot is at rest after a tracking failure. The function has no effect
+  /// if a sensor other than the IMU measures the motion.
   void predict_stationary(const mapping::MotionWindow& motion, const mapping::SweepBoundary& from,
                           mapping::Prediction& prediction) const;
   void propagate_alternative(const mapping::MotionWindow& motion, bool unconfirmed_before);
   Status continue_by_inertia(const mapping::MotionWindow& motion, bool rests, mapping::SweepBoundary& at,
                              mapping::LagWindow* into) const;
   void revert_to_inertia();
-  /// Returns the state at the sweep boundary that follows from a relocalisation which later sweeps contradicted, or
-  /// null. The state is an initial pose of the search after a tracking failure.
+  /// Returns the state at the sweep boundary according to a relocalisation that later sweeps contradicted. Returns null
+  /// if there is none. The search after a tracking failure uses this state as an initial pose.
   const MotionState* rejected_relocalisation() const;
   void add_map_drift(const mapping::UpdatedSweep& sweep, const SweepReport& report);
   void prune_until(TimeNs end_ns);
   /// Compares the local map with the prior map after a registered sweep. If MapLocaliser accepts a pose, the odometry
-  /// continues in the frame and with the points of the prior map.
+  /// continues in the frame of the prior map, with its points.
   void localise(const SweepReport& report);
   void enter_prior_map(const mapping::FramePose& pose);
-  /// Returns whether new sweeps extend the map.
   bool extends_map() const { return !localiser.is_localised() || localiser.map().extend; }
 
   PoseState pose_along(const SweepTrajectory& motion, double t_s, const Registration::Matrix& errors) const;
-  /// Returns the poses at the ends of the IMU windows, and at `end_ns` for the last window. `errors` is the covariance
-  /// of the unknowns at the start of the sweep.
+  /// Returns the poses at the ends of the IMU windows; the last pose is at `end_ns`. `errors` is the covariance of the
+  /// unknowns at the start of the sweep.
   std::vector<PoseState> poses_along(const SweepTrajectory& motion, TimeNs end_ns,
                                      const Registration::Matrix& errors) const;
   std::vector<PoseState> poses_of(const mapping::WindowSweep& sweep) const;
@@ -116,7 +114,7 @@ struct LidarInertialOdometry::Impl {
   mapping::LagWindow window;
   mapping::LocalMap map;
   mapping::WorldCovariance world;
-  std::optional<mapping::DeadReckoning> other;  // second pose, see DeadReckoning
+  std::optional<mapping::DeadReckoning> other;  // alternative pose, see DeadReckoning
   mapping::MapLocaliser localiser;              // localiser in a prior map, if any
   mapping::SweepScratch scratch;
 };

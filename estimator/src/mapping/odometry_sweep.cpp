@@ -31,7 +31,7 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
   if (!mapping::has_started(tracking)) {
     if (Status status = start_map(start_ns, end_ns, returns, report); !status.ok()) return status;
   }
-  // The initial trajectory, which the registration refines, is the inertial prediction from the end of the last sweep.
+  // The registration starts from the motion that the IMU predicts from the end of the last sweep.
   SweepTrajectory& trajectory = scratch.trajectory;
   const Registration::Estimate& before = boundary.state_estimate.mean;
   if (Status status = trajectory.build(before.state, track.samples(), end_ns, before.calibration.gravity_W_m_s2);
@@ -61,7 +61,7 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
   report.verdict = placed->verdict;
   report.in_prior_map = localiser.is_localised();
 
-  // The motion, the map update, and the start of the next sweep follow from the updated state.
+  // The updated state determines the motion, the map update, and the start of the next sweep.
   const std::unique_ptr<const StateEstimate> start(new StateEstimate(update(motion, *placed, *prediction)));
   if (!placed->alignment) {  // a failed attempt may have changed the trajectory
     const Registration::Estimate& mean = start->mean;
@@ -70,8 +70,8 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
     if (!status.ok()) return status;
   }
   const UpdatedSweep sweep{*prediction, *start, trajectory};
-  // If the map has too few points for a registration, LocalMap inserts the sweep at its predicted pose. LocalMap omits
-  // points whose position is too uncertain.
+  // A sweep for whose registration the map has too few points is inserted at its predicted pose. LocalMap omits points
+  // whose position is too uncertain.
   std::vector<InsertedPoint> inserted;
   if (extends_map() && (placed->verdict != SweepVerdict::rejected || placed->map_too_sparse))
     inserted = insert(sweep, points, counts.has_ring_numbers, *placed, report);
@@ -92,8 +92,8 @@ Status LidarInertialOdometry::Impl::check_sweep(TimeNs start_ns, TimeNs end_ns,
   if (samples.back().time_ns < end_ns) {
     return {ErrorCode::too_few, "imu time_ns", double(samples.back().time_ns), double(end_ns)};
   }
-  // If the lidar's clock is wrong, the first sweep may start before the first IMU sample. The function then assumes
-  // rest from the start of the sweep to the first sample.
+  // If the lidar's clock is wrong, the first sweep may start before the first IMU sample. The robot is then assumed to
+  // be at rest up to the first sample.
   const double early_s = seconds(samples.front().from_ns - start_ns);
   if (!started && early_s > (params.time_offset_s != 0.0 ? SweepTrajectory::kExtrapolation_s : 0.0)) {
     return {ErrorCode::too_few, "start_ns", double(start_ns), double(samples.front().from_ns)};
@@ -118,7 +118,7 @@ Status LidarInertialOdometry::Impl::level_at_first() {
   return {};
 }
 
-/// Levels the initial attitude by the mean specific force. The covariance is larger if the robot moves.
+/// Levels the initial attitude by the mean specific force. If the robot moves, the covariance is larger.
 Status LidarInertialOdometry::Impl::level_start(MotionState& levelled) const {
   const Status status = mapping::start_at_rest(params, track.samples(), levelled);
   if (status.ok() && !track.starts_at_rest(params.expert.start.bias_rest_s)) mapping::widen_for_motion(levelled);
@@ -183,7 +183,7 @@ Status LidarInertialOdometry::Impl::dead_reckon(TimeNs end_ns) {
   return {};
 }
 
-/// Returns whether the IMU is at rest and measures only gravity, in the direction that the estimated attitude predicts.
+/// Returns whether the IMU is at rest, and measures only gravity in the direction that the estimated attitude predicts.
 bool LidarInertialOdometry::Impl::rests(const mapping::InertialTrack& inertial, const SweepTrajectory& motion,
                                         TimeNs end_ns) const {
   if (!inertial.rests_until(end_ns)) return false;
@@ -252,8 +252,8 @@ std::vector<InsertedPoint> LidarInertialOdometry::Impl::insert(const UpdatedSwee
   return inserted;
 }
 
-/// Updates the state that persists between sweeps. The sweep enters the lag window first, because the lag window needs
-/// the boundary to the previous sweep, which boundary_after() replaces.
+/// Updates the state that persists between sweeps. The sweep enters the lag window before boundary_after() replaces the
+/// boundary to the previous sweep, because the lag window needs this boundary.
 void LidarInertialOdometry::Impl::propagate(const UpdatedSweep& sweep, const Placed& placed, const MotionWindow& motion,
                                             std::vector<InsertedPoint> inserted, SweepReport& report) {
   const Registration::Result* aligned = placed.alignment ? &*placed.alignment : nullptr;
@@ -273,7 +273,7 @@ void LidarInertialOdometry::Impl::propagate(const UpdatedSweep& sweep, const Pla
     window.smooth();
     window.move_inserted(map);
   }
-  // the oldest sweep leaves the lag window with the next sweep, so its pose is final
+  // The oldest sweep leaves the lag window with the next sweep, so its pose is final.
   if (window.is_full()) report.smoothed = poses_of(window.sweeps().front());
   mapping::boundary_after(params, sweep.start, motion, sweep.trajectory, aligned, boundary);
   report.pose = boundary.state_estimate.mean.state.pose();
@@ -285,8 +285,8 @@ void LidarInertialOdometry::Impl::propagate(const UpdatedSweep& sweep, const Pla
   prune_until(motion.end_ns);
 }
 
-/// Increases the map's covariance relative to the world after a sweep. The points that the sweep adds to the map share
-/// its pose error.
+/// Increases the map's covariance relative to the world after a sweep, because the inserted points share the pose error
+/// of the sweep.
 void LidarInertialOdometry::Impl::add_map_drift(const UpdatedSweep& sweep, const SweepReport& report) {
   const double inserted_fraction =
       report.points_used == 0 ? 0.0 : double(report.map_points_added) / double(report.points_used);
@@ -294,18 +294,18 @@ void LidarInertialOdometry::Impl::add_map_drift(const UpdatedSweep& sweep, const
                       boundary.state_estimate.mean.calibration.T_IL.translation());
 }
 
-/// Deletes the IMU samples up to `end_ns`, and distant map points, which the odometry no longer needs.
+/// Deletes the data that the odometry no longer needs: IMU samples up to `end_ns`, and distant map points.
 void LidarInertialOdometry::Impl::prune_until(TimeNs end_ns) {
   known = mapping::InertialPrior{};
   track.prune_until(end_ns);
-  if (mapping::is_unconfirmed(tracking))
-    return;                              // pruning would change the sweep numbers by which the points may be withdrawn
-  if (localiser.is_localised()) return;  // the prior map is never pruned
+  if (mapping::is_unconfirmed(tracking)) return;  // pruning would change the sweep numbers for remove_sweeps_since()
+  if (localiser.is_localised()) return;           // the prior map is never pruned
   if (map.prune(params, boundary.state_estimate.mean.state.p_WI_m)) window.clear_inserted();
 }
 
-/// Propagates the second pose (see DeadReckoning) by inertial prediction. While a relocalisation is unconfirmed, the
-/// second pose is that without it. After a contradiction, the second pose is the relocalised pose.
+/// Propagates the alternative pose (see DeadReckoning) by inertial prediction. While a relocalisation is unconfirmed,
+/// the alternative is the pose without the relocalisation. After a contradiction, the alternative is the relocalised
+/// pose.
 void LidarInertialOdometry::Impl::propagate_alternative(const MotionWindow& motion, bool unconfirmed_before) {
   const bool relocalisation_unconfirmed = mapping::is_unconfirmed(tracking);
   if (relocalisation_unconfirmed && !unconfirmed_before) {
@@ -323,8 +323,8 @@ void LidarInertialOdometry::Impl::propagate_alternative(const MotionWindow& moti
   if (!continue_by_inertia(motion, rests, other->boundary, &other->window).ok()) other.reset();
 }
 
-/// Propagates the state to the end of a sweep without using the sweep's points. If `rests` is true, the velocity is 0.
-/// The sweep also enters the lag window, if any.
+/// Propagates the state to the end of a sweep without using the points of the sweep. If `rests` is true, the velocity
+/// is 0. If `into` is not null, the sweep also enters this lag window.
 Status LidarInertialOdometry::Impl::continue_by_inertia(const MotionWindow& motion, bool rests,
                                                         mapping::SweepBoundary& at, mapping::LagWindow* into) const {
   const Registration::Estimate& before = at.state_estimate.mean;
@@ -348,7 +348,7 @@ Status LidarInertialOdometry::Impl::continue_by_inertia(const MotionWindow& moti
 /// Reverts a relocalisation that later sweeps contradict. The function removes the map points inserted since then, and
 /// continues from the inertial prediction. The relocalised pose remains an initial pose of the search.
 void LidarInertialOdometry::Impl::revert_to_inertia() {
-  map.remove_sweeps_since(std::exchange(other->inserted_from, 0));  // pruning changes sweep numbers
+  map.remove_sweeps_since(std::exchange(other->inserted_from, 0));  // 0, because pruning changes sweep numbers
   std::swap(boundary, other->boundary);
   std::swap(window, other->window);
   other->window.clear_inserted();

@@ -10,9 +10,8 @@
 namespace tumble::mapping {
 
 /// OuterProducts computes the sum of the outer products v v^T of many columns v with up to `Rows` numbers. The sum
-/// equals the result of SelfAdjointView<Lower>::rankUpdate bit for bit. Eigen's rankUpdate keeps its blocks on the
-/// stack, which needs 86 KiB for 128 columns of 28 numbers. OuterProducts keeps the blocks on the heap and calls
-/// Eigen's kernel directly.
+/// equals SelfAdjointView<Lower>::rankUpdate bit for bit. Eigen's rankUpdate keeps its blocks on the stack, which needs
+/// 86 KiB for 128 columns of 28 numbers. OuterProducts keeps the blocks on the heap and calls Eigen's kernel directly.
 template <int Rows, int Columns>
 class OuterProducts {
  public:
@@ -24,8 +23,8 @@ class OuterProducts {
 
   Eigen::Matrix<double, Rows, Columns> columns;
 
-  /// Adds the outer products of the first `count` columns, with their first `size` numbers, to the lower triangle of
-  /// `sum`.
+  /// Adds the outer products of the first `count` columns, limited to their first `size` numbers, to the lower triangle
+  /// of `sum`.
   void add_to(int size, int count, Matrix& sum) {
     namespace e = Eigen::internal;
     e::general_matrix_matrix_triangular_product<Eigen::Index, double, Eigen::ColMajor, false, double, Eigen::RowMajor,

@@ -34,8 +34,7 @@ PlaneFit fit_plane(const VoxelMap& map, const Neighbours& neighbours, const Plan
     return fit;
   }
 
-  // The code subtracts the nearest neighbour from all positions, so that floats keep their precision far from the
-  // origin.
+  // Positions relative to the nearest neighbour keep the precision of floats far from the origin.
   const Eigen::Vector3f origin = map.position_W_m(neighbours.index[0]);
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
   Eigen::Matrix3f square = Eigen::Matrix3f::Zero();
@@ -63,7 +62,7 @@ PlaneFit fit_plane(const VoxelMap& map, const Neighbours& neighbours, const Plan
     fit.verdict = PlaneVerdict::collinear;
     return fit;
   }
-  // the plane fit uses three of the n degrees of freedom: mapping.md (R27)
+  // The plane fit uses three of the n degrees of freedom: mapping.md (R27).
   const double noise2 = l[0] / std::max(n - 3, 1);
   for (int axis = 0; axis < 2; ++axis) {
     fit.normal_sigma_W.col(axis) =

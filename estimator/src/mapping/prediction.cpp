@@ -20,7 +20,7 @@ namespace u = unknowns;
 using Params = LidarInertialOdometry::Params;
 
 /// Predicts the saturation deficit of an axis that is saturated at the boundary between two sweeps. The predicted
-/// saturation deficit decays exponentially: mapping.md (R48).
+/// deficit decays exponentially: mapping.md (R48).
 void carry_deficit(const Params& params, const SweepBoundary& boundary, const SweepTrajectory& trajectory,
                    Prediction& next) {
   constexpr int kLast = SweepTrajectory::kKnots - 1;
@@ -40,21 +40,21 @@ void carry_deficit(const Params& params, const SweepBoundary& boundary, const Sw
   }
 }
 
-/// Returns the largest reported standard deviation of the rate on a clipped axis within a sweep, but at least
-/// `deficit_sigma_min_rad_s`.
+/// Returns the largest reported standard deviation of the rate among samples of a sweep with clipped `axis`. The result
+/// is at least `deficit_sigma_min_rad_s`.
 double deficit_sigma(const Params& params, const MotionWindow& window, const SweepTrajectory& trajectory, int axis) {
   double sigma = params.expert.rails.deficit_sigma_min_rad_s;
   for (const MotionSample& sample : window.samples) {
-    // the remaining samples belong to the next sweep
+    // The remaining samples belong to the next sweep.
     if (seconds(sample.from_ns - trajectory.start_ns()) >= trajectory.duration_s()) break;
     if (sample.clipped_axes >> axis & 1) sigma = std::max(sigma, sample.rate_sigma_rad_s[axis]);
   }
   return sigma;
 }
 
-/// Adds the process noise of the saturation deficit. The saturation deficit is a first-order Gauss-Markov process with
-/// the reported standard deviation: mapping.md (R46), (R47). If the deficit continues from the last sweep, its
-/// covariance follows from (R49).
+/// Adds the process noise of the saturation deficit, which is a first-order Gauss-Markov process with the reported
+/// standard deviation: mapping.md (R46), (R47). If the deficit continues from the last sweep, its covariance follows
+/// from (R49).
 void add_deficit_noise(const Params& params, const MotionWindow& window, const SweepTrajectory& trajectory,
                        Prediction& next) {
   if (!params.expert.rails.estimate_deficit) return;
@@ -81,7 +81,7 @@ double knot_correlation(const Params& params, const SweepTrajectory& trajectory)
   return std::exp(-trajectory.duration_s() / (SweepTrajectory::kKnots - 1) / params.expert.rails.deficit_time_s);
 }
 
-/// Propagates the covariances from the boundary over the predicted motion: mapping.md (R32).
+/// Propagates the covariances from the sweep boundary over the predicted motion: mapping.md (R32).
 void Prediction::compose(const StateEstimate& at_boundary) {
   propagate_covariance(jacobian_boundary, at_boundary.weight, prior.covariance);
   propagate_covariance(jacobian_boundary, at_boundary.error, errors);
@@ -122,8 +122,8 @@ Prediction predict(const Params& params, const SweepBoundary& boundary, const Mo
   MotionNoise within = inertial_noise(params, trajectory, window.samples, axes);
   const Eigen::Matrix3d clipped_force_m2_s2 = clipped_velocity_variance(params, trajectory, window.samples);
   u::block(next.noise, u::motion) += within;
-  // A force that saturates late in a sweep hardly affects the registration of the sweep, so the next sweep also
-  // includes the variance of the velocity.
+  // A force that saturates late in a sweep hardly affects the registration of the sweep. The velocity variance due to
+  // this force is therefore added to the next sweep as well.
   u::block(next.noise, u::velocity) += boundary.clipped_velocity_m2_s2 + clipped_force_m2_s2;
   u::block(within, u::velocity) += clipped_force_m2_s2;
   add_deficit_noise(params, window, trajectory, next);
@@ -157,10 +157,11 @@ StateEstimate posterior(const Prediction& prediction) {
 namespace {
 
 /// Computes the matrix that converts errors of the prior to errors after the registration: mapping.md (R52).
-/// prior_error_gain() is a separate function, which limits the use of the stack.
+/// prior_error_gain() is a separate function, because its matrices would otherwise enlarge the stack frame of
+/// posterior().
 [[gnu::noinline]] void prior_error_gain(const Prediction& prediction, const Registration::Result& aligned,
                                         Registration::Matrix& out) {
-  // noise of the surface normals carries no information about the motion
+  // Noise of the surface normals carries no information about the motion.
   Registration::Matrix kept = Registration::Matrix::Identity();
   dense::solve_semidefinite(make_invertible(prediction.prior.covariance), kept);
   kept += aligned.normal_noise_information;
@@ -169,9 +170,8 @@ namespace {
 
 }  // namespace
 
-/// Computes the errors of the unknowns after the registration: mapping.md (R52). The errors after the registration come
-/// from the prior and from the matched surfaces. `score_covariance` is the measured covariance of the surfaces' part of
-/// the gradient.
+/// Computes the covariance of the errors after the registration, which come from the prior and from the matched
+/// surfaces: mapping.md (R52). `score_covariance` is the measured covariance of the surfaces' part of the gradient.
 StateEstimate posterior(const Prediction& prediction, const Registration::Result& aligned) {
   StateEstimate start{aligned.mean, aligned.covariance, Registration::Matrix::Zero()};
   const auto from_prior = std::make_unique<Registration::Matrix>();

@@ -10,12 +10,12 @@ namespace tumble::mapping {
 
 /// SweepBoundary is the state at the boundary between two sweeps, with all data that the next sweep needs.
 struct SweepBoundary {
-  /// estimate of the unknowns at the boundary
+  /// Estimate of the unknowns at the boundary between both sweeps.
   StateEstimate state_estimate;
-  /// derivative with respect to the unknowns at the last sweep's start
+  /// Derivative of the unknowns at the boundary with respect to the unknowns at the start of the last sweep.
   Registration::Matrix end_start_jacobian = Registration::Matrix::Identity();
-  /// Magnitude |s_j| of the saturation deficit's factor, mapping.md (R8), at the end of the last sweep; 0 for
-  /// unsaturated axes and without registration.
+  /// Magnitude |s_j| of the saturation deficit's factor at the end of the last sweep, mapping.md (R8). The magnitude is
+  /// 0 for unsaturated axes, and if the last sweep was not registered.
   Eigen::Vector3d deficit_factor = Eigen::Vector3d::Zero();
   Eigen::Matrix3d clipped_velocity_m2_s2 =
       Eigen::Matrix3d::Zero();  ///< variance of the velocity due to the accelerometer's saturation, in W
@@ -26,7 +26,7 @@ struct SweepBoundary {
 
 /// MotionWindow is the motion that the IMU measures from the last sweep to the end of the current sweep.
 struct MotionWindow {
-  std::span<const MotionSample> samples;  ///< samples from the boundary on, also beyond the sweep's end
+  std::span<const MotionSample> samples;  ///< samples since the boundary, including samples after the sweep
   TimeNs end_ns = 0;
   int resting_sweeps = 0;  ///< consecutive sweeps at rest, including the current sweep
 };
@@ -34,19 +34,20 @@ struct MotionWindow {
 /// Prediction contains the predicted unknowns of the next sweep.
 struct Prediction {
   Registration::Prior prior;
-  /// derivative with respect to the unknowns at the boundary
+  /// Derivative of the predicted unknowns with respect to the unknowns at the boundary.
   Registration::Matrix jacobian_boundary = Registration::Matrix::Identity();
   Registration::Matrix noise = Registration::Matrix::Zero();   ///< process noise
   Registration::Matrix errors = Registration::Matrix::Zero();  ///< covariance of the actual errors of the mean
 
-  /// Computes the predicted covariances from those at the boundary. Call compose() after all other members are set.
+  /// Computes the predicted covariances from the covariances at the boundary. Call compose() after setting all other
+  /// members.
   void compose(const StateEstimate& at_boundary);
   /// Sets the velocity to zero and removes its correlations, for a robot that is known to be at rest. Call
   /// zero_velocity_update() before compose().
   void zero_velocity_update(double sigma_m_s);
 };
 
-/// Predicts the unknowns of a sweep; `trajectory` is the inertial motion from the end of the last sweep on.
+/// Predicts the unknowns of a sweep. `trajectory` is the inertial motion since the end of the last sweep.
 Prediction predict(const LidarInertialOdometry::Params& params, const SweepBoundary& boundary,
                    const MotionWindow& window, const SweepTrajectory& trajectory, const MotionPrior& known);
 
@@ -54,11 +55,11 @@ Prediction predict(const LidarInertialOdometry::Params& params, const SweepBound
 void predict_rest(const LidarInertialOdometry::Params& params, const SweepBoundary& boundary, Prediction& prediction);
 
 /// Returns whether the prior alone is accurate enough to insert points into the map. For clipped axes, the full
-/// reported standard deviation counts.
+/// reported standard deviation of the rate counts.
 bool prior_is_certain(const LidarInertialOdometry::Params& params, const SweepBoundary& boundary,
                       const MotionWindow& window, const SweepTrajectory& trajectory);
 
-/// Returns the estimate for a sweep without registration, which is the prediction.
+/// Returns the estimate for a sweep without registration: the prediction.
 StateEstimate posterior(const Prediction& prediction);
 /// Returns the estimate after the registration of a sweep, see mapping.md (R52).
 StateEstimate posterior(const Prediction& prediction, const Registration::Result& aligned);
@@ -67,14 +68,14 @@ StateEstimate posterior(const Prediction& prediction, const Registration::Result
 /// (R62).
 double innovation(const Prediction& prediction, const Registration::Estimate& aligned);
 
-/// Returns whether a registered pose agrees with the prediction, within the predicted covariance and the matching
-/// distance. Beyond the matching distance, any nearby surface may match by chance. `innovation` is the normalised
-/// innovation of the pose, see mapping.md (R67).
+/// Returns whether a registered pose agrees with the prediction, see mapping.md (R67). The difference must be within
+/// the predicted covariance and the matching distance. Beyond the matching distance, any nearby surface may match by
+/// chance. `innovation` is the normalised innovation of the pose.
 bool is_expected(const LidarInertialOdometry::Params& params, const Prediction& prediction,
                  const Registration::Estimate& aligned, double innovation);
 
 /// Computes the SweepBoundary at the end of a sweep from the estimate at its start and the motion `trajectory`.
-/// `alignment` may be null.
+/// `alignment` is null for a sweep without registration.
 void boundary_after(const LidarInertialOdometry::Params& params, const StateEstimate& start, const MotionWindow& window,
                     const SweepTrajectory& trajectory, const Registration::Result* alignment, SweepBoundary& boundary);
 

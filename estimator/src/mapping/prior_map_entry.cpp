@@ -10,7 +10,8 @@ namespace tumble {
 
 Status LidarInertialOdometry::use_map(PriorMap map) {
   if (const Status status = check_prior_map(map); !status.ok()) return status;
-  if (mapping::has_started(impl_->tracking)) return {ErrorCode::time_order, "sweeps before the prior map", 1.0, 0.0};
+  if (mapping::has_started(impl_->tracking))
+    return {ErrorCode::time_order, "number of sweeps before the prior map", 1.0, 0.0};
   if (map.T_MI) set_start_pose(*map.T_MI);
   impl_->localiser = mapping::MapLocaliser(std::move(map));
   return {};

@@ -19,7 +19,7 @@ constexpr VoxelMap::Params kVoxels{.voxel_m = 0.5, .spacing_m = 0.1};
 constexpr int kNeighbours = 12;
 constexpr float kFitRadius_m = 1.0f;
 
-constexpr float kCell_m = 0.5f;  // edge of a grid cell, unless the grid becomes too large
+constexpr float kCell_m = 0.5f;  // edge of a grid cell; larger if the grid would exceed kCellsMax
 constexpr double kCellsMax = 32.0 * 1024 * 1024;
 constexpr std::uint8_t kOnSurface = 2, kNextToSurface = 1;
 constexpr int kYaws = 72;
@@ -27,16 +27,16 @@ constexpr std::size_t kCoarsePoints = 240;  // number of surface points for a co
 constexpr std::size_t kKept = 4000, kRefined = 96;
 constexpr float kApart_m = 1.0f;  // minimum distance of two distinct poses
 constexpr double kApart_rad = 0.12;
-// largest difference between the vertical components of an anchor's normal and a cell's normal
+// Largest difference between the vertical components of the normals of an anchor and of a cell.
 constexpr float kNormalZ = 0.3f;
 
-constexpr float kCovered_m = 1.0f;  // a point is covered if the prior map has a surface within this distance
+constexpr float kCovered_m = 1.0f;  // maximum distance of a covered point from the prior map
 constexpr float kNearSurface_m = 0.5f, kAgreeDistance_m = 0.12f, kAgreeNormal = 0.7f;
 constexpr std::size_t kRefinePoints = 400;
 constexpr float kLastKernel_m = 0.15f;
 
-/// Returns the slope class of a surface normal. A coarse score uses equally many points of each slope class
-/// (normal-space sampling), because trunks and rocks determine the pose better than the ground.
+/// Returns the slope class of a surface normal. A coarse score uses equally many points of each class (normal-space
+/// sampling), because trunks and rocks determine the pose better than the ground.
 int slope_class(const Eigen::Vector3f& normal) {
   const float z = std::abs(normal.z());
   return z < 0.3f ? 0 : z < 0.6f ? 1 : z < 0.85f ? 2 : 3;
@@ -110,8 +110,8 @@ PriorScene::PriorScene(PriorMap map) : map_(std::move(map)), voxels_(kVoxels) {
   build_grid();
 }
 
-/// Marks the grid cells that contain surfaces, and the neighbours of these cells. Because the grid has a margin, the
-/// search needs no range checks.
+/// Marks the grid cells that contain surfaces, and the neighbours of these cells. The grid has a margin, so the search
+/// needs no range checks.
 void PriorScene::build_grid() {
   Eigen::AlignedBox3f box;
   for (std::uint32_t index = 0; index < voxels_.index_end(); ++index)

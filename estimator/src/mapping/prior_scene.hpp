@@ -13,13 +13,13 @@
 namespace tumble::mapping {
 
 /// SurfacePoint is a point of the current run's map with its normal. A list of surface points has at most one point per
-/// cube of 1 m, so that their errors are nearly independent.
+/// cube of 1 m, so that the errors of the points are nearly independent.
 struct SurfacePoint {
   Eigen::Vector3f position_W_m;
   Eigen::Vector3f normal_W;
 };
 
-/// Returns the surface points of `map` within `radius_m` of a position, nearest cube first.
+/// Returns the surface points of `map` within `radius_m` of a position, ordered by the distance of their cubes.
 std::vector<SurfacePoint> surface_points(const VoxelMap& map, const Eigen::Vector3f& p_WI_m, float radius_m);
 
 /// FramePose is a possible pose of the local frame W in the prior map, with the number of surface points that support
@@ -27,8 +27,8 @@ std::vector<SurfacePoint> surface_points(const VoxelMap& map, const Eigen::Vecto
 struct FramePose {
   Eigen::Isometry3d T_MW = Eigen::Isometry3d::Identity();
   std::size_t covered = 0;   ///< surface points near the prior map's surfaces
-  std::size_t agreeing = 0;  ///< covered points that lie on the prior map's surfaces
-  /// Covariance of the pose: displacement and rotation of the local frame about the sensor, in frame M.
+  std::size_t agreeing = 0;  ///< covered points on the prior map's surfaces, with similar normals
+  /// Covariance of the pose, in axes of M: displacement and rotation of the local frame about the sensor.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
 
   double ratio() const { return covered == 0 ? 0.0 : double(agreeing) / double(covered); }
@@ -47,13 +47,13 @@ class PriorScene {
   explicit PriorScene(PriorMap map);
 
   const PriorMap& map() const { return map_; }
-  /// Returns at most two distinct poses of the local frame in the prior map, best first. Cost: O(surface area of the
-  /// map) for a search in the whole map, about a second for a map of 100 m.
+  /// Returns at most two distinct poses of the local frame in the prior map, best first. Cost of a search in the whole
+  /// map: O(surface area of the map), about a second for a map of 100 m.
   ///
   /// @param sensor_W_m  sensor position, about which poses are refined
-  /// @param attempt     the search anchors the local map at another surface point for each attempt
+  /// @param attempt     number of the search; each search uses another surface point as anchor
   /// @param region      limits of the search; null: the whole map
-  /// @param tried       number of poses that the search compared
+  /// @param tried       receives the number of poses that the search compared
   std::vector<FramePose> search(const std::vector<SurfacePoint>& points, const Eigen::Vector3d& sensor_W_m,
                                 std::size_t attempt, const SearchRegion* region, std::size_t& tried) const;
   /// Refines a pose by point-to-plane registration, and counts the points that agree with the prior map.
@@ -81,7 +81,7 @@ class PriorScene {
   PriorMap map_;
   VoxelMap voxels_;
   std::vector<Eigen::Vector3f> normals_;  // by index of voxels_
-  // dense grid of surface cells with a margin of the query's radius, and the list of the occupied cells
+  // Dense grid of surface cells with a margin of the query's radius, and the list of the occupied cells.
   float cell_m_ = 0.0f;
   Eigen::Vector3f low_M_m_ = Eigen::Vector3f::Zero();
   Eigen::Vector3i size_ = Eigen::Vector3i::Zero();

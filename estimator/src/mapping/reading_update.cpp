@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// reading_update.cpp updates the prediction of a sweep by an odometer reading: mapping.md, section 3.
+// reading_update.cpp updates the prediction of a sweep with an odometer reading: mapping.md, section 3.
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <memory>
@@ -24,11 +24,11 @@ using Covariance = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMos
 template <int Values>
 using MotionJacobian = Eigen::Matrix<double, Values, kMotionSize>;
 
-constexpr int kIterations = 6;              // maximum number; two or three iterations are usually enough
+constexpr int kIterations = 6;              // two or three iterations are usually enough
 constexpr double kConvergenceLimit = 1e-9;  // convergence limit [m, rad, m/s, rad/s]
 
-/// Offsets contains the differences from the prediction: of the unknowns at the sweep boundary, and of the process
-/// noise since.
+/// Offsets contains the differences between update and prediction, for the unknowns at the sweep boundary and for the
+/// process noise since then.
 struct Offsets {
   Registration::Vector start = Registration::Vector::Zero();
   Eigen::Matrix<double, kMotionSize, 1> noise = Eigen::Matrix<double, kMotionSize, 1>::Zero();
@@ -58,8 +58,8 @@ class Sweep {
     return time_ns >= predicted_.state.time_ns - beyond_ns && time_ns <= window_.end_ns + beyond_ns;
   }
 
-  /// Evaluates the motion at a time within the sweep: mapping.md (R34). The standard deviation of the process noise
-  /// grows in proportion to time.
+  /// Evaluates the motion at a time within the sweep: mapping.md (R34). The standard deviation of the process noise is
+  /// proportional to the time since the boundary.
   MotionInstant at(TimeNs time_ns, const Offsets& offsets) const {
     MotionInstant out;
     const double t_s = seconds(time_ns - predicted_.state.time_ns);
@@ -71,7 +71,7 @@ class Sweep {
     Registration::Estimate start = predicted_;
     start.add(moved);
     SweepTrajectory trajectory;
-    // build() cannot fail here, because add_sweep() ensures that the IMU samples cover the window
+    // build() cannot fail here, because add_sweep() ensures that the IMU samples cover the window.
     (void)trajectory.build(start.state, window_.samples, window_.end_ns, start.calibration.gravity_W_m_s2,
                            start.deficit_rad_s);
     std::size_t hint = 0;
@@ -92,8 +92,8 @@ class Sweep {
   const MotionWindow& window_;
 };
 
-/// Adds the derivatives of the predicted odometer reading with respect to the unknowns at the sweep boundary, and to
-/// the process noise. `by_moment` is its derivative with respect to the motion at the time of the reading.
+/// Adds the derivatives of the predicted odometer reading with respect to the unknowns at the sweep boundary and the
+/// process noise. `by_moment` is its derivative with respect to the motion at the time of the reading.
 template <int Size>
 void add(const MotionJacobian<Size>& by_moment, const MotionInstant& moment, Expected& out) {
   const Eigen::Matrix<double, Size, kUnknowns> jacobian_start = by_moment * moment.jacobian_start;
@@ -152,9 +152,9 @@ bool holds(const Sweep& sweep, const OdometerReading& reading) {
 template <int Size>
 using Gain = Eigen::Matrix<double, Size, Eigen::Dynamic, 0, Size, kMost>;
 
-/// Work contains the buffers of an update on the heap, because propagate_covariance() already uses much of the stack.
+/// Work contains the buffers of an update on the heap, because propagate_covariance() uses much of the stack.
 struct Work {
-  Matrix at_start, before, left;  ///< covariance at the start, the part due to noise; factor of the remaining errors
+  Matrix at_start, before, left;  ///< covariance at the start; its part due to noise; factor of the remaining errors
   Offsets offsets;
   Expected expected;
   Gain<kUnknowns> jacobian_start;  ///< Kalman gain of the unknowns at the boundary
@@ -175,8 +175,8 @@ bool compute_gains(const MotionNoise& within, Work& work) {
   return true;
 }
 
-/// Iterates to the unknowns that best fit the odometer reading and the prediction. Returns false if the update has no
-/// solution.
+/// Iterates to the unknowns that best fit the odometer reading and the prediction. Returns false if the equations have
+/// no solution.
 [[gnu::noinline]] bool iterate_to_convergence(const OdometerReading& reading, const Sweep& sweep,
                                               const MotionNoise& within, Work& work) {
   for (int iteration = 0; iteration < kIterations; ++iteration) {
@@ -226,7 +226,7 @@ void fuse_reading(const OdometerReading& reading, const SweepBoundary& boundary,
   const Sweep sweep(prediction.prior.mean, window);
   if (!holds(sweep, reading)) return;
   const auto work = std::make_unique<Work>();
-  // the gains follow from the covariance C, as in the registration: mapping.md section 6
+  // As in the registration, the gains follow from the covariance C: mapping.md section 6.
   propagate_covariance(prediction.jacobian_boundary, boundary.state_estimate.weight, work->at_start);
   Matrix& before = work->before;  // noise at the start: saturation deficit, earlier saturation
   before = prediction.noise;

@@ -27,7 +27,7 @@ Matrix information_of(const Matrix& covariance) {
   return dense::Cholesky(positive).inverse<Matrix>();
 }
 
-/// Adds the information and the gradient of the prior to the normal equations over all unknowns: mapping.md (R22),
+/// Adds the information and the gradient of the prior to the normal equations for all unknowns: mapping.md (R22),
 /// (R23).
 void add_prior(const Registration::Prior& prior, const Matrix& information, const Registration::Estimate& now,
                Matrix& H, Vector& g) {
@@ -42,7 +42,8 @@ void add_prior(const Registration::Prior& prior, const Matrix& information, cons
   g += J.transpose() * (information * away);
 }
 
-/// Returns whether the registered motion `now` agrees with the prior, within the prior's covariance: mapping.md (R25).
+/// Returns whether the registered motion `now` agrees with the prior, within the covariance of the prior: mapping.md
+/// (R25).
 bool agrees(const Registration::Prior& prior, const Registration::Estimate& now) {
   constexpr int kMotionSize = Registration::kMotionSize;
   const Vector moved = now.minus(prior.mean);
@@ -180,7 +181,7 @@ Status Registration::iterate(const Problem& problem, IterationState& at, SweepTr
 }
 
 RegistrationVerdict Registration::classify_result(const Problem& problem, const IterationState& at) const {
-  // at a wrong local minimum of the cost, most matched points are far from their planes
+  // At a wrong local minimum of the cost, most matched points are far from their planes.
   const bool fits =
       static_cast<double>(at.sum.inliers) >= params_.expert.inlier_ratio_min * static_cast<double>(at.sum.matches);
   if (!at.converged || !fits) return RegistrationVerdict::diverged;
@@ -207,7 +208,7 @@ Status Registration::finalise(const Problem& problem, const IterationState& at, 
 /// Computes how well the surfaces constrain each direction: mapping.md (R30), (R31).
 void Registration::compute_eigenvalues(std::span<const SweepPoint> points, double kernel_m, const Sums& sum,
                                        Result& result) const {
-  Eigen::Matrix<double, 6, 6> shape = Eigen::Matrix<double, 6, 6>::Zero();  // with robust weights, without variances
+  Eigen::Matrix<double, 6, 6> shape = Eigen::Matrix<double, 6, 6>::Zero();  // weighted robustly, but not by variance
   double weight = 0.0, lever2 = 0.0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (matches_[i].plane.verdict != PlaneVerdict::plane) continue;

@@ -80,7 +80,7 @@ double Registration::point_variance_m2(const SweepPoint& point) const {
   return range * range + skew * skew;
 }
 
-/// Computes the distance of a point from its matched plane, and the derivatives of the distance with respect to the
+/// Computes the distance of a point from its matched plane, and the derivatives of this distance with respect to the
 /// unknowns: mapping.md (R16), (R17).
 double Registration::residual(const SweepTrajectory& trajectory, const SweepCalibration& calibration,
                               const SweepPoint& point, const PlaneFit& plane, std::size_t& hint, Vector& derivative) {
@@ -97,8 +97,8 @@ void Registration::find_match(const VoxelMap& map, std::size_t point, Neighbours
   if (match.searched) {
     const float moved2 = (positions_[point] - match.search_position_W_m).squaredNorm();
     if (moved2 <= rematch2) return;
-    // The radius includes all neighbours of the previous search, so it also includes the nearest neighbours now. A
-    // small margin covers rounding.
+    // The radius includes all neighbours of the previous search, and therefore the nearest neighbours of the moved
+    // point. A small margin covers rounding.
     radius_m = std::min(radius_m, kRounding * (match.farthest_neighbour_m + std::sqrt(moved2)));
   }
   match.searched = true;
@@ -113,11 +113,11 @@ void Registration::find_match(const VoxelMap& map, std::size_t point, Neighbours
     const float sigma = map.sigma_m(found.index[k]);
     variance += sigma * sigma;
   }
-  // variance of a match that comes from the map: last part of mapping.md (R18)
+  // Variance of a match due to the map: last part of mapping.md (R18).
   match.map_variance_m2 = variance / static_cast<float>(found.count) + match.plane.thickness_variance_m2;
 }
 
-/// Computes the weight of a matched point, inverse variance times robust weight (Geman, McClure, 1987): mapping.md
+/// Computes the weight of a matched point: inverse variance times robust weight (Geman, McClure, 1987), mapping.md
 /// (R19), (R21).
 Registration::Weight Registration::compute_weight(const SweepPoint& point, const Match& match, double distance_m,
                                                   double kernel_m) const {
@@ -157,7 +157,7 @@ double Registration::kernel_width_m() {
   if (sorted_distances_.empty()) return params_.expert.kernel_min_m;
   const auto middle = sorted_distances_.begin() + static_cast<std::ptrdiff_t>(sorted_distances_.size() / 2);
   std::nth_element(sorted_distances_.begin(), middle, sorted_distances_.end());
-  // for a normal distribution, three standard deviations are 3 * 1.4826 times the median absolute value
+  // For a normal distribution, three standard deviations are 3 * 1.4826 times the median absolute value.
   return std::max(params_.expert.kernel_min_m, 3.0 * 1.4826 * static_cast<double>(*middle));
 }
 
@@ -165,8 +165,8 @@ double Registration::kernel_width_m() {
 void Registration::accumulate_block(std::span<const SweepPoint> points, std::size_t block,
                                     const SweepTrajectory& trajectory, const SweepCalibration& calibration,
                                     const Unknowns& unknowns, double kernel_m, Products& products, Sums& sum) {
-  // Each matched point has one column with its distance and the derivatives with respect to the free unknowns. The
-  // column is multiplied by the square root of the match's weight.
+  // Each matched point has one column: its distance, and the derivatives with respect to the free unknowns, multiplied
+  // by the square root of the match's weight.
   auto& rows = products.columns;
   Eigen::Matrix<double, static_cast<int>(kBlock), 1> weighted;
   const bool rigid = !unknowns.deficit && !unknowns.calibration;
@@ -217,10 +217,10 @@ void Registration::accumulate(std::span<const SweepPoint> points, const SweepTra
   sum.H = lower.selfadjointView<Eigen::Lower>();
 }
 
-/// NormalNoise is the part of the normal matrix that noise of the surface normals causes, for all free unknowns:
-/// mapping.md (R28), (R29). The noise must cover all free unknowns, not only the motion. Otherwise the noise would seem
-/// to determine combinations of unknowns that surfaces cannot determine, for example attitude with mounting rotation.
-/// The covariance (R52) of such combinations would then grow without bound.
+/// NormalNoise is the part of the normal matrix that is due to noise of the surface normals, for all free unknowns:
+/// mapping.md (R28), (R29). If NormalNoise covered only the motion, noise would seem to determine combinations of
+/// unknowns that surfaces cannot determine, for example attitude with mounting rotation. The covariance (R52) of such
+/// combinations would then grow without bound.
 struct Registration::NormalNoise {
   const Unknowns& unknowns;
   using Products = mapping::OuterProducts<kUnknowns, 2 * static_cast<int>(kBlock)>;
@@ -258,8 +258,8 @@ struct Registration::NormalNoise {
   }
 };
 
-/// Pulls contains the gradient sum q of each cluster of points, which determine the covariance of the gradient:
-/// mapping.md (R26).
+/// Pulls contains the gradient sum q of each cluster of points. The gradient sums of all clusters determine the
+/// covariance of the gradient: mapping.md (R26).
 struct Registration::Pulls {
   SpatialHash& cluster_of;
   std::vector<Vector>& pulls;

@@ -8,20 +8,20 @@
 
 namespace tumble {
 
-/// Unknowns lists the free unknowns, which a registration estimates. Sums contains rows only for the free unknowns.
+/// Unknowns lists the free unknowns, which a registration estimates. Sums contains only the rows of free unknowns.
 struct Registration::Unknowns {
   std::array<int, kUnknowns> free{};  ///< indices of the free unknowns, ascending
   int count = 0;
   bool deficit = false, calibration = false;
 
-  /// Constructs from the prior covariance. The motion is always free; any other unknown is free if its prior variance
-  /// is above 0.
+  /// Constructs the list from the prior covariance. The motion is always free; any other unknown is free if its prior
+  /// variance is above 0.
   explicit Unknowns(const Matrix& covariance);
 
-  /// Copies the sums over the free unknowns to normal equations H, g over all unknowns. The rows of fixed unknowns are
+  /// Copies the sums over the free unknowns to normal equations H, g for all unknowns. The rows of fixed unknowns are
   /// 0.
   void expand(const Sums& sum, Matrix& H, Vector& g) const;
-  /// Removes the fixed unknowns from the normal equations, so that their solution step is 0.
+  /// Removes the fixed unknowns from the normal equations, so that the solution is 0 for them.
   void hold(Matrix& H, Vector& g) const;
   void clear_fixed_blocks(Matrix& M) const;
   void clear_fixed(Matrix& covariance) const;

@@ -15,12 +15,12 @@ namespace {
 using Params = LidarInertialOdometry::Params;
 
 // kDeficitTries lists the saturation deficits that are tried, as multiples of deficit_try_rad_s. Small deficits are the
-// most frequent, so the list has more small values.
+// most frequent, so most values are small.
 constexpr double kDeficitTries[] = {1.0, 2.0, 3.0, 5.0};
-constexpr double kDeficitSigmas = 5.0;  // larger deficits, in standard deviations, are not tried
+constexpr double kDeficitSigmas = 5.0;  // largest tried deficit, in standard deviations
 
 constexpr int kStartsPerRound = 12;  // number of initial poses per round: six axes, two directions
-// distance of an initial pose from the prior, in standard deviations, up to the limit of the round
+// Distance of an initial pose from the prior, in standard deviations. The maximum distance grows with each round.
 constexpr double kStartSigmas = 1.5;
 
 bool converged(const Registration::Result& found) {
@@ -38,7 +38,7 @@ void track(const Params& params, const Registration::Prior& prior, const Scene& 
            SweepTrajectory& trajectory, Registration::Result& found) {
   aligner.align_with_all_points(prior, scene, trajectory, found);
   int iterations = found.iterations, tries = 0;
-  // after an attempt that exceeds the correction limit, further attempts would also exceed it
+  // After an attempt that exceeds the correction limit, further attempts would also exceed this limit.
   const bool out_of_bounds = found.correction_m > params.expert.matching.correction_max_m ||
                              found.correction_rad > params.expert.matching.correction_max_rad;
   if (found.verdict == RegistrationVerdict::diverged && !out_of_bounds) {
@@ -62,8 +62,8 @@ void track(const Params& params, const Registration::Prior& prior, const Scene& 
 }
 
 /// Registers the sweep from the predicted pose and from initial poses around it, until the surfaces fit. If no pose
-/// fits, the function returns the pose with the most inliers. An unsuccessful search continues with the next sweep,
-/// because the number of initial poses per sweep is limited.
+/// fits, the result is the pose with the most inliers. The number of initial poses per sweep is limited, so an
+/// unsuccessful search continues with the next sweep.
 void search(const Params& params, const SearchContext& from, const Scene& scene, Aligner& aligner,
             SweepTrajectory& trajectory, Registration::Result& found) {
   const RelocalisationParams& starts = params.expert.search;

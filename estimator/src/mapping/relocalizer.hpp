@@ -19,13 +19,13 @@ struct Attempt {
 struct SearchContext {
   const TrackingState& tracking;
   const Registration::Prior& prior;
-  /// State that follows from a contradicted relocalisation, as an initial pose of the search; or null.
+  /// State according to a contradicted relocalisation, as an initial pose of the search; null if there is none.
   const MotionState* contradicted = nullptr;
 };
 
 /// Registers a sweep to the map, by tracking or by a search of initial poses, depending on the tracking state.
-/// `trajectory` is the aligned motion, or that of a failed attempt. `alignment` is the registration at the start of the
-/// sweep, and is empty if no registration succeeded.
+/// `trajectory` is the registered motion, or the motion of a failed attempt. `alignment` is the registration at the
+/// start of the sweep, and empty if no registration succeeded.
 Attempt attempt(const LidarInertialOdometry::Params& params, const SearchContext& from, const Scene& scene,
                 Aligner& aligner, SweepTrajectory& trajectory, std::optional<Registration::Result>& alignment);
 
@@ -39,13 +39,13 @@ struct Placed {
 };
 
 /// Sets the verdict of `placed`, the result of registering a sweep with `points` points. `placed` must contain the
-/// registration, and whether it agrees with the prediction. If the map has too few points, or after enough failed
-/// searches, the verdict is `degenerate`, and the inertial prediction continues the motion.
+/// registration, and whether it agrees with the prediction. The verdict is `degenerate`, and the inertial prediction
+/// continues the motion, if the map has too few points or after enough failed searches.
 void judge(const LidarInertialOdometry::Params& params, const TrackingState& before, std::size_t points,
            bool prior_certain, const Attempt& attempt, Placed& placed);
 
-/// Computes the initial pose number `index` of a search. Number 0 is the predicted pose. All further initial poses are
-/// shifted or rotated along one axis, closest first, mapping.md (R66).
+/// Computes the initial pose number `index` of a search. Number 0 is the predicted pose. All other poses are shifted or
+/// rotated along one axis, closest first: mapping.md (R66).
 void move_start(const RelocalisationParams& params, int index, Registration::Prior& prior);
 
 }  // namespace tumble::mapping

@@ -3,9 +3,9 @@
 
 #include <utility>
 
-/// rotation_series.hpp computes cosine and sine of half a small angle by power series. Let h be the square of the half
-/// angle x, and c = s = 1. Each pair of ratios (a, b) updates c to 1 - h a c and s to 1 - h b s. The final c is cos(x),
-/// and the final s is sin(x) / x.
+/// rotation_series.hpp computes cosine and sine of half a small angle by power series. Let x be half the angle, h =
+/// x^2, and c = s = 1 initially. Each pair of ratios (a, b) updates c to 1 - h a c and s to 1 - h b s. The final c is
+/// cos(x), and the final s is sin(x) / x.
 namespace tumble::rotation_series {
 
 /// kAngle2_rad2 is the square of the largest full angle for which the series is accurate. Larger angles would need more

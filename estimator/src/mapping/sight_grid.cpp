@@ -14,9 +14,9 @@ namespace {
 // the size of the checked bins.
 constexpr float kMinRangePerMotion = 10.0f;
 constexpr int kEmptyBinsMax = 4;  // maximum number of empty bins out of nine; rings may be further apart than bins
-// A map point counts as no longer present if all returns in its direction are farther away by at least this distance.
-// The distance covers errors of the relative pose of two sweeps, noise of a return, and slope of the ground within a
-// bin.
+// A map point counts as seen through if all returns in its direction are farther away by at least kBeyond_m +
+// kBeyondRatio * range + kDeviations * sigma. The margin covers the relative pose error of two sweeps, the noise of a
+// return, and the slope of the ground within a bin.
 constexpr float kBeyond_m = 0.3f, kBeyondRatio = 0.03f;
 constexpr float kDeviations = 3.0f;
 
@@ -28,8 +28,8 @@ void FreeSpaceGrid::start(const Eigen::Vector3f& from_W_m, float moved_m) {
   nearest_m_.assign(std::size_t{6} * kBins * kBins, std::numeric_limits<float>::infinity());
 }
 
-/// Returns the direction of a point from the ray origin. The function returns nothing for the ray origin and for
-/// non-finite coordinates.
+/// Returns the direction of a point from the ray origin. Returns nothing for the ray origin itself and for non-finite
+/// coordinates.
 std::optional<FreeSpaceGrid::Direction> FreeSpaceGrid::direction(const Eigen::Vector3f& lever_m) {
   Eigen::Index axis = 0;
   const float along = lever_m.cwiseAbs().maxCoeff(&axis);
@@ -49,8 +49,8 @@ void FreeSpaceGrid::add(const Eigen::Vector3f& return_W_m) {
   nearest_m = std::min(nearest_m, lever_m.norm());
 }
 
-/// Returns the smallest range of the returns around a direction. The result is 0 if there are too few returns, or if
-/// the direction is at an edge of the cube that contains the bins.
+/// Returns the smallest range of the returns around a direction. Returns 0 if there are too few returns, or if the
+/// direction is at an edge of the cube that contains the bins.
 float FreeSpaceGrid::free_range_m(const Direction& towards) const {
   float nearest_m = std::numeric_limits<float>::infinity();
   int empty = 0;

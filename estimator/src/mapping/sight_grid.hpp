@@ -7,13 +7,13 @@
 
 namespace tumble::mapping {
 
-/// FreeSpaceGrid is the free space that a sweep observed. Bins on the faces of a cube around the sensor contain the
-/// nearest return in each direction. A map point that is closer than all returns around its direction is no longer
-/// present, see mapping.md (R65). FreeSpaceGrid makes no statement about directions with few returns, and about
-/// directions at an edge of the cube.
+/// FreeSpaceGrid is the free space that a sweep observed: the nearest return in each direction, in bins on the faces of
+/// a cube around the sensor. A sweep saw through a map point if all returns around its direction are farther away, see
+/// mapping.md (R65). The verdict is `unknown` for directions with few returns, and for directions at an edge of the
+/// cube.
 class FreeSpaceGrid {
  public:
-  /// Sets the ray origin of the following points, and how far the sensor moved around this origin during the sweep.
+  /// Sets the ray origin of the following points, and how far the sensor moved from this origin during the sweep.
   void start(const Eigen::Vector3f& from_W_m, float moved_m);
   void add(const Eigen::Vector3f& return_W_m);
 

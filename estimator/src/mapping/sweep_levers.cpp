@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// sweep_levers.cpp evaluates SweepTrajectory::at for several points of a sweep at a time. The results equal those of
-// Eigen's quaternions, because the operations and their order are the same.
+// sweep_levers.cpp evaluates SweepTrajectory::at for several points of a sweep at a time. The operations and their
+// order equal those of Eigen's quaternions, so the results are bit-identical.
 #include <algorithm>
 #include <limits>
 
@@ -40,8 +40,8 @@ void turn(double rate2_rad2_s2, Lanes& p) {
 
 }  // namespace
 
-/// Computes the world position of each point of a sweep, without the parts due to start state and gravity: mapping.md
-/// (R2), (R4), (R6).
+/// Computes the lever arm vector of each point of a sweep: the world position minus the contributions of start state
+/// and gravity, mapping.md (R2), (R4), (R6).
 void SweepTrajectory::lever_arm_vectors(std::span<const SweepPoint> points,
                                         std::span<Eigen::Vector3f> levers_W_m) const {
   const double from_s = -kExtrapolation_s, to_s = duration_s_ + kExtrapolation_s;
@@ -83,10 +83,10 @@ void SweepTrajectory::lever_arm_vectors(std::span<const SweepPoint> points,
       const double s = p.s[l], x = p.x[l], y = p.y[l], z = p.z[l];
       const double half = 0.5 * s * p.sinc[l], bx = half * w.x(), by = half * w.y(), bz = half * w.z();
       const double bw = p.cosine[l];
-      // quaternion product of the attitude at the start of the interval with the rotation up to the point's time
+      // Quaternion product: attitude at the start of the interval times rotation up to the point's time.
       const double qx = (aw * bx + ay * bz) - (az * by - ax * bw), qy = (aw * by + ay * bw) + (az * bx - ax * bz);
       const double qz = (aw * bz - ay * bx) + (az * bw + ax * by), qw = (aw * bw - ay * by) - (az * bz + ax * bx);
-      // position of the point after the rotation
+      // Position of the point after the rotation.
       double tx = qy * z - qz * y, ty = qz * x - qx * z, tz = qx * y - qy * x;
       tx += tx;
       ty += ty;

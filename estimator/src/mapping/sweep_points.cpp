@@ -18,7 +18,7 @@ Status SweepPoints::select(const Params& params, std::span<const LidarPoint> ret
   chosen_.clear();
   counts = {found.used, 0, found.has_ring_numbers};
   if (Status status = check_selection(span_ns, returns, found); !status.ok()) return status;
-  // Only points on the same ring are neighbours, so without ring numbers a point has no neighbours.
+  // Without ring numbers, a point has no neighbours, because only points on the same ring are neighbours.
   if (found.has_ring_numbers) counts.isolated = lone_returns_.drop(noise_, all_);
   if (all_.empty()) return {ErrorCode::too_few, "points", 0.0, 1.0};
   return {};

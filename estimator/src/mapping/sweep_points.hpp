@@ -27,8 +27,7 @@ class SweepPoints {
   /// of check_selection().
   Status select(const Params& params, std::span<const LidarPoint> returns, TimeNs span_ns,
                 const SweepCalibration& calibration, double start_s, Counts& counts);
-  /// Selects the points for the registration, one per cube of the world, at the positions that the predicted motion
-  /// gives.
+  /// Selects one point per cube of the world for the registration, with the points at their predicted positions.
   void choose(const Params& params, const SweepTrajectory& predicted);
   void move(const SweepCalibration& calibration, double later_s) { apply_calibration(calibration, later_s, all_); }
 

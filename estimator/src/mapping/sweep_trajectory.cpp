@@ -12,8 +12,8 @@ namespace tumble {
 
 namespace {
 
-/// Returns for each axis the largest standard deviation of the rate among the samples up to `end_ns` in which the axis
-/// is clipped.
+/// Returns for each axis the largest standard deviation of the rate, among the samples up to `end_ns` in which this
+/// axis is clipped.
 Eigen::Vector3d max_rate_sigma(std::span<const MotionSample> samples, TimeNs end_ns) {
   Eigen::Vector3d sigma = Eigen::Vector3d::Zero();
   for (const MotionSample& sample : samples) {
@@ -25,8 +25,8 @@ Eigen::Vector3d max_rate_sigma(std::span<const MotionSample> samples, TimeNs end
   return sigma;
 }
 
-/// Returns for a sample the signed factors s_j by which the saturation deficit of each axis applies: mapping.md (R8).
-/// The factors are proportional to the standard deviation of the rate.
+/// Returns the signed factors s_j by which the saturation deficit of each axis changes the rate of a sample: mapping.md
+/// (R8). The factors are proportional to the standard deviation of the rate.
 Eigen::Vector3d deficit_factors(const MotionSample& sample, const Eigen::Vector3d& least_known_rad_s) {
   Eigen::Vector3d share = Eigen::Vector3d::Zero();
   for (int axis = 0; axis < 3; ++axis) {
@@ -47,8 +47,8 @@ Eigen::Matrix<double, SweepTrajectory::kKnots, 1> knot_weights(double share) {
   return weights;
 }
 
-/// Returns so3::exp(rate_rad_s * s) by its power series, exact to rounding. Each point of a sweep needs one rotation by
-/// a small angle, for which the power series is fast.
+/// Returns so3::exp(rate_rad_s * s). For the small angle of each point of a sweep, the power series is fast and exact
+/// to rounding.
 Eigen::Quaterniond rotated_by(const Eigen::Vector3d& rate_rad_s, double s) {
   const double angle2 = s * s * rate_rad_s.squaredNorm();
   if (!(angle2 <= rotation_series::kAngle2_rad2)) return so3::exp(rate_rad_s * s);
@@ -86,7 +86,7 @@ Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSa
     return {ErrorCode::too_few, "imu time_ns", samples.empty() ? 0.0 : double(samples.back().time_ns), double(end_ns)};
   }
   if (samples.front().from_ns > start.time_ns) {
-    // all errors with code `gap` report seconds
+    // All errors with code `gap` report seconds.
     return {ErrorCode::gap, "imu window start", seconds(samples.front().from_ns - start.time_ns), 0.0};
   }
 
@@ -100,7 +100,7 @@ Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSa
   for (const MotionSample& sample : samples) {
     const TimeNs from = std::max(sample.from_ns, start.time_ns);
     const TimeNs to = std::min(sample.time_ns, end_ns);
-    // a segment of zero length still gets one interval, so that the trajectory can be evaluated
+    // A trajectory of zero length gets one interval, so that it can be evaluated.
     if (to < from || (to == from && !(end_ns == start.time_ns && intervals_.empty()))) continue;
     const double dt = seconds(to - from);
     const Eigen::Vector3d share = deficit_factors(sample, sigma);
@@ -110,7 +110,7 @@ Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSa
     now.length_s = dt;
     now.deficit_factor = share;
     now.knot_weight = knot_weights(duration_s_ > 0.0 ? (now.start_s + 0.5 * dt) / duration_s_ : 0.0);
-    // rate with saturation deficit, and its integration over the interval: mapping.md (R7), (R5), (R4), (R6)
+    // Rate with saturation deficit, and its integration over the interval: mapping.md (R7), (R5), (R4), (R6).
     now.rate_I_rad_s = sample.w_WI_I_rad_s + share.cwiseProduct(deficit_rad_s * now.knot_weight);
     const Eigen::Matrix3d R = now.q_WI.toRotationMatrix();
     const Eigen::Matrix3d mean_rotation = R * so3::left_jacobian(now.rate_I_rad_s * dt);
@@ -124,7 +124,7 @@ Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSa
     if (clipped_axes_ == 0) continue;
     now.acceleration_jacobian = -so3::hat(now.specific_force_W_m_s2) * now.attitude_jacobian;
     next.attitude_jacobian = now.attitude_jacobian + deficit_jacobian_within(now, dt);
-    // the mean attitude error of the interval rotates the specific force: mapping.md (R10)
+    // The mean attitude error of the interval rotates the specific force: mapping.md (R10).
     const DeficitJacobian turn =
         -so3::hat(now.specific_force_W_m_s2) * (0.5 * (now.attitude_jacobian + next.attitude_jacobian));
     next.velocity_jacobian = now.velocity_jacobian + turn * dt;
@@ -164,8 +164,8 @@ SweepTrajectory::PreintegratedMotion SweepTrajectory::at(double t_s, const Eigen
                                  (0.5 * s * s) * now.specific_force_W_m_s2};
 }
 
-/// Returns the derivative of the attitude with respect to the saturation deficit, `s` seconds into an interval:
-/// mapping.md (R9).
+/// Returns the derivative of the attitude with respect to the saturation deficit, `s` seconds after the start of an
+/// interval: mapping.md (R9).
 SweepTrajectory::DeficitJacobian SweepTrajectory::deficit_jacobian_within(const Interval& now, double s) {
   if (now.deficit_factor.isZero(0.0)) return DeficitJacobian::Zero();
   const Eigen::Matrix3d gained =

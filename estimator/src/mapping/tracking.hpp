@@ -10,7 +10,7 @@ namespace tumble::mapping {
 
 struct WaitingForStart {};
 
-/// Tracking is the state in normal operation. A sweep without registration is acceptable if its prior is certain, or if
+/// Tracking is the state in normal operation. A sweep may remain without registration if its prior is certain, or if
 /// the search was abandoned.
 struct Tracking {
   int failed_searches = 0;  ///< consecutive sweeps with points but without registration
@@ -22,8 +22,7 @@ struct Lost {
 };
 
 /// Relocalised is the state after a relocalisation that is not confirmed yet. Inertial prediction continues in parallel
-/// (DeadReckoning). If a sweep contradicts the relocalisation, the inertial prediction replaces it: mapping.md (R67),
-/// (R68).
+/// (DeadReckoning), and replaces a relocalisation that a sweep contradicts: mapping.md (R67), (R68).
 struct Relocalised {
   int after_sweeps = 0;  ///< number of rejected sweeps before the relocalisation
   int failed_searches = 0;

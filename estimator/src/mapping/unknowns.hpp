@@ -3,8 +3,8 @@
 
 #include "tumble/mapping/registration.hpp"
 
-/// unknowns.hpp names the blocks of vectors and matrices over the unknowns of a sweep (docs/maths/mapping.md). Use
-/// `rows(F, velocity)` for a matrix and `segment(step, velocity)` for a vector, instead of indices.
+/// unknowns.hpp names the blocks of vectors and matrices over the unknowns of a sweep (docs/maths/mapping.md). The
+/// names replace indices, as in `rows(F, velocity)` for a matrix and `segment(step, velocity)` for a vector.
 namespace tumble::mapping::unknowns {
 
 template <int First, int Size>
@@ -25,11 +25,11 @@ inline constexpr Block<Registration::kCalibrationStart + 3, 3> mounting_translat
 inline constexpr Block<Registration::kCalibrationStart + 6, 1> clock;
 inline constexpr Block<Registration::kCalibrationStart + 7, 3> gravity;
 
-/// kMinVariance is the variance of an exactly known unknown; the value is above 0 so that the prior covariance is
-/// invertible.
+/// kMinVariance is the prior variance of an exactly known unknown. kMinVariance is above 0, so that the prior
+/// covariance is invertible.
 inline constexpr double kMinVariance = 1e-12;
-/// kAgreementChi2Max is the largest squared Mahalanobis distance at which a sweep's motion agrees with its prior,
-/// mapping.md (R25), (R71). kAgreementChi2Max is the 95 % quantile of chi-square with nine degrees of freedom.
+/// A sweep's motion agrees with its prior if the squared Mahalanobis distance is at most kAgreementChi2Max: mapping.md
+/// (R25), (R71). kAgreementChi2Max is the 95 % quantile of chi-square with nine degrees of freedom.
 inline constexpr double kAgreementChi2Max = 16.9;
 static_assert(SweepUnknowns::kMotionSize == 9);
 

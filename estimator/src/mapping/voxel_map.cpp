@@ -16,7 +16,7 @@ using mapping::cube_of;
 
 namespace {
 
-// Unused slots of a chunk (a block of map points) have the coordinates kFar, which are beyond any search radius.
+// Unused slots of a chunk (a block of map points) have the coordinates kFar, beyond any search radius.
 constexpr float kFar = 1e18f;
 constexpr int kReachMax = 8;  // maximum number of cells that a search covers to each side
 
@@ -31,7 +31,7 @@ inline void keep(float distance2, std::uint32_t index, int k, Neighbours& best) 
   best.index[place] = index;
 }
 
-/// Computes along one axis the squared distances from a query point to the cells with offsets -reach to reach.
+/// Computes the squared distances along one axis from a query point to the cells with offsets -reach to reach.
 /// `fraction` is the position of the point within its cell, in cells.
 void axis_distances2(float fraction, float voxel_m, int reach, float* distance2) {
   for (int d = -reach; d <= reach; ++d) {
@@ -40,7 +40,7 @@ void axis_distances2(float fraction, float voxel_m, int reach, float* distance2)
   }
 }
 
-// the code uses explicit SIMD vectors, because compilers do not vectorise the comparisons of a chunk
+// Compilers do not vectorise the comparisons of a chunk, so the code uses explicit SIMD vectors.
 using Floats [[gnu::vector_size(16)]] = float;
 using Ints [[gnu::vector_size(16)]] = std::int32_t;
 
@@ -80,8 +80,8 @@ inline Eigen::Vector3i VoxelMap::Group::of(const Eigen::Vector3i& cell) {
   return {cell.x() >> kBits, cell.y() >> kBits, cell.z() >> kBits};
 }
 
-/// Rows iterates over the cells of a neighbour search, row by row. Rows looks up each group of cells only once, when a
-/// row first needs the group.
+/// Rows iterates over the cells of a neighbour search, row by row. Each group of cells is looked up only once, when a
+/// row first needs it.
 class VoxelMap::Rows {
  public:
   Rows(const VoxelMap& map, const Eigen::Vector3i& cell, int reach) : map_(map), first_x_(cell.x() - reach) {
@@ -150,8 +150,8 @@ std::uint32_t VoxelMap::new_chunk(std::uint32_t& first) {
   return first;
 }
 
-/// Returns whether a position is within the range of the map's integer coordinates. The range has a margin for the
-/// cells that a search visits. The function returns false for NaN.
+/// Returns whether a position is within the range of the map's integer coordinates, with a margin for the cells that a
+/// search visits. Returns false for NaN.
 bool VoxelMap::has_room_for(const Eigen::Vector3f& position) const {
   return (position * cubes_per_m_).cwiseAbs().maxCoeff() < static_cast<float>(SpatialHash::kLimit - 2);
 }
@@ -237,7 +237,7 @@ void VoxelMap::remove_sweeps_from(std::uint32_t first_sweep) {
   for (std::uint32_t index = 0; index < index_end(); ++index) {
     if (!exists(index) || sweep_[index] >= first_sweep) continue;
     const Eigen::Vector3f position = position_W_m(index);
-    // if two points move into one cube of the point spacing, the map keeps both
+    // The map keeps both points if two points move into one cube of the point spacing.
     if (params_.spacing_m > 0.0) kept.occupied_cubes_.add(SpatialHash::key(cube_of(position, cubes_per_m_)));
     const std::uint32_t now = kept.store_point(position, sigma_m_[index], sweep_[index], line_[index]);
     kept.seen_through_[now] = seen_through_[index];
@@ -264,7 +264,7 @@ void VoxelMap::search(std::uint32_t first, const Eigen::Vector3f& query, int k, 
     }
     Floats four[kPointsPerChunk / 4];
     std::memcpy(four, distance2, sizeof(four));
-    // unused slots of a chunk have coordinates beyond any search radius
+    // Unused slots of a chunk have coordinates beyond any search radius.
     for (std::uint32_t near = within(worst_distance2_m2, four); near != 0; near &= near - 1) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(near));
       if (distance2[i] > worst_distance2_m2 || (found.count == k && distance2[i] == worst_distance2_m2)) continue;

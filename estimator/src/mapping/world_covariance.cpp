@@ -49,7 +49,7 @@ double WorldCovariance::sigma_in_map_m(const Registration::Matrix& joint, const 
   return std::sqrt(std::max(P.topLeftCorner<3, 3>().trace(), 0.0));
 }
 
-/// Returns the covariance of a pose in the world, which includes the map's error at its position and the tilt error of
+/// Returns the covariance of a pose in the world, which includes the map's error at this position and the tilt error at
 /// the start: mapping.md (R58).
 Pose WorldCovariance::in_world(const Registration::Matrix& joint, const Eigen::Vector3d& p_WI_m) const {
   const Eigen::Vector3d from_start_m = p_WI_m - start_W_m_;
@@ -71,12 +71,12 @@ void WorldCovariance::add_drift(double least_constrained_sigma_m,
 }
 
 /// Adds the error of a sweep to the map error, at the lidar's pose in the middle of the sweep: mapping.md (R59), (R60).
-/// The pose is most certain in the middle of a sweep. Mounting errors of the lidar are excluded, because they do not
-/// change the map.
+/// The pose in the middle is the most certain pose of a sweep. Mounting errors of the lidar are excluded, because they
+/// do not change the map.
 void WorldCovariance::add_insertion(double inserted_fraction, const SweepTrajectory& trajectory,
                                     const Registration::Matrix& errors, const Eigen::Vector3d& p_IL_m) {
   const double middle_s = 0.5 * trajectory.duration_s();
-  // a rotation of the newest part of the map also displaces the map at the robot's position
+  // A rotation of the newest part of the map also displaces the map at the robot's position.
   const Eigen::Vector3d p_WI_m = trajectory.state(middle_s).p_WI_m;
   Pose moved = Pose::Identity();
   moved.topRightCorner<3, 3>() = -so3::hat(p_WI_m - map_at_W_m_);

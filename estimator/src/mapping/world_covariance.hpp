@@ -5,9 +5,9 @@
 
 namespace tumble::mapping {
 
-/// WorldCovariance is the covariance of the map relative to the world. The covariance includes errors of mounting,
-/// initial tilt, scale, pose errors of inserted sweeps, and drift in unconstrained directions. The first pose of the
-/// IMU defines the world frame.
+/// WorldCovariance is the covariance of the map relative to the world, whose frame is defined by the first pose of the
+/// IMU. The covariance includes errors of mounting, initial tilt, scale, pose errors of inserted sweeps, and drift in
+/// unconstrained directions.
 class WorldCovariance {
  public:
   using Pose = Eigen::Matrix<double, 6, 6>;
@@ -31,10 +31,10 @@ class WorldCovariance {
   /// Returns the standard deviation of a position relative to the nearby part of the map [m].
   double sigma_in_map_m(const Registration::Matrix& joint, const Eigen::Vector3d& p_WI_m) const;
 
-  /// Adds the drift of a sweep in motion. The arguments are the direction that the surfaces constrain least (position,
-  /// scaled attitude), and its standard deviation.
+  /// Adds the drift of a sweep in motion, along the direction that the surfaces constrain least (position, scaled
+  /// attitude). `least_constrained_sigma_m` is the standard deviation in this direction.
   void add_drift(double least_constrained_sigma_m, const Eigen::Matrix<double, 6, 1>& least_constrained_direction);
-  /// Adds the pose error of a sweep, in the middle of the sweep, if the fraction `inserted_fraction` of its points was
+  /// Adds the pose error in the middle of a sweep. `inserted_fraction` is the fraction of the sweep's points that were
   /// inserted into the map. `errors` is the covariance of the unknowns at the start of the sweep.
   void add_insertion(double inserted_fraction, const SweepTrajectory& trajectory, const Registration::Matrix& errors,
                      const Eigen::Vector3d& p_IL_m);

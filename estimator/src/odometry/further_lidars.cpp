@@ -16,7 +16,8 @@ namespace tumble {
 
 namespace {
 
-// ring numbers per lidar, so that rings of two lidars differ: LoneReturns compares returns within one ring
+// Number of ring numbers per lidar. Different lidars have different ring numbers, because LoneReturns compares returns
+// within one ring.
 constexpr std::uint16_t kRingsPerLidar = 4096;
 constexpr double kOffsetMax_s = 1.0;
 

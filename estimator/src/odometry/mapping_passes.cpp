@@ -11,25 +11,24 @@ namespace tumble {
 
 namespace {
 
-// maximum number of additional passes until the calibration has converged
+// Maximum number of additional passes until the calibration has converged.
 constexpr int kExtraPassesMax = 3;
-// if more than one in this many sweeps is rejected, the pass does not determine the calibration
+// A pass does not determine the calibration if more than one in kSweepsPerRejection sweeps is rejected.
 constexpr std::size_t kSweepsPerRejection = 5;
 
-/// Cuts the last sweep at the end of the IMU data if most of the sweep remains. Otherwise a small clock offset would
-/// make the whole sweep unusable.
+/// Cuts the last sweep at the end of the IMU data, if at least half of the sweep remains; otherwise returns false.
+/// Without the cut, a small clock offset between lidar and IMU would make the whole sweep unusable.
 bool shorten(TimeNs end_ns, WaitingSweep& sweep) {
   if (end_ns >= sweep.end_ns) return true;
   const TimeNs last_marginalised_ns = end_ns - sweep.start_ns, length_ns = sweep.end_ns - sweep.start_ns;
   if (2 * last_marginalised_ns < length_ns) return false;
-  // The function keeps points beyond the sweep's end, because the mapper reports them as a fault of the recording.
+  // Points beyond the sweep's end remain, because the mapper reports them as a fault of the recording.
   std::erase_if(sweep.points,
                 [&](const LidarPoint& p) { return p.offset_ns > last_marginalised_ns && p.offset_ns <= length_ns; });
   sweep.end_ns = end_ns;
   return true;
 }
 
-/// Pass is one pass of the mapper over a recording.
 class Pass {
  public:
   Pass(const MappingInput& input, const LidarInertialOdometry::Params& params)
@@ -99,7 +98,7 @@ class Pass {
     apply_next(std::exchange(added.report.smoothed, {}));
   }
 
-  /// Replaces the trajectory of the next unsmoothed sweep by its smoothed trajectory.
+  /// Replaces the trajectory of the next unsmoothed sweep by the trajectory `smoothed`.
   void apply_next(std::vector<PoseState> smoothed) {
     if (smoothed.empty()) return;
     while (smoothed_ < out_.sweeps.size() && out_.sweeps[smoothed_].report.trajectory.empty()) ++smoothed_;
@@ -118,7 +117,7 @@ class Pass {
   std::optional<TimeNs> last_end_ns_;  ///< end of the last sweep with a pose, in the lidar's clock
 };
 
-/// Returns the calibration from which a pass starts, with its stated uncertainty.
+/// Returns the calibration at the start of a pass, with the stated uncertainty.
 StatedCalibration stated_calibration(const LidarInertialOdometry::Params& started,
                                      const LidarInertialOdometry::Params& given) {
   StatedCalibration out;
@@ -130,7 +129,7 @@ StatedCalibration stated_calibration(const LidarInertialOdometry::Params& starte
   return out;
 }
 
-/// Returns whether the calibration of a pass is usable, because the pass rejected few sweeps.
+/// Returns whether the calibration of a pass is usable. A usable pass rejected few sweeps.
 bool determines_calibration(const MappedRecording& pass) {
   if (!pass.status.ok()) return false;
   std::size_t rejected = 0, located = 0;

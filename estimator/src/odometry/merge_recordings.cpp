@@ -18,7 +18,7 @@ namespace {
 using Kind = HealthFinding::Kind;
 
 constexpr double kSilentReported_s = 0.5;  // minimum duration without readings that is reported
-// Standard deviation of an element's cross-axis sensitivity without an observed saturation plane: the element is
+// Standard deviation of an element's cross-axis sensitivity if no saturation plane was observed. The element is then
 // assumed to be aligned with its axis. With a standard deviation of 0.03, three clipped IMUs could not determine the
 // rate.
 constexpr double kUnknownSlope = 0.0;
@@ -33,8 +33,7 @@ struct Units {
   std::vector<std::vector<FrozenAxis>> frozen;
 };
 
-/// Sets the clip flags in the readings of an IMU, and estimates the directions of its sensing elements. Axes may be
-/// frozen.
+/// Sets the clip flags in the readings of an IMU, and estimates the directions of its sensing elements.
 void flag_clipped(const ImuSheet& sheet, std::vector<ImuSample>& samples, SensingDirections& gyro,
                   SensingDirections& accel) {
   ClippingFinder::Params params;
@@ -108,8 +107,8 @@ class TimeWithoutGaps {
  public:
   explicit TimeWithoutGaps(double gap_max_s) : gap_max_s_(gap_max_s) {}
 
-  /// Returns the time of the next sample, and whether the sample follows a gap. After the removal, a gap is as long as
-  /// the time step before it.
+  /// Returns the time of the next sample without gaps, and whether the sample follows a gap. A removed gap is replaced
+  /// by the time step before it.
   std::pair<TimeNs, bool> next(TimeNs time_ns) {
     const bool after_gap = started_ && seconds(time_ns - last_ns_) > gap_max_s_;
     if (after_gap) {
@@ -244,7 +243,7 @@ void erase_unit(Units& units, std::size_t unit) {
   units.accel_elements.erase(units.accel_elements.begin() + at);
 }
 
-/// Excludes the IMUs that ImuMerge classified as faulty. Returns whether ImuMerge found a faulty IMU.
+/// Excludes the IMUs that ImuMerge classified as faulty. Returns whether there is a faulty IMU.
 bool exclude_found(const ImuMerge& merge, const ImuMerge::State& state, Units& units, SensorHealth& faults) {
   bool any = false;
   for (std::size_t k = units.index.size(); k-- > 0;) {

@@ -10,14 +10,14 @@ namespace tumble {
 namespace {
 
 constexpr double kMinGravity_m_s2 = 1e-3;
-constexpr double kPreallocated_s = 2.0;  // duration of the preallocated samples, longer than any gap of a lidar
+constexpr double kPreallocated_s = 2.0;  // longer than any gap of a lidar
 
 std::size_t samples_in(double time_s, const RegimeStream::Params& rate) {
   return static_cast<std::size_t>(std::ceil(time_s / rate.rate.period_s)) + 16;
 }
 
-/// Returns the angular rate that the mapper receives. If a clipped axis is too uncertain for the mapper, the function
-/// returns the gyro's reading, which is a lower bound. The registration then estimates the saturation deficit. With an
+/// Returns the angular rate for the mapper. If the rate of a clipped axis is too uncertain for the mapper, the result
+/// contains the gyro's reading, which is a lower bound. The registration then estimates the saturation deficit. With an
 /// uncertain calibration, a rate that RateStream recovers at an impact may be wrong by tens of rad/s, with a
 /// correspondingly large standard deviation.
 RateState limit_rate_sigma(const RateState& rate, const ImuSample& sample, double sigma_max_rad_s) {
@@ -33,8 +33,8 @@ RateState limit_rate_sigma(const RateState& rate, const ImuSample& sample, doubl
   return out;
 }
 
-/// ClassifiedSamples returns the samples in the window of a RateStream, with flags on specific forces that are
-/// saturated. Successive calls need increasing times.
+/// ClassifiedSamples returns the samples in the window of a RateStream, with clip flags on saturated specific forces.
+/// Successive calls need increasing times.
 class ClassifiedSamples {
  public:
   ClassifiedSamples(std::span<const ImuSample> samples, const RateStream::State& state)

@@ -12,10 +12,10 @@ namespace {
 
 using Kind = HealthFinding::Kind;
 
-constexpr double kUnitSilent_s = 0.5;  // time without readings after which a unit counts as silent
+constexpr double kUnitSilent_s = 0.5;  // time without readings after which an IMU counts as silent
 
-/// Adds findings about IMUs whose force at rest contradicts gravity. If the forces of all IMUs contradict gravity, the
-/// finding is about the merged IMU. Otherwise each contradicting IMU gets the finding `unit_disagrees`.
+/// Adds findings about IMUs whose force at rest contradicts gravity. If the forces of all IMUs do, the finding concerns
+/// the merged IMU. Otherwise each contradicting IMU gets the finding `unit_disagrees`.
 void add_forces_at_rest(const MergedChecks& checks, std::size_t count, SensorHealth& health) {
   const auto verdict = [&](std::size_t unit) {
     return checks.rest_gravity.magnitude_verdict(checks.rest_gravity_state[unit]);

@@ -19,7 +19,7 @@ ImuSample at_time(TimeNs time_ns, ImuSample sample) {
   return sample;
 }
 
-/// Marks a sample as absent, because its IMU has no reading at this time.
+/// Marks a sample as absent: its IMU has no reading at this time.
 void mark_absent(ImuSample& sample) {
   sample.angular_velocity_rad_s.setConstant(std::numeric_limits<double>::quiet_NaN());
 }
@@ -144,7 +144,7 @@ Status RollingOdometry::add_imu(std::size_t unit, const ImuSample& sample) {
   return add_aligned(false);
 }
 
-/// Processes the readings at all common times that UnitAlignment has completed. `ended` states that no further readings
+/// Processes the readings at all common times that UnitAlignment has completed. `ended` is true if no further readings
 /// follow.
 Status RollingOdometry::add_aligned(bool ended) {
   Status first;
@@ -156,8 +156,7 @@ Status RollingOdometry::add_aligned(bool ended) {
   return first;
 }
 
-/// Processes the samples that the outlier filter delayed, except for readings that it rejects now that the next samples
-/// are known.
+/// Processes the samples that the outlier filter delayed. The next samples decide which delayed readings are outliers.
 Status RollingOdometry::add_delayed_samples(std::span<const ImuSample> next) {
   if (!delayed_samples_) return {};
   for (std::size_t k = 0; k < next.size(); ++k) {
@@ -264,7 +263,7 @@ Status RollingOdometry::finish() {
   return status;
 }
 
-/// Ends a run: smooths the poses that are still within the lag.
+/// Ends a run, and smooths the poses that are still within the lag.
 void RollingOdometry::end_run() {
   for (OutlierFilter::State& unit : outlier_filter_state_) OutlierFilter::finish(unit);
   delayed_samples_.reset();
@@ -279,7 +278,7 @@ void RollingOdometry::reset() {
   recorded_ = {};
 }
 
-/// Resets all states of a run, except the readings that UnitAlignment has not passed on yet.
+/// Resets all states of a run, except the readings that UnitAlignment has not completed yet.
 void RollingOdometry::start_run() {
   sample_clock_state_ = {};
   imu_merge_state_ = std::make_unique<ImuMerge::State>();

@@ -16,7 +16,7 @@ constexpr double kUnknownGyroBias_rad_s = 5e-3, kUnknownAccelBias_m_s2 = 0.4, kU
                  kUnknownDelay_s = 5e-3, kUnknownLeverArm_m = 0.05;
 constexpr double kLevelInclinePerS = 1e-9;  // rate at which slopes begin, for a floor that is known to be level
 
-// Checks the radius, a parameter of RollingOdometry without a default.
+// Checks the radius, which has no default.
 void require_stated(RollingOdometry::Params params) {
   params.expert.rolling.filter.radius_m = params.radius_m;
   require_valid_fields(params);

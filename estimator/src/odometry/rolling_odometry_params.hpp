@@ -12,7 +12,8 @@ namespace tumble::odometry {
 /// Returns the parameters of ImuMerge. Throws InvalidParams if a parameter of RollingOdometry is out of bounds.
 ImuMerge::Params merge_params(const RollingOdometry::Params& params);
 
-/// Returns the parameters of RollingSmoother. `lever_arm_m` is the position of the IMU that replaces all `units` IMUs.
+/// Returns the parameters of RollingSmoother. `lever_arm_m` is the position of the virtual IMU that combines all
+/// `units` IMUs.
 RollingSmoother::Params rolling_params(const RollingOdometry::Params& params, const ImuMerge::Params& merged,
                                        std::size_t units, const Eigen::Vector3d& lever_arm_m);
 

@@ -12,8 +12,8 @@ namespace tumble {
 
 namespace {
 
-// Standard deviations of the motion in a gap: horizontal speed in addition to the last speed, and rate about the
-// vertical. After a long gap, the heading is unknown (uniform over a turn).
+// Standard deviations of the motion in a gap: change of the horizontal speed, and rate about the vertical.
+// kUnknownHeading_rad applies after a long gap (uniform over a turn).
 constexpr double kGapSpeed_m_s = 0.5, kGapTurn_rad_s = 1.0, kUnknownHeading_rad = 1.8;
 
 /// Returns the covariance of position and heading. The tilt is omitted, because a restart levels the attitude.
@@ -25,7 +25,7 @@ Eigen::Matrix<double, 6, 6> position_and_heading(Eigen::Matrix<double, 6, 6> cov
 
 }  // namespace
 
-/// Starts a new run at the newest pose, after `gap_s` without data.
+/// Starts a new run at the newest pose, after `gap_s` seconds without data.
 void RollingOdometry::restart_at_newest(double gap_s) {
   const std::size_t before = results_.size();
   end_run();
@@ -52,7 +52,7 @@ void RollingOdometry::restart_at_newest(double gap_s) {
   restart_ = restart;
 }
 
-/// Computes the pose of the run's origin in the world from the first pose of the run.
+/// Computes the pose of the run's frame in the world from the first pose of the run.
 void RollingOdometry::initialise_pose() {
   if (!start_ || !state_->live.started) return;
   const RollingEstimate first = RollingFilter::estimate(state_->live);

@@ -14,8 +14,8 @@ namespace {
 
 constexpr double kBufferLead_s = 0.1;  // buffered time before the first sweep, because the clocks may differ
 constexpr std::size_t kSweepsPerExtraRejection =
-    20;  // for each of this many sweeps, the second pass may reject one sweep more than the first pass
-// The second pass does not adopt an estimated calibration if more than one in kSweepsPerRejection sweeps was rejected.
+    20;  // rejections by second pass <= rejections by first pass + sweeps / kSweepsPerExtraRejection
+// The second pass uses the estimated calibration only if at most one in kSweepsPerRejection sweeps was rejected.
 constexpr std::size_t kSweepsPerRejection = 5;
 
 /// Initialises the stream with the saturation levels that the first pass detected. The covariances of the saturation
@@ -166,7 +166,7 @@ void SecondPass::run(OdometryPass& first, std::size_t sweeps) {
       tail = true;
       pass_->flush_until(std::max(first.smoothed_rate()->time_ns, pass_->oldest_needed_ns(sweep.end_ns)));
     }
-    if (!pass_->covers(sweep.end_ns)) {  // the clocks differ by more than assumed: continue with the next sweep
+    if (!pass_->covers(sweep.end_ns)) {  // the clocks differ by more than assumed: wait for the next sweep
       --next_sweep_;
       return;
     }
@@ -186,7 +186,7 @@ void SecondPass::replace_first_pass(OdometryPass& first) {
       (!last_sweep_rejected_ || first_lost)) {
     first.adopt_map(std::move(*pass_));
     applied_ = true;
-    // the regular second pass, which follows, compares its result with the early second pass
+    // The regular second pass later compares its number of rejected sweeps with rejected_by_first_.
     rejected_by_first_ = rejected_;
     if (!last_sweep_rejected_) newest = SweepVerdict::registered;
   }

@@ -19,7 +19,7 @@ using odometry::rate_params;
 
 namespace {
 
-/// Returns the lidar points fired at `from_ns` or later. The returned times are relative to `from_ns`.
+/// Returns the lidar points that were fired at `from_ns` or later, with times relative to `from_ns`.
 std::vector<LidarPoint> points_from(TimeNs from_ns, TimeNs start_ns, std::span<const LidarPoint> points) {
   std::vector<LidarPoint> out;
   out.reserve(points.size());
@@ -212,16 +212,16 @@ void TumblingOdometry::register_sweep(TimeNs start_ns, TimeNs end_ns, std::vecto
   positions_.observe(out.report);
   out.position_frame = positions_.frame();
   second_pass_.store(start_ns, end_ns, std::move(points), reading, out.report.verdict);
-  // the second pass has no prior map, so its frame differs from the localised first pass
+  // The second pass has no prior map, so its frame differs from the frame of the localised first pass.
   if (mapper().has_prior_map() && mapper().localised().ok()) second_pass_.abandon();
   const bool applied_before = second_pass_.applied();
   second_pass_.advance(pass_);
   if (second_pass_.applied() != applied_before) positions_.restart_fit();
 }
 
-/// Returns whether a sweep that ends at `end_ns` would be older than lag_s when the next sample arrives. The newest
-/// sample must also be later than the sweep's end by at least the lag minus 1.5 periods. The condition on the newest
-/// sample delays a sweep after a gap.
+/// Returns whether a sweep that ends at `end_ns` must be registered now, because its latency would exceed lag_s when
+/// the next sample arrives. In addition, newest sample - end of sweep > lag_s - 1.5 periods must hold, which delays a
+/// sweep after a gap.
 bool TumblingOdometry::is_due(TimeNs end_ns) const {
   const std::optional<TimeNs> covering_ns = pass_.covering_ns(end_ns);
   if (!covering_ns) return false;
@@ -233,8 +233,8 @@ bool TumblingOdometry::is_due(TimeNs end_ns) const {
 void TumblingOdometry::register_covered_sweeps() {
   while (!waiting_.empty()) {
     const TimeNs end_ns = waiting_.front().end_ns;
-    // The sample that covers the end of the sweep may be up to one period later than this end. The rate of this sample
-    // is therefore reported one period before the lag is full.
+    // The sample that covers the end of a sweep may be up to one period later than the end. The rate of the covering
+    // sample is therefore reported one period before the lag is full.
     if (!pass_.covers(end_ns) && is_due(end_ns)) pass_.flush_until(pass_.oldest_needed_ns(end_ns));
     if (!pass_.covers(end_ns)) break;
     WaitingSweep sweep = std::move(waiting_.front());
@@ -264,8 +264,8 @@ void TumblingOdometry::restart_rates() {
   start_rate_estimation();
 }
 
-/// Restarts the run at its newest pose after the clock has stepped back. Before the restart, the function registers the
-/// sweeps for which IMU samples exist.
+/// Restarts the run at its newest pose after the clock has stepped back. The sweeps with IMU samples are registered
+/// before the restart.
 void TumblingOdometry::restart_at_newest() {
   ++restart_count_;
   PoseState pose;
@@ -303,7 +303,7 @@ void TumblingOdometry::restart_without_first_sample() {
   outlier_filter_state_ = outliers;
 }
 
-/// Restarts the run, which is still at rest, with the measured zero offset of the gyro as nominal bias.
+/// Restarts a run that is still at rest, with the measured zero offset of the gyro as nominal bias.
 void TumblingOdometry::restart_with_offset(const Eigen::Vector3d& offset_rad_s) {
   const std::optional<Eigen::Isometry3d> start = mapper().start();
   early_sweeps_ += waiting_.size();
@@ -340,7 +340,7 @@ void TumblingOdometry::reset(const Eigen::Isometry3d& T_WI) {
 void TumblingOdometry::start_rate_estimation() {
   RegimeStream::Params params = rate_params(params_);
   params.rate.model.nominal.gyro_bias_rad_s = gyro_offset_rad_s();
-  // an estimated calibration that is out of bounds is not used
+  // An estimated calibration that is out of bounds is unused.
   if (const RigCalibration learnt = rig(); check_calibration(learnt).ok()) params.rate.model.calibration = learnt;
   pass_.start_rate_estimation(params);
 }

@@ -7,7 +7,7 @@ namespace tumble {
 
 namespace {
 
-// kGravitySigma_m_s2 is the standard deviation of gravity's horizontal components after levelling.
+// Standard deviation of gravity's horizontal components after levelling.
 constexpr double kGravitySigma_m_s2 = 0.03;
 
 }  // namespace
@@ -59,7 +59,7 @@ RegimeStream::Params rate_params(const TumblingOdometry::Params& params) {
   if (params.imu.gyro_range_rad_s > 0.0) out.rate.rails.stated_gyro_rad_s = params.imu.gyro_range_rad_s;
   if (params.imu.accel_range_m_s2 > 0.0) out.rate.rails.stated_accel_m_s2 = params.imu.accel_range_m_s2;
   out.rate.period_s = 1.0 / params.imu.rate_hz;
-  const bool whole = params.lag_s >= TumblingOdometry::kWholeRecording;  // rates_ is not used for a whole recording
+  const bool whole = params.lag_s >= TumblingOdometry::kWholeRecording;  // rates_ is unused for a whole recording
   out.rate.lag_s = std::max(whole ? TumblingParams{}.lag_s : params.lag_s, 2.0 * out.rate.period_s);
   out.evidence.gravity_m_s2 = out.hand_held.body.gravity_m_s2 = params.expert.gravity_m_s2;
   out.hand_held.body.expert.gap_max_s = out.rate.gap_max_s;

@@ -12,9 +12,9 @@ namespace tumble::odometry {
 /// bounds.
 RegimeStream::Params rate_params(const TumblingOdometry::Params& params);
 
-/// Returns the parameters of the rate estimation over a whole recording. Common parameters of RegimeSmoother and
-/// RegimeStream have the values of RegimeStream. Only the prior standard deviations of accelerometer bias and inertia
-/// are larger (see RateStreamParams::model).
+/// Returns the parameters of the rate estimation over a whole recording. The parameters of RegimeSmoother equal those
+/// of RegimeStream, except for larger prior standard deviations of accelerometer bias and inertia (see
+/// RateStreamParams::model).
 RegimeSmoother::Params recording_rate_params(const TumblingOdometry::Params& params);
 
 OutlierFilter::Device outlier_params(const TumblingOdometry::Params& params);

@@ -22,8 +22,8 @@ CheckedImu checked_imu(const TumblingOdometry::Params& params) {
           .lever_arm_I_m = params.lever_arm_I_m};
 }
 
-/// Removes outliers from the samples and corrects their time stamps. `stamps_ns` receives the time stamps of the
-/// remaining samples.
+/// Removes outliers from the samples, and corrects the time stamps. `stamps_ns` receives the received time stamps of
+/// the remaining samples.
 Status select_samples(const OutlierFilter& filter, const SampleClock& clock, std::vector<ImuSample>& samples,
                       OutlierFilter::State& outliers, RecordingEstimate& out) {
   const std::vector<bool> inlier = find_inliers(filter, samples);
@@ -36,7 +36,7 @@ Status select_samples(const OutlierFilter& filter, const SampleClock& clock, std
   return {};
 }
 
-/// Estimates the angular rates of a recording and checks whether its readings are plausible.
+/// Estimates the angular rates of a recording, and checks whether its readings are plausible.
 Status estimate_rates(const TumblingOdometry::Params& params, std::span<const ImuSample> samples,
                       RecordingEstimate& out) {
   const RegimeSmoother smoother(odometry::recording_rate_params(params));
@@ -74,7 +74,6 @@ Status TumblingOdometry::record(const ImuSample& sample) {
   return {};
 }
 
-/// Estimates rates, map and poses from the recorded data.
 Status TumblingOdometry::finish_whole_recording(const SweepProgress& on_sweep) {
   if (finished_) return {};
   finished_ = true;

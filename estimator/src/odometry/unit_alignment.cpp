@@ -36,7 +36,7 @@ bool is_silent(std::size_t unit, const UnitAlignment::State& state) {
   return seconds(newest_ns(state) - newest_ns(unit, state)) > UnitAlignment::kSilentMax_s;
 }
 
-/// Returns an iterator to the first reading after the newest common time, or to the end of `readings`.
+/// Returns an iterator to the first reading after the newest common time, or the end of `readings`.
 auto after_common(const std::vector<ImuSample>& readings, const UnitAlignment::State& state) {
   return std::find_if(readings.begin(), readings.end(),
                       [&](const ImuSample& reading) { return !state.common_ns || reading.time_ns > *state.common_ns; });

@@ -7,9 +7,9 @@ namespace tumble {
 
 namespace {
 
-// stored readings per gyro or accelerometer, enough for some seconds near the extremes
+// Number of stored readings per gyro or accelerometer, enough for some seconds near the largest readings.
 constexpr int kReadings = 512;
-constexpr double kStatedMax_rad_s = 1000.0;  // RailDetector ignores a stated range above this rate
+constexpr double kStatedMax_rad_s = 1000.0;  // maximum stated range that RailDetector uses
 
 StreamingClippingFinder::Params clipping_finder_params(const ImuSheet& sheet) {
   StreamingClippingFinder::Params out;
@@ -52,7 +52,7 @@ void UnitRails::observe(std::span<const ImuSample> samples, State& state) const 
     if (!check_sample(samples[k]).ok()) continue;
     StreamingClippingFinder::State& rails = state[k].rails;
     units_[k].watch.observe(samples[k], rails);
-    // this call of classify() updates the hysteresis of the clipped axes
+    // classify() updates the hysteresis of the clipped axes.
     units_[k].watch.axis_aligned_rails().classify(samples[k], rails.known.axis_aligned_rails);
     state[k].before = samples[k];
   }

@@ -11,16 +11,16 @@
 
 namespace tumble::rolling {
 
-/// LastPass is the final pass of RollingSmoother over stored samples. A Kalman filter with known contact modes runs
+/// LastPass is the final pass of RollingSmoother over stored samples: a Kalman filter with known contact modes runs
 /// forward, and a smoother runs backward.
 ///
 /// The backward pass needs more than 10 KiB per node. LastPass therefore divides the nodes into segments, and stores
-/// only the filter at each segment's start and the adjoint at its end. LastPass computes the data of one segment again
-/// when needed, bit for bit. A window of one segment needs one run of the filter, and a longer window needs three. A
-/// LastPass contains four filters of 13 KiB, so do not create a LastPass on the stack.
+/// only the filter at each segment's start and the adjoint at its end. The data of one segment are recomputed when
+/// needed, bit for bit. A window of one segment needs one run of the filter; a longer window needs three. A LastPass
+/// contains four filters of 13 KiB, so do not create a LastPass on the stack.
 class LastPass {
  public:
-  static constexpr std::size_t kSegment = 128;  ///< number of nodes per segment; 1.6 MiB of data for the backward pass
+  static constexpr std::size_t kSegment = 128;  ///< number of nodes per segment; the backward pass needs 1.6 MiB
 
   /// Checkpoint is the state of the filter and its position in the samples, between two nodes.
   struct Checkpoint {
@@ -39,14 +39,13 @@ class LastPass {
     std::size_t index;
   };
 
-  /// Constructs the pass; all arguments must outlive it. If `distance` is known, the filter applies it as a measurement
-  /// after the last sample. `segment` is the number of nodes whose records are stored at a time. The segment length
-  /// affects only memory and computing time.
+  /// Constructs the pass. All arguments must outlive the pass. A known `distance` is a measurement after the last
+  /// sample. `segment` is the number of nodes whose records are stored at a time. The segment length affects only
+  /// memory and computing time.
   LastPass(const RollingParams& params, std::span<const ImuSample> samples, std::span<const PathNode> path,
            std::optional<Distance> distance, std::size_t segment = kSegment);
 
-  /// Runs the filter forward from `start`, and then the backward pass. After `cut` nodes, the function copies the
-  /// filter for cut().
+  /// Runs the filter forward from `start`, and then the backward pass. cut() returns the filter after `cut` nodes.
   void run(const Checkpoint& start, std::size_t cut);
 
   std::size_t nodes() const { return horizontal_variance_m2_.size(); }
@@ -80,14 +79,14 @@ class LastPass {
   std::vector<double> horizontal_variance_m2_;
   std::size_t cut_after_ = 0;
   Checkpoint cut_, end_;
-  Checkpoint again_;  ///< filter for a segment that is computed again
+  Checkpoint again_;  ///< filter for a segment that is recomputed
   Adjoint adjoint_;   ///< state of the backward pass
-  // index of the segment whose data are in memory
+  // Index of the segment whose data are in memory.
   std::size_t loaded_ = 0;
   std::vector<NodeRecord> records_;
   std::vector<SamplePoint> points_;
   Reported smoothed_start_ = Reported::Zero();
-  /// correction of the nominal trajectory due to the measured distance
+  /// Correction of the nominal trajectory due to the measured distance.
   Reported distance_correction_ = Reported::Zero();
 };
 

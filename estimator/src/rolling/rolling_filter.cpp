@@ -16,7 +16,7 @@ namespace tumble {
 namespace {
 
 constexpr double kSlowRateTau_s = 0.3;
-constexpr double kEventProbability = 0.5;  // a slip or bump is reported above this probability
+constexpr double kEventProbability = 0.5;  // minimum probability of a reported slip or bump
 constexpr double kSpinSigmas = 4.0;        // a larger rate at rest, in standard deviations of the bias, is a rotation
 
 static_assert(RollingFilter::kStates == rolling::kStates);
@@ -64,7 +64,7 @@ void RollingFilter::start(const ImuSample& sample, const Eigen::Quaterniond& q_W
 void RollingFilter::process_average(State& state, Listener listener) const {
   const ImuAverage reading = state.average;
   state.average = {};
-  // A node is closed when the next reading arrives, because the rate at the node's end is interpolated between two
+  // A node is completed when the next reading arrives, because the rate at the node's end is interpolated between two
   // readings.
   if (state.sums.node_s >= params_.expert.node_s - 0.5 * reading.length_s) {
     complete_node(reading.mean.angular_velocity_rad_s, state);
@@ -136,7 +136,7 @@ void RollingFilter::detect_rest(State& state) const {
     return;
   }
   const Eigen::Vector3d w_mean = state.sums.rate_integral_I_rad / h + state.nominal.gyro_bias_rad_s;
-  const TimeNs from_ns = state.rest.last_mean_ns;  // nodes are contiguous
+  const TimeNs from_ns = state.rest.last_mean_ns;  // the last node ended where this node starts
   state.at_rest =
       rest_detector_.observe_mean(w_mean, state.sums.force_integral_I_m_s / h, from_ns, from_ns + std::llround(1e9 * h),
                                   state.nominal.gyro_bias_rad_s, state.rest);
@@ -156,9 +156,9 @@ bool RollingFilter::spins_in_place(const State& state) const {
   return (off.square() > kSpinSigmas * kSpinSigmas * variance).any();
 }
 
-/// Returns the covariance of position or velocity that comes from the differences between the hypotheses: rolling.md
-/// (R27). `first` is the index of the position or velocity in the state. The covariance is the weighted mean of d d^T,
-/// where d is the difference between a hypothesis and the best hypothesis.
+/// Returns the covariance of position or velocity due to the differences between the hypotheses: rolling.md (R27).
+/// `first` is the index of the position or velocity in the state. The covariance is the weighted mean of d d^T, where d
+/// is the difference between a hypothesis and the best hypothesis.
 Eigen::Matrix3d RollingFilter::spread(const State& state, int first) {
   const Eigen::Vector3d best = state.hypotheses[0].x.segment<3>(first);
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
@@ -194,7 +194,7 @@ void RollingFilter::weigh_modes(State& state) {
   state.bump_probability = hopping / total;
 }
 
-/// Decides whether the sphere is at rest, so that the reported position remains constant until the next node.
+/// Decides whether the sphere is at rest; the reported position then remains constant until the next node.
 void RollingFilter::constrain_position(State& state) const {
   const bool quiet =
       seconds(state.rest.within_bias_since_ns) >= std::min(rolling::kConstrainAfter_s, params_.expert.rest.rest_s) &&
@@ -238,8 +238,8 @@ void RollingFilter::report(State& state) const {
   state.contact_velocity_m_s = state.hypotheses[0].contact_velocity_W_m_s;
 }
 
-/// Returns the most probable contact mode over all hypotheses. Several hypotheses with a different past may have the
-/// same current mode, so the function adds their weights.
+/// Returns the most probable contact mode. Several hypotheses with a different past may have the same current mode, so
+/// the function uses the sums of their weights.
 RollingMode RollingFilter::most_probable_mode(const State& state) {
   const bool event = state.slip_probability >= kEventProbability;
   if (event == may_slip(state.mode)) return state.mode;

@@ -18,28 +18,27 @@ namespace tumble {
 
 namespace {
 
-constexpr double kPruneLogWeight =
-    -120.0;  // a hypothesis is removed below this log weight relative to the best hypothesis
+constexpr double kPruneLogWeight = -120.0;  // minimum log weight of a hypothesis, relative to the best hypothesis
 constexpr double kRestLogLikelihoodMin =
-    -60.0;                             // smallest log likelihood at rest, which limits the effect of a single bad node
-constexpr double kModeAgeMax_s = 1.0;  // a mode that is older counts as equally old
-// During slip, the horizontal change of the contact velocity per node has a mixture density with these widths.
-// kPlateau_m_s is as narrow as the density of grip. With a wider component, each phase of constant slip velocity would
-// count as grip.
+    -60.0;                             // smallest log likelihood at rest; limits the effect of a single bad node
+constexpr double kModeAgeMax_s = 1.0;  // maximum age of a mode; older modes count as equally old
+// Horizontal change of the contact velocity per node during slip: its density is a mixture of three Gaussians with the
+// standard deviations kPlateau_m_s, kSteady_m_s and kJump_m_s. The smallest, kPlateau_m_s, equals the standard
+// deviation of grip. With a larger value, each phase of constant slip velocity would count as grip.
 constexpr double kPlateau_m_s = 0.004, kSteady_m_s = 0.01, kJump_m_s = 0.08, kPlateauFraction = 0.4,
                  kSteadyFraction = 0.35;
 constexpr double kRollOverSigma_m_s = 0.03, kHitSigma_m_s = 0.3,
-                 // vertical change of the contact velocity on a bump [m/s], with the weight of a sphere that rolls over
-                 // it
+                 // vertical change of the contact velocity on a bump [m/s]: standard deviations for rolling over the
+                 // bump and hitting it, and the fraction of rolling over
     kRollOverFraction = 0.7;
 constexpr std::int64_t kAgesApart = 4;
-// At least kMinDissentingHypotheses hypotheses are kept that do not share the last mode change of the best hypothesis.
-// A slip with constant spin looks like grip until its end, when a hundred hypotheses have higher weights than the
-// correct one.
+// At least kMinDissentingHypotheses of the kept hypotheses do not share the last mode change of the best hypothesis. A
+// slip with constant spin looks like grip until its end, when a hundred hypotheses have higher weights than the correct
+// one.
 constexpr std::size_t kMinDissentingHypotheses = 6;
-// cost of a rough floor per node, between the residuals of a slope and of grip on a plane
+// Penalty of a rough floor on the log likelihood per node, between the residuals of a slope and of grip on a plane.
 constexpr double kRoughCost = 0.2;
-// factor on the probability of a slope after a bump, because the foot of a ramp is a bump
+// Factor on the probability of a slope after a bump, because the foot of a ramp is a bump.
 constexpr double kInclineAfterBump = 4.0;
 constexpr RollingMode kModes[] = {RollingMode::grip, RollingMode::slip, RollingMode::bump, RollingMode::incline,
                                   RollingMode::rough};
@@ -60,7 +59,7 @@ double log_rise(double change) {
 }
 
 /// Returns the log density of the horizontal change of the contact velocity per node during slip: m2 of rolling.md
-/// (R24). The contact velocity is constant, drifts, or jumps. `square` is the squared length of its change.
+/// (R24). The contact velocity is constant, drifts, or jumps. `square` is the squared length of the change.
 double log_change(double square) {
   double density = 0.0;
   for (const auto& [share, sigma] : {std::pair(kPlateauFraction, kPlateau_m_s), std::pair(kSteadyFraction, kSteady_m_s),
@@ -70,8 +69,8 @@ double log_change(double square) {
   return std::log(density + 1e-300);
 }
 
-/// Returns the log density of the contact velocity if the contact point is at rest, for hypothesis `h` in the contact
-/// mode `mode`: rolling.md (R23).
+/// Returns the log density of the contact velocity for a contact point at rest, for hypothesis `h` in the contact mode
+/// `mode`: rolling.md (R23).
 double log_stationary(const rolling::Contact& c, const RollingFilter::Hypothesis& h, RollingMode mode,
                       const RollingParams& params) {
   RollingFilter::Vector x = h.x;
@@ -93,8 +92,8 @@ double log_stationary(const rolling::Contact& c, const RollingFilter::Hypothesis
   Eigen::LLT<Eigen::Matrix3d> factor;
   double log_det = 0.0, cost = 0.0;
   if (mode == RollingMode::rough) {
-    // A rough floor lasts for many nodes. The density of a rough floor is normalised with the smaller width of grip,
-    // which avoids a penalty in each node.
+    // A rough floor lasts for many nodes. The density of a rough floor is normalised with the smaller standard
+    // deviation of grip, which avoids a penalty in each node.
     log_det = log_det_with(rolling::contact_variance(params, c, RollingMode::grip), factor);
     cost = kRoughCost;
   }
@@ -104,8 +103,8 @@ double log_stationary(const rolling::Contact& c, const RollingFilter::Hypothesis
   return -cost - 0.5 * (square + log_det + 3.0 * std::log(2.0 * std::numbers::pi));
 }
 
-/// Returns the log density of the contact velocity if the contact point moves and its velocity has changed by `u` since
-/// the last node: rolling.md (R24), (R25).
+/// Returns the log density of the contact velocity `u` for a moving contact point, from the change since the last node:
+/// rolling.md (R24), (R25).
 double log_moving(const rolling::Contact& c, const RollingFilter::Hypothesis& h, RollingMode mode,
                   const Eigen::Vector3d& u, const RollingParams& params) {
   const Eigen::Vector3d change = u - h.contact_velocity_W_m_s;
@@ -144,8 +143,8 @@ struct Candidate {
 };
 using Candidates = std::array<Candidate, kRollingModes * RollingFilter::kHypotheses>;
 
-/// Computes all candidates (hypotheses with a next contact mode), stores them in `out` and returns them, most probable
-/// first.
+/// Computes all candidates (pairs of a hypothesis and a next contact mode), stores them in `out`, and returns them,
+/// most probable first.
 std::span<const Candidate> propose(const RollingParams& params, const rolling::Contact& c,
                                    const RollingFilter::State& state, Candidates& out) {
   const double node_s = state.sums.node_s;
@@ -169,16 +168,16 @@ std::span<const Candidate> propose(const RollingParams& params, const rolling::C
                       mode == h.mode ? h.mode_start_node : state.node};
     }
   }
-  // std::stable_sort would allocate memory. Candidates of equal weight are therefore sorted by their origin, which
-  // makes the order unique.
+  // std::stable_sort would allocate memory. Candidates of equal weight are therefore sorted by hypothesis and mode,
+  // which makes the order unique.
   std::sort(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(total), [](const Candidate& a, const Candidate& b) {
     return std::tuple(-a.log_weight, a.parent, a.mode) < std::tuple(-b.log_weight, b.parent, b.mode);
   });
   return {out.data(), total};
 }
 
-/// Returns the start node of a contact mode, rounded so that similar starts are equal. Mode starts that are close in
-/// time are rounded to one node, more coarsely the older they are.
+/// Returns the start node of a contact mode, rounded to a multiple of a number of nodes that grows with the age of the
+/// mode. Hypotheses with similar mode starts then have equal results.
 std::int64_t beginning(std::int64_t mode_start_node, std::int64_t node, double node_s) {
   const auto mode_age_max_nodes = static_cast<std::int64_t>(kModeAgeMax_s / node_s);
   const std::int64_t age = std::min(node - mode_start_node, mode_age_max_nodes);
@@ -192,8 +191,8 @@ struct Kept {
   std::size_t count = 0;
 };
 
-/// Selects the most probable candidate for each contact mode and mode start. At least `kMinDissentingHypotheses`
-/// candidates do not share the last mode change of the best candidate.
+/// Selects the most probable candidate for each contact mode and rounded mode start. `kMinDissentingHypotheses` places
+/// are reserved for candidates that do not share the last mode change of the best candidate.
 Kept keep(std::span<const Candidate> candidates, std::int64_t node, double node_s) {
   Kept kept;
   for (const Candidate& candidate : candidates) {
@@ -212,8 +211,8 @@ Kept keep(std::span<const Candidate> candidates, std::int64_t node, double node_
 
 using Origins = std::array<std::size_t, RollingFilter::kHypotheses>;
 
-/// Replaces the first `count` hypotheses by copies of the hypotheses that `from` lists. The function copies in place,
-/// because a second array would need 420 KiB of stack.
+/// Replaces hypothesis k by a copy of hypothesis from[k], for the first `count` hypotheses. The function copies in
+/// place, because a second array would need 420 KiB of stack.
 void rearrange(const Origins& from, std::size_t count, std::span<RollingFilter::Hypothesis> all) {
   std::array<int, RollingFilter::kHypotheses> readers{};  // number of pending copies that read from each slot
   std::array<bool, RollingFilter::kHypotheses> waits{};
@@ -221,7 +220,7 @@ void rearrange(const Origins& from, std::size_t count, std::span<RollingFilter::
     waits[k] = from[k] != k;
     readers[from[k]] += waits[k] ? 1 : 0;
   }
-  // A slot can be overwritten if no pending copy reads from it. The copy into this slot may make another slot free.
+  // A slot can be overwritten if no pending copy reads from it. The copy into this slot may free another slot.
   for (std::size_t first = 0; first < count; ++first) {
     for (std::size_t k = first; k < count && waits[k] && readers[k] == 0; k = from[k]) {
       all[k] = all[from[k]];
@@ -229,7 +228,7 @@ void rearrange(const Origins& from, std::size_t count, std::span<RollingFilter::
       --readers[from[k]];
     }
   }
-  // the remaining copies form cycles of slots
+  // The remaining pending copies form cycles of slots.
   for (std::size_t first = 0; first < count; ++first) {
     if (!waits[first]) continue;
     const RollingFilter::Hypothesis kept = all[first];
@@ -273,7 +272,7 @@ void RollingFilter::choose_modes(const Eigen::Vector3d& rate_I_rad_s, bool headi
   keep_most_probable(kept.count, state);
 }
 
-/// Keeps the first `count` hypotheses, and clears the others, so that equal estimates have equal states.
+/// Keeps the first `count` hypotheses, and clears all others, so that equal estimates have equal states.
 void RollingFilter::keep_most_probable(std::size_t count, State& state) {
   const auto begin = state.hypotheses.begin();
   const auto first = begin + static_cast<std::ptrdiff_t>(count);

@@ -27,10 +27,10 @@ constexpr double kNoImpactForce_m_s2 = 3.0;  // maximum difference between the f
 constexpr double kImuOffset_m = 0.02;        // distance of an IMU from the centre that explains forces in fast rotation
 constexpr double kPartialRangeMin = 0.3, kPartialRangeMax = 0.6;  // as fractions of the accelerometer's range
 constexpr double kForceTilt_rad = 0.35;                           // direction error of the mean force in motion
-constexpr double kLostTilt_rad = kForceTilt_rad;  // a force levels a tilt with a larger standard deviation
-constexpr double kUncertainTilt_rad = 0.1;        // the same limit at rest, where the force is gravity
+constexpr double kLostTilt_rad = kForceTilt_rad;  // a tilt with a larger standard deviation is levelled by the force
+constexpr double kUncertainTilt_rad = 0.1;        // limit of the tilt at rest, where the force is gravity
 constexpr double kRestTilt_rad = 5e-3;
-// If the force differs from gravity by a larger fraction, the sphere is pushed or rotates fast.
+// If the force differs from gravity by more than kPushForceRatio * gravity, the sphere is pushed or rotates fast.
 constexpr double kPushForceRatio = 0.15;
 constexpr double kLostSpeed_m_s = 1.0;
 constexpr double kRecoveredTau_s = 0.1;  // correlation time of the error of a recovered rate
@@ -41,7 +41,7 @@ constexpr double kStartTilt_rad = 0.15;  // tilt error of a start in motion, cau
 // kGapStill_rad_s2 is the smallest standard deviation of the angular acceleration in a gap.
 constexpr double kGapRate_rad_s = 1.0, kGapStill_rad_s2 = 0.5;
 constexpr double kGapVelocityChangeRatio =
-    0.5;  // unknown change of velocity in a gap, as a fraction of the rolling velocity's change
+    0.5;  // unknown velocity change in a gap, as a fraction of the rolling velocity's change
 constexpr double kGapTimeSigmaRatio = 0.15;  // uncertain time of a rate change within a gap, as a fraction of the gap
 
 }  // namespace
@@ -84,7 +84,7 @@ void set_prior(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s,
   // While a sphere is pushed, the force is not gravity. A rotating sphere may slip with its full rolling speed.
   const bool moves = starts_in_motion(params, rate_I_rad_s);
   const double tilt = moves ? kStartTilt_rad : 0.0, velocity = moves ? params.radius_m * rate_I_rad_s.norm() : 0.0;
-  // the initial heading defines the world's x axis, so its prior variance is 0
+  // The initial heading defines the world's x axis, so its prior variance is 0.
   prior.segment<2>(kAttitude).setConstant(squared(params.expert.prior.tilt_sigma_rad) + squared(tilt));
   prior.segment<3>(kVelocity).setConstant(squared(params.expert.prior.velocity_sigma_m_s) + squared(velocity));
   prior.segment<3>(kGyroBias).setConstant(squared(params.expert.prior.gyro_bias_sigma_rad_s));
@@ -104,8 +104,8 @@ struct RailedForce {
   Eigen::Vector3d least_m_s2 = Eigen::Vector3d::Zero();  ///< components for which the reading is a lower bound
 };
 
-/// Returns the assumed specific force for a saturated reading: rolling.md (R8). The result is the larger of the reading
-/// and the force that keeps the velocity of the centre constant.
+/// Returns the assumed specific force for a saturated reading: rolling.md (R8). The assumed force is the larger of two
+/// forces: the reading, and the force that keeps the velocity of the centre constant.
 RailedForce railed_force(const ImuSample& sample, const Eigen::Vector3d& read_m_s2, const Eigen::Vector3d& kept_m_s2) {
   int largest = 0;
   sample.specific_force_m_s2.cwiseAbs().maxCoeff(&largest);
@@ -135,7 +135,7 @@ void integrate(const RollingParams& params, const ImuAverage& reading, RollingNo
   const Eigen::Vector3d w = w_raw - nominal.gyro_bias_rad_s - nominal.gyro_scale * w_raw;
   Eigen::Vector3d f =
       f_raw - nominal.accel_bias_m_s2 - nominal.accel_scale * f_raw - nominal.accel_delay_s * w.cross(f_raw);
-  // A reading is a mean over its window, in which a force that rotates relative to the sensor partly cancels. The
+  // A reading is the mean over its window, in which a force that rotates relative to the sensor partly cancels. The
   // component perpendicular to the rotation axis loses the fraction (|w| dt)^2 / 24: rolling.md (R4).
   f -= dt_s * dt_s / 24.0 * w.cross(w.cross(f));
   const Eigen::Quaterniond half = so3::exp(0.5 * dt_s * w);
@@ -168,7 +168,7 @@ void integrate(const RollingParams& params, const ImuAverage& reading, RollingNo
   nominal.v_WI_m_s += gained;
   sums.rotation_integral_s += R_T;
   for (int axis = 0; axis < 3; ++axis) sums.rotation_rate_integral.middleCols<3>(3 * axis) += w_raw[axis] * R_T;
-  if (!has_unknown_rate) {  // otherwise errors of force and attitude do not affect the velocity
+  if (!has_unknown_rate) {  // with an unknown rate, errors of force and attitude do not affect the velocity
     sums.rotation_integral_used_force_s += R_T;
     sums.force_integral_W_m_s += R_T * f;
     for (int axis = 0; axis < 3; ++axis) sums.rotation_force_integral.middleCols<3>(3 * axis) += f_raw[axis] * R_T;
@@ -240,7 +240,7 @@ void integrate_gap(const RollingParams& params, const ImuAverage& piece, const G
   sums.gap_speed_variance_m2_s2 += uncertainty.speed_variance_m2_s2;
 }
 
-/// Returns the transition matrix of the motion states: rolling.md (R10).
+/// Returns the transition matrix of the motion states, minus the identity: rolling.md (R10).
 Moving transition(const RollingIntegrals& sums) {
   Moving B = Moving::Zero();
   B.block<3, 3>(kAttitude, kGyroBias) = -sums.rotation_integral_s;
@@ -288,13 +288,14 @@ Contact contact(const RollingParams& params, const RollingNominal& nominal, cons
   const Eigen::Vector3d arm_W = R * (params.lever_arm_m + nominal.lever_arm_error_m);
   const Eigen::Vector3d n = normal(nominal.slope);
   const double r = params.radius_m + nominal.radius_error_m;
-  // With the IMU's velocity v and the lever arm from the IMU to the contact point, u = v + w x (-arm - r n).
+  // The contact velocity is u = v + w x (-arm - r n). The symbol v is the IMU's velocity, and -arm - r n is the vector
+  // from the IMU to the contact point.
   const Eigen::Matrix3d reach = so3::hat(arm_W + r * n);
   Contact out;
   out.contact_velocity_W_m_s = nominal.v_WI_m_s + reach * w_W;
   out.H.setZero();
   out.H.middleCols<3>(kVelocity).setIdentity();
-  // an attitude error rotates the rate w and the lever arm, but not the normal of the floor
+  // An attitude error rotates the rate w and the lever arm, but not the normal of the floor.
   out.H.middleCols<3>(kAttitude) = so3::hat(w_W.cross(arm_W)) - r * so3::hat(n) * so3::hat(w_W);
   out.H.middleCols<3>(kGyroBias) = -reach * R;
   for (int axis = 0; axis < 3; ++axis) {
@@ -324,7 +325,8 @@ Contact contact(const RollingParams& params, const RollingNominal& nominal, cons
   return out;
 }
 
-/// Returns the variance of a pseudo-measurement of zero velocity if the velocity is too uncertain: rolling.md (R20).
+/// Returns the variance of a pseudo-measurement of zero velocity, or nothing if the velocity is certain enough:
+/// rolling.md (R20).
 std::optional<double> lost_velocity_variance(const RollingParams& params, double node_s, const Covariance& P) {
   if (P(kVelocity, kVelocity) + P(kVelocity + 1, kVelocity + 1) < squared(kUnsureSpeed_m_s)) return std::nullopt;
   return squared(params.expert.contact.speed_sigma_m_s) * kSpeedWindow_s / node_s;
@@ -334,7 +336,7 @@ bool resets_slope(RollingMode from, RollingMode to) {
   return from != to && !may_slip(to);
 }
 
-/// Resets the estimated slope of the floor after a change of the contact mode: rolling.md (R21).
+/// Changes the estimated slope of the floor according to the contact modes before and after a node: rolling.md (R21).
 void update_slope_for_mode(const RollingParams& params, RollingMode from, RollingMode to, double h_s,
                            const RollingNominal& nominal, Vector& x, Covariance& P) {
   if (from == RollingMode::incline && to == from) {

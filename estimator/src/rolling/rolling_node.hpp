@@ -22,11 +22,10 @@ using Row = Eigen::Matrix<double, 1, kStates>;
 using Covariance = Eigen::Matrix<double, kStates, kStates>;
 using Moving = Eigen::Matrix<double, 9, kStates>;
 
-/// If the speed is below kConstrainSpeed_m_s for kConstrainAfter_s, the sphere is at rest and its reported position is
-/// constant.
+/// The reported position of a sphere is constant if its speed has been below kConstrainSpeed_m_s for kConstrainAfter_s.
 inline constexpr double kConstrainAfter_s = 0.1, kConstrainSpeed_m_s = 0.02;
 
-/// Contact is the velocity u of the contact point on the nominal trajectory, with its derivative with respect to the
+/// Contact is the velocity u of the contact point on the nominal trajectory, with its derivative H with respect to the
 /// error state.
 struct Contact {
   Eigen::Vector3d contact_velocity_W_m_s;
@@ -37,7 +36,7 @@ struct Contact {
   Eigen::Vector3d lift_W;          ///< derivative of u with respect to the normal's third component
   Eigen::Vector2d slope;           ///< slope of the floor on the nominal trajectory
 
-  /// Returns the contact velocity if the error state is `x`. The contact velocity is linear in `x` except for the unit
+  /// Returns the contact velocity for the error state `x`. The contact velocity is linear in `x`, except for the unit
   /// length of the normal.
   Eigen::Vector3d velocity(const Vector& x) const;
 };
@@ -60,13 +59,13 @@ enum class Force { read, unknown };
 void integrate(const RollingParams& params, const ImuAverage& reading, RollingNominal& nominal, RollingIntegrals& sums,
                Force known = Force::read);
 
-/// Returns the nominal trajectory, extrapolated by readings that are not processed yet.
+/// Returns the nominal trajectory, extrapolated by the mean of the unprocessed readings.
 RollingNominal extrapolate_nominal(const RollingParams& params, const ImuAverage& reading,
                                    const RollingNominal& nominal);
 
 int gap_pieces(const RollingParams& params, double gap_s);
 
-/// GapUncertainty contains the variances of one piece of a gap, in which the rate is interpolated and the force is
+/// GapUncertainty contains the variances of one piece of a gap. In a gap, the rate is interpolated and the force is
 /// unknown.
 struct GapUncertainty {
   double rad2 = 0.0, rate_variance_rad2_s = 0.0, speed_variance_m2_s2 = 0.0;
@@ -81,8 +80,8 @@ void integrate_gap(const RollingParams& params, const ImuAverage& piece, const G
 Moving transition(const RollingIntegrals& sums);
 void predict(const RollingParams& params, const RollingIntegrals& sums, const Moving& B, Vector& x, Covariance& P);
 
-/// Computes the contact at a node. `rate_I_rad_s` is the unprocessed gyro reading at the node. `sums` contains the sums
-/// over the node. A gap in the node increases the variance of the contact velocity.
+/// Computes the contact at a node. `rate_I_rad_s` is the gyro reading at the node, without correction. `sums` contains
+/// the sums over the node. A gap in the node increases the variance of the contact velocity.
 Contact contact(const RollingParams& params, const RollingNominal& nominal, const Eigen::Vector3d& rate_I_rad_s,
                 const RollingIntegrals& sums);
 
@@ -91,23 +90,21 @@ Contact contact(const RollingParams& params, const RollingNominal& nominal, cons
 void update_slope_for_mode(const RollingParams& params, RollingMode from, RollingMode to, double h_s,
                            const RollingNominal& nominal, Vector& x, Covariance& P);
 
-/// Returns the variance of a pseudo-measurement of zero velocity if the velocity is too uncertain, and otherwise
-/// nothing.
+/// Returns the variance of a pseudo-measurement of zero velocity, or nothing if the velocity is certain enough.
 std::optional<double> lost_velocity_variance(const RollingParams& params, double node_s, const Covariance& P);
 
 /// Returns whether a contact mode change from `from` to `to` makes the slope of the floor unknown.
 bool resets_slope(RollingMode from, RollingMode to);
 
-/// If clipping has made the tilt uncertain, the function aligns the attitude with the mean specific force of the node,
-/// at rest or in motion. The function also resets the velocity. Returns false if levelling is unnecessary, or if the
-/// specific force of the node is unusable.
+/// Aligns an uncertain tilt with the mean specific force of the node, at rest or in motion, and resets the velocity.
+/// Returns false if the tilt is certain enough, or if the specific force of the node is unusable.
 bool reset_tilt(const RollingParams& params, const RollingIntegrals& sums, bool at_rest, RollingNominal& nominal,
                 Covariance& P);
 
-/// Applies a Kalman update by a scalar measurement: measurement = row x + noise.
+/// Applies a Kalman update with the scalar measurement: measured = row x + noise.
 void update(const Row& row, double measured, double variance, Vector& x, Covariance& P);
 
-/// Applies a Kalman update by a measurement of a single state.
+/// Applies a Kalman update with a measurement of a single state.
 void update(int index, double measured, double variance, Vector& x, Covariance& P);
 
 /// Adds the estimated error `x` to the nominal trajectory and constants.

@@ -13,8 +13,7 @@ namespace tumble {
 
 namespace {
 
-// kPreallocatedMax is the maximum number of preallocated samples and nodes. For a longer lag, the memory grows during
-// the run.
+// Maximum number of preallocated samples and nodes. With a longer lag, the memory grows during the run.
 constexpr std::size_t kPreallocatedMax = 1'000'000;
 constexpr std::size_t kSamplesMaxFactor = 4;  // maximum number of samples, as a multiple of the preallocated number
 
@@ -26,7 +25,7 @@ RollingParams scale_noise(RollingParams params, double share) {
   return params;
 }
 
-/// Returns the one of two contact modes that constrains the contact point less.
+/// Returns the contact mode, of two, that constrains the contact point less.
 RollingMode less_constrained(RollingMode a, RollingMode b) {
   const auto rank = [](RollingMode mode) {
     if (may_slip(mode)) return mode == RollingMode::bump ? 3 : 2;
@@ -40,8 +39,7 @@ bool equal(const ImuSample& a, const ImuSample& b) {
          a.specific_force_m_s2 == b.specific_force_m_s2;
 }
 
-/// Returns the factor from the variance of the final pass to the reported variance. The final pass uses a reduced
-/// process noise.
+/// Returns the ratio of the reported variance to the variance of the final pass, which uses a reduced process noise.
 double stated(const RollingSmoother::Params& params) {
   return 1.0 / (params.final_pass_noise_ratio * params.final_pass_noise_ratio);
 }
@@ -54,8 +52,8 @@ rolling::Readings::Cursor start_cursor(const ImuSample& sample) {
   return cursor;
 }
 
-/// Returns the covariance of the sphere's centre and attitude from the covariance of a node's reported states:
-/// rolling.md (R40).
+/// Returns the covariance of the sphere's centre and attitude, computed from the covariance of a node's reported
+/// states: rolling.md (R40).
 Eigen::Matrix<double, 6, 6> pose_covariance(const rolling::NodeRecord& node, const Eigen::Vector3d& arm_W) {
   Eigen::Matrix<double, 6, rolling::kReported> J = Eigen::Matrix<double, 6, rolling::kReported>::Zero();
   J.block<3, 3>(0, 0) = so3::hat(arm_W);
@@ -91,7 +89,7 @@ void start_window(const RollingParams& filter, const RollingParams& path, const 
   }
   const ImuSample& sample = state.samples[0];
   Eigen::Quaterniond q_WI = filter.q_WI_start.value_or(Eigen::Quaterniond::Identity());
-  // level() cannot fail, because the filter already levelled with this force
+  // level() cannot fail, because the filter already levelled with the force of this sample.
   if (!filter.q_WI_start) (void)level(sample.specific_force_m_s2, q_WI);
   start.filter.nominal = rolling::start_nominal(path, q_WI, sample.angular_velocity_rad_s);
   rolling::set_prior(path, sample.angular_velocity_rad_s, start.filter.P);

@@ -15,7 +15,7 @@ namespace {
 constexpr double kMaxSigmas = 5.0;
 constexpr double kNoDirection_m = 0.05;  // minimum distance of two positions whose direction is defined
 
-/// Applies a scalar measurement and stores it for the backward pass. A residual beyond kMaxSigmas standard deviations
+/// Applies a scalar measurement, and stores it for the backward pass. A residual beyond kMaxSigmas standard deviations
 /// has less weight, because a large linear correction would distort the whole run: rolling.md (R37).
 void measure(const Row& H, double measured, double variance, NodeRecord& record, Vector& x, Covariance& P) {
   const auto k = static_cast<std::size_t>(record.rows++);
@@ -38,7 +38,7 @@ Reported reported(const Vector& x) {
   return out;
 }
 
-/// Transforms the adjoint vector and matrix back to the nominal state before its correction: T^T lambda, T^T Lambda T,
+/// Transforms adjoint vector and matrix to the nominal state before its correction, T^T lambda and T^T Lambda T:
 /// rolling.md (R36).
 void transform_adjoint(const Vector& turned, Adjoint& adjoint) {
   constexpr int kHeading = kAttitude + 2;

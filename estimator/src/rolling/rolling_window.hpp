@@ -14,11 +14,11 @@ struct PathNode {
   RollingMode mode = RollingMode::grip;
   bool at_rest = false;
   bool spins_in_place = false;  ///< the sphere is at rest, but rotates about the contact point
-  bool stands = false;          ///< the sphere has been at rest for so long that the position may be constant
+  bool stands = false;          ///< the sphere has rested long enough for a constant reported position
   Eigen::Matrix3d position_spread_m2 = Eigen::Matrix3d::Zero();
 };
 
-/// number of states that determine a pose: attitude, velocity, position, lever arm
+/// Number of states that determine a pose: attitude, velocity, position, lever arm.
 inline constexpr int kReported = 12;
 using Reported = Eigen::Matrix<double, kReported, 1>;
 
@@ -53,7 +53,7 @@ struct Reading {
   TimeNs end_ns = 0;
 };
 
-/// Readings iterates over stored samples and returns the inputs (Reading) that the live filter received. Each step
+/// Readings iterates over stored samples, and returns the inputs (Reading) that the live filter received. Each step
 /// costs O(1) without allocation.
 class Readings {
  public:
@@ -88,7 +88,7 @@ struct SamplePoint {
   Eigen::Quaterniond q_WI;
   Eigen::Vector3d v_WI_m_s, p_WI_m;
   Eigen::Vector3d rate_I_rad_s;
-  std::size_t node = 0;  ///< index of the first node that closes after the sample
+  std::size_t node = 0;  ///< index of the first node that is completed after the sample
 };
 
 struct PathFilter {
@@ -100,12 +100,12 @@ struct PathFilter {
 Eigen::Matrix<double, kReported, kStates> output_covariance_rows(const Covariance& P);
 /// Returns the covariance of the reported states from their rows in the covariance of all states.
 Eigen::Matrix<double, kReported, kReported> reported_covariance(const Eigen::Matrix<double, kReported, kStates>& rows);
-/// Returns the covariance of the velocity of the centre in IMU axes, given the covariance of the reported states. The
-/// function neglects the product of angular velocity error and lever arm.
+/// Returns the covariance of the centre's velocity in IMU axes, from the covariance of the reported states. The product
+/// of angular velocity error and lever arm is neglected.
 Eigen::Matrix3d velocity_covariance_I(const RollingNominal& nominal, const Eigen::Vector3d& w_WI_I_rad_s,
                                       const Eigen::Matrix<double, kReported, kReported>& reported);
 
-/// Closes a node: predicts the error state, applies the measurements, and corrects the nominal trajectory. `record`
+/// Completes a node: predicts the error state, applies the measurements, and corrects the nominal trajectory. `record`
 /// must have its initial values.
 void complete_node(const RollingParams& params, const RollingIntegrals& sums, const Eigen::Vector3d& rate_I_rad_s,
                    const PathNode& path, PathFilter& filter, NodeRecord& record);
@@ -114,20 +114,19 @@ void complete_node(const RollingParams& params, const RollingIntegrals& sums, co
 Reported error_before_update(const NodeRecord& node);
 
 /// Applies the known horizontal distance `distance_m` of the sphere's centre from the start, at or just after the last
-/// node. Returns the correction of the nominal trajectory. The correction is zero if start and end are too close to
-/// define a direction.
+/// node. Returns the correction of the nominal trajectory, or zero if start and end are too close to define a
+/// direction.
 Reported measure_distance(const RollingParams& params, double distance_m, double sigma_m, NodeRecord& last,
                           PathFilter& filter);
 
-/// Adjoint contains the information about the error at a node that later measurements provide.
+/// Adjoint contains the information that later measurements provide about the error at a node.
 struct Adjoint {
   Vector lambda = Vector::Zero();
   Covariance Lambda = Covariance::Zero();
 };
 
-/// Applies the modified Bryson-Fraser smoother, which computes `smoothed` and `smoothed_P` of consecutive nodes. On
-/// entry, `adjoint` refers to the time after the last node. On return, `adjoint` refers to the time before the first
-/// node.
+/// Computes `smoothed` and `smoothed_P` of consecutive nodes by the modified Bryson-Fraser smoother. On entry,
+/// `adjoint` refers to the time after the last node. On return, `adjoint` refers to the time before the first node.
 void backward_pass(Adjoint& adjoint, std::span<NodeRecord> nodes);
 
 }  // namespace tumble::rolling

@@ -44,7 +44,8 @@ void warn(const std::string& text) {
 
 void Feed::begin(nb::object odometry, std::int64_t sweep_length_ns) {
   if (sweep_length_ns <= 0) {
-    throw std::invalid_argument("the length of a sweep is " + std::to_string(sweep_length_ns) + " ns, must be above 0");
+    throw std::invalid_argument("the length of a sweep is " + std::to_string(sweep_length_ns) +
+                                " ns; it must be above 0");
   }
   odometry_ = std::move(odometry);
   sweep_length_ns_ = sweep_length_ns;
@@ -94,9 +95,9 @@ void Feed::require_room() const {
   if (waiting_.size() < kSweepsMax) return;
   const std::string last =
       last_sample_ns_ ? "the newest IMU sample is at " + seconds(*last_sample_ns_) : "no IMU sample has arrived";
-  throw std::runtime_error(std::to_string(waiting_.size()) + " sweeps wait for IMU samples, from " +
+  throw std::runtime_error(std::to_string(waiting_.size()) + " sweeps wait for IMU samples (from " +
                            seconds(waiting_.front().start_ns) + " to " + seconds(waiting_.back().end_ns) +
-                           ", must be less than " + std::to_string(kSweepsMax) + ": " + last +
+                           "); the number must be less than " + std::to_string(kSweepsMax) + ": " + last +
                            "; check that the data set has an IMU whose clock agrees with the lidar");
 }
 

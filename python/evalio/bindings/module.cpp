@@ -26,7 +26,7 @@ NB_MODULE(tumble_evalio, m) {
   using tumble::evalio_bindings::Feed;
   m.doc() = "The compiled part of tumble.evalio. Use tumble.evalio instead of this module.";
   m.def("require_abi", &require_abi, nb::arg("of_evalio"),
-        "Raises RuntimeError unless this module was compiled for the given ABI.");
+        "Raises RuntimeError if this module was compiled for another ABI.");
   require_abi(nb::cast<std::string>(nb::module_::import_("evalio").attr("_abi_tag")()));
   nb::class_<Feed, evalio::Pipeline>(m, "Feed", "An evalio pipeline for an estimator that is passed to `begin`.")
       .def(nb::init<>())

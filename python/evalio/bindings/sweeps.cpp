@@ -26,7 +26,7 @@ bool is_return(const evalio::Point& point) {
 void require_within_sweep(std::int64_t offset_ns) {
   if (offset_ns >= 0 && offset_ns <= kLongest) return;
   throw std::invalid_argument("the time of a return after the sweep's stamp is " + std::to_string(offset_ns) +
-                              " ns, must be within [0, " + std::to_string(kLongest) + "]");
+                              " ns; it must be within [0, " + std::to_string(kLongest) + "]");
 }
 
 void append(std::vector<double>& to, const Eigen::Vector3d& value) {

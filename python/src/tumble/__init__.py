@@ -5,7 +5,7 @@ Inputs and outputs are numpy arrays. Times are int64 nanoseconds, all other quan
 x y z w, and rotate sensor or body axes to the world (z up). Invalid input raises TumbleError, with field, value and bound.
 `parameters()` of a class lists its keywords.
 
-Odometry        TumblingOdometry (an IMU that may clip and a lidar), RollingOdometry (IMUs in a sphere), sheets of sensors
+Odometry        TumblingOdometry (an IMU that may clip and a lidar), RollingOdometry (IMUs in a sphere), sheets: data sheets of sensors
 Rates           RegimeSmoother, RateSmoother, HandHeldSmoother, Saave (whole recordings), RegimeStream, RateStream, HandHeldStream (live), find_rails
 Attitude        TumbleAttitude, Vqf, Strapdown
 Sphere          RollingSmoother, RollingFilter (live)

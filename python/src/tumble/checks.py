@@ -14,7 +14,7 @@ import numpy.typing as npt
 from .errors import TumbleError
 
 Array = npt.NDArray[Any]
-SYMMETRIC = 1e-3  # tolerance in correlations, the same as for a Python method that the program calls
+SYMMETRIC = 1e-3  # tolerance of a correlation; the program uses the same value for the covariances of a Python method
 RIGID = 1e-6  # tolerance of a rotation, the same as in the program's readers
 
 
@@ -79,7 +79,7 @@ def unmasked(field: str, given: Any) -> Array:
 
 
 def rising(field: str, times: Array) -> None:
-    """Raises TumbleError `time_order` unless each time is later than the previous one."""
+    """Raises TumbleError `time_order` if a time is not later than the previous time."""
     late = np.flatnonzero(times[1:] <= times[:-1])
     if len(late):
         k = int(late[0]) + 1
@@ -87,7 +87,11 @@ def rising(field: str, times: Array) -> None:
 
 
 def symmetric(field: str, matrices: Array) -> None:
-    """Raises TumbleError unless all covariances (N, M, M) are symmetric, within the precision of single-precision numbers."""
+<<<<<<< HEAD
+    """Raises TumbleError if one of the covariances (N, M, M) is not symmetric to single precision."""
+=======
+    """Raises TumbleError if one of the covariances (N, M, M) is not symmetric. The tolerance allows rounding to single precision."""
+>>>>>>> words_hdr
     deviation = np.sqrt(np.maximum(np.diagonal(matrices, axis1=1, axis2=2), 0.0))
     apart = np.abs(matrices - matrices.transpose(0, 2, 1)) > SYMMETRIC * deviation[:, :, None] * deviation[:, None, :]
     bad = np.flatnonzero(apart.any(axis=(1, 2)))
@@ -96,7 +100,11 @@ def symmetric(field: str, matrices: Array) -> None:
 
 
 def rigid(field: str, given: Any) -> None:
-    """Raises TumbleError unless `given` is a rigid transform, (4, 4)."""
+<<<<<<< HEAD
+    """Raises TumbleError if `given` is not a rigid transform (4, 4)."""
+=======
+    """Raises TumbleError if `given` is not a rigid transform, (4, 4)."""
+>>>>>>> words_hdr
     pose = unmasked(field, given)
     if pose.shape != (4, 4):
         raise refusal("shape", field, pose.shape, (4, 4))

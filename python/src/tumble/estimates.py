@@ -34,8 +34,8 @@ class Trajectory(Shown):
 def write_tum(path: str | os.PathLike[str], poses: Any) -> None:
     """Writes poses in TUM format: `t x y z qx qy qz qw`, with t in seconds, exact to the nanosecond.
 
-    poses: an object with time_ns, quaternion and, optionally, position (else 0). `read_tum` restores the numbers to the bit. The file is
-    written under a temporary name and then renamed.
+    poses: an object with time_ns, quaternion and, optionally, position (default: 0). `read_tum` restores the numbers bit for bit. The file
+    is written under a temporary name and then renamed.
     """
     having("poses", poses, "an object with time_ns and quaternion", "time_ns", "quaternion")
     times, quaternions = unmasked("time_ns", poses.time_ns), unmasked("quaternion", poses.quaternion)

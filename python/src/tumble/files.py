@@ -12,7 +12,7 @@ from typing import Any
 
 
 def optional(module: str, extra: str) -> Any:
-    """Imports an optional package. Raises ImportError with the install command if it is missing; errors within the package pass through."""
+    """Imports an optional package. If it is missing, raises ImportError with the install command. Errors within the package are not caught."""
     try:
         return importlib.import_module(module)
     except ModuleNotFoundError as error:

@@ -19,7 +19,7 @@ PLAIN = {"position_L_m", "range_m", "intensity", "hit_W_m"}  # lidar floats rese
 
 
 class Group:
-    """A group of an HDF5 file, whose errors contain its path."""
+    """A group of an HDF5 file. The errors of its functions contain the path of the group."""
 
     def __init__(self, group: Any, path: str) -> None:
         self.group, self.place = group, f"{path}: {group.name}"
@@ -34,7 +34,7 @@ class Group:
         return kind(value)
 
     def rows(self, name: str, dtype: str, columns: tuple[int, ...] = (), optional: bool = False) -> Any:
-        """Returns a dataset of the given type and columns, or None if an optional one is missing. Raises TumbleError `file`."""
+        """Returns a dataset of the given type and columns, or None if it is optional and missing. Raises TumbleError `file`."""
         if name not in self.group:
             if optional:
                 return None
@@ -99,7 +99,7 @@ def _storage(name: str, rows: Array) -> dict[str, Any]:
 
 
 def put(group: Any, name: str, rows: Any, dtype: str, unit: str, shape: tuple[int, ...], columns: str = "", many: bool = True) -> None:
-    """Writes a dataset with its unit and column names, stored as by the program.
+    """Writes a dataset with its unit and column names, and with the program's storage options.
 
     many=False: the dataset has a fixed, small number of rows and is not compressed. Raises TumbleError `shape`; `type` for numbers that
     are complex, masked, or floats for an integer type; `out_of_range` for numbers beyond the file's type.
@@ -125,7 +125,7 @@ def put(group: Any, name: str, rows: Any, dtype: str, unit: str, shape: tuple[in
 
 
 def put_texts(group: Any, name: str, texts: Sequence[str]) -> None:
-    """Writes a dataset of texts with a fixed length, that of the longest text."""
+    """Writes a dataset of texts. Each entry has the length of the longest text."""
     rows = [text.encode() for text in texts]
     utf8 = optional("h5py", "files").string_dtype("utf-8", max([1, *map(len, rows)]))
     group.create_dataset(name, data=np.array(rows, dtype=utf8))

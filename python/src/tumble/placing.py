@@ -26,7 +26,7 @@ def rotations(quaternion: Array) -> Array:
 def poses_at(time_ns: Array, poses: Any) -> tuple[Array, Array]:
     """Interpolates `poses` (time_ns, position, quaternion): positions (N, 3) linearly, rotations (N, 3, 3) by spherical interpolation.
 
-    Returns NaN for times outside those of `poses`.
+    Returns NaN for times before the first or after the last of `poses`.
     """
     known = np.asarray(poses.time_ns)
     if len(known) < 2:
@@ -51,7 +51,7 @@ def point_errors(recording: Recording, poses: Any, every: int = 1) -> tuple[Arra
     Returns positions (N, 3), m, in the world of the estimate, and distances (N,), m, for the returns within the times of both the poses
     and the ground truth. The worlds are aligned in position and yaw at the first pose within the times of the truth, as for the
     program's scores (`ate_m`). The estimated position uses the calibration stated by the recording, the true position uses the true
-    mounting. The distance therefore contains the calibration error. every: n, to use every n-th return.
+    mounting. The distance therefore contains the calibration error. every=n uses every n-th return.
     Raises TumbleError `empty` without ground truth or without returns.
     """
     having("recording", recording, "a Recording", "truth", "imus", "lidars")

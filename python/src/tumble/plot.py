@@ -85,7 +85,7 @@ def trajectory(poses: Any, truth: Any = None) -> Any:
 def map_by_error(recording: Recording, poses: Any, every: int = 10, worst_m: float | None = None) -> Any:
     """Plots the lidar's returns at the positions given by `poses` of the first IMU, from above and from the side.
 
-    The colour of a return is its distance from the true position (`point_errors`). every: n, to use every n-th return. worst_m: upper end of
+    The colour of a return is its distance from the true position (`point_errors`). every=n uses every n-th return. worst_m: upper end of
     the colour scale; None: the 99 % quantile.
     """
     points, error_m = point_errors(recording, poses, every)
@@ -134,7 +134,7 @@ def scores(frame: Any, metric: str, unit: str = "") -> Any:
 
 
 def _values(ended: Any, rows: Any) -> Array:
-    """Returns one value per draw; infinite without a value or if the method failed."""
+    """Returns one value per draw. The value is infinite if the method failed or gave no value."""
     found = {(row.scenario, row.seed): row.value for row in rows.itertuples() if row.status == "ok" and row.value is not None}
     out = np.array([found.get((row.scenario, row.seed), np.inf) for row in ended.itertuples()], float)
     return np.where(np.isnan(out), np.inf, out)

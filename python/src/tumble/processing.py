@@ -72,7 +72,7 @@ class Tumble(Shown):
 
     poses: _tumble.Poses  #: final (smoothed) poses of the IMU, at its samples within sweeps
     sweeps: list[_tumble.SweepReport]  #: reports of the sweeps that have poses, in order of registration
-    refused: list[str]  #: error messages of the other sweeps
+    refused: list[str]  #: error messages of the sweeps without poses
     map: _tumble.MapPoints  #: map within mapping_map_radius_m of the sensor
     odometry: _tumble.TumblingOdometry  #: the estimator, with its calibration: rig(), calibration()
 
@@ -98,8 +98,8 @@ def tumbling(recording: Recording, on_sample: Callable[[_tumble.TumblingOdometry
     The data are added in the order of a live robot: each sample at the end of its window, each sweep after its last point. This is the
     program's method `slam/tumble_lag`. With lag_s=1e9, the call estimates the whole recording at once, as `slam/tumble` does.
 
-    on_sample   is called after each sample with the odometry, whose newest() returns the live pose
-    map         of an earlier run, in which this run localises itself without a start pose (TumblingOdometry.use_map)
+    on_sample   function that is called with the odometry after each sample; newest() returns the live pose
+    map         map of an earlier run, in which the robot is localised without a start pose (TumblingOdometry.use_map)
     options     keywords of TumblingOdometry; they override the values of the recording
     """
     odometry = _tumble.TumblingOdometry(**tumbling_options(recording, **options))

@@ -317,7 +317,7 @@ def write(path: str | os.PathLike[str], recording: Recording, truth: bool = True
 
 
 def _require_sound(recording: Recording) -> None:
-    """Raises the errors of the program's reader (scenarios/recordings/recording_check.cpp), except for lengths and types (see `put`)."""
+    """Raises the errors that the program's reader would report (scenarios/recordings/recording_check.cpp). `put` checks lengths and types."""
     for name in ("sphere_radius_m", "gravity_m_s2"):
         number_from(name, getattr(recording, name), 0.0)
     whole("seed", recording.seed, 0, 2**64 - 1)

@@ -39,7 +39,7 @@ except ImportError:  # the packages of PyPI lack tf2
     tf2_ros = None
 
 IDENTITY = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]
-#: Messages that wait while a sweep is registered: two seconds of a fast IMU, and of ten sweeps per second.
+#: Queue lengths for messages that arrive while a sweep is registered: two seconds of a 1 kHz IMU, and of ten sweeps per second.
 IMU_DEPTH, CLOUD_DEPTH = 2000, 20
 
 
@@ -87,7 +87,8 @@ class OdometryNode(Node):
         self.create_timer(0.2, self.subscribe)
 
     def subscribe(self) -> None:
-        """Subscribes to the inputs that have a publisher, reliably if all its publishers are reliable. A best-effort subscription would lose large clouds."""
+        """Subscribes to each input that has a publisher. The subscription is reliable if all publishers are reliable, because a best-effort
+        subscription would lose large clouds."""
         for each in list(self.inputs):
             kind, topic, callback, depth = each
             publishers = self.get_publishers_info_by_topic(self.resolve_topic_name(topic))
@@ -196,7 +197,7 @@ class OdometryNode(Node):
             self.report("initialpose", str(error))
 
     def path(self, parameter: str) -> pathlib.Path:
-        """Returns a file, whose parameter may have changed since the start."""
+        """Returns the path in a parameter, which may have changed since the start."""
         return pathlib.Path(self.get_parameter(parameter).value).absolute()
 
     def write(self, parameter: str, content: bytes, answer: Trigger.Response) -> Trigger.Response:

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-_LIST_MAX = 4  # of a longer list, only the length is printed
+_LIST_MAX = 4  # a longer list is printed as its length
 _TEXT_MAX = 60
 
 

@@ -31,7 +31,7 @@ class ImuTruth(Shown):
     name: str = ""
     T_BI: Array = field(default_factory=lambda: np.eye(4))  #: (4, 4), true mounting
     rate: Array = _none("f8", 3)  #: (N, 3), rad/s: exact mean over the window of each sample, IMU axes
-    specific_force: Array = _none("f8", 3)  #: (N, 3), m/s^2: same
+    specific_force: Array = _none("f8", 3)  #: (N, 3), m/s^2: exact mean over the window of each sample
     gyro_unclipped: Array = _none("f8", 3)  #: (N, 3), rad/s: the reading with all errors except clipping
     accel_unclipped: Array = _none("f8", 3)  #: (N, 3), m/s^2
     gyro_bias: Array = _none("f8", 3)  #: (N, 3), rad/s, at each sample
@@ -128,8 +128,8 @@ class _Rows:
     unit: str
     columns: str = XYZ
     like: str = ""  #: member, or `sensor`, with the same number of rows; `one` (a vector), `three`; "": any number
-    or_none: bool = False  #: whether it may have no rows because it is unknown
-    left_out: bool = False  #: whether the dataset is omitted if the member is None
+    or_none: bool = False  #: it may have no rows, if its values are unknown
+    left_out: bool = False  #: the dataset is omitted if the member is None
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -194,7 +194,7 @@ def _write_rows(group: Any, listed: Sequence[_Rows], record: Any, sensor: int | 
 
 
 def require_quantity(place: str, name: str) -> None:
-    """Raises TumbleError `out_of_range` unless `name` has only letters, digits and _, at least one."""
+    """Raises TumbleError `out_of_range` if `name` is empty or has a character other than letters, digits and _."""
     if not (isinstance(name, str) and name.isascii() and name.replace("_", "a").isalnum()):
         raise TumbleError(f"{place} has a quantity {name!r}; its name must contain only letters, digits and _", "out_of_range", place, name, "a-z A-Z 0-9 _")
 

@@ -43,7 +43,7 @@ struct TumblingAdapterParams {
     visit(p.map_period_s, {"map_period_s", "s", 0.1, 1e6,
                            "time between two publications of the map, by the stamps of the IMU", FieldRank::basic});
     visit(p.prior_map_extend,
-          {"prior_map_extend", "1", 0, 1, "whether sweeps extend the prior map; false: the prior map stays unchanged",
+          {"prior_map_extend", "1", 0, 1, "true: sweeps extend the prior map; false: the prior map stays unchanged",
            FieldRank::basic});
     visit.group("", p.adapter);
   }
@@ -85,8 +85,8 @@ struct TextParameter {
 /// Returns the text and list parameters of both nodes.
 std::span<const TextParameter> text_parameters();
 
-/// Converts x, y, z in metres and the quaternion qx, qy, qz, qw to a pose. Throws InvalidParams with the name of the
-/// parameter unless there are seven finite numbers and the quaternion has length 1 within 1e-3.
+/// Converts x, y, z in metres and the quaternion qx, qy, qz, qw to a pose. The seven numbers must be finite, and the
+/// quaternion must have length 1 within 1e-3. Otherwise, throws InvalidParams with the name of the parameter.
 Eigen::Isometry3d pose_of(const std::string& parameter, std::span<const double> numbers);
 
 /// Converts the smallest and the largest corner to a box; no numbers give an empty box. Throws InvalidParams with the

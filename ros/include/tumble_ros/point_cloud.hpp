@@ -43,11 +43,12 @@ class PointCloudReader {
   explicit PointCloudReader(std::string time_field = {}) : time_field_(std::move(time_field)) {}
 
   /// Converts a point cloud to a sweep. The function drops points that are not finite or at the origin, because these
-  /// points are misses. If intensities exceed 1, the function divides all intensities of the sweep by the larger of 255
-  /// and the largest intensity. Returns an error and leaves `sweep` unspecified: `empty` (a field is missing, or no
-  /// point), `too_few` (the unit is unknown, and there are fewer than 100 points), `degenerate` (all times are equal:
-  /// deskewing is impossible), `out_of_range` (big-endian, a layout that does not fit the data, two possible time
-  /// fields, or a time span above 1 s). Cost: O(points). The function reuses the memory of `sweep`.
+  /// points stand for laser pulses without a return. If intensities exceed 1, the function divides all intensities of
+  /// the sweep by the larger of 255 and the largest intensity. On error, `sweep` is unspecified. The errors are `empty`
+  /// (a field is missing, or no point), `too_few` (the unit is unknown, and there are fewer than 100 points),
+  /// `degenerate` (all times are equal, so deskewing is impossible), and `out_of_range` (big-endian, a layout that does
+  /// not fit the data, two possible time fields, or a time span above 1 s). Cost: O(points). The function reuses the
+  /// memory of `sweep`.
   Status read(const PointCloudView& cloud, TimedSweep& sweep);
 
  private:

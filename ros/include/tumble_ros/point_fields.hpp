@@ -33,14 +33,14 @@ struct PointCloudView {
   std::uint32_t point_step = 0, row_step = 0;
   std::span<const std::uint8_t> data;
 
-  /// Returns the distance of two rows. Some drivers write a row_step that is too small.
+  /// Returns the distance between the starts of two rows [bytes]. Some drivers write a row_step that is too small.
   std::size_t row_bytes() const;
 };
 
 /// Returns `out_of_range` for big-endian numbers, or for a layout or field that does not fit the data. Returns `empty`
 /// for a cloud without points.
 Status check_layout(const PointCloudView& cloud);
-/// Returns whether a field contains one number of a known type.
+/// Returns true if a field contains one number of a known type.
 bool is_number(const PointField& field);
 /// Returns the number of a field. `point` is the first byte of the point.
 double number_at(const std::uint8_t* point, const PointField& field);
@@ -60,8 +60,8 @@ std::string lower_case(std::string_view text);
 const TimeUnit* stated_unit(std::string_view name);
 
 /// TimeFieldChoice selects the field with the times of the points. The names are "t", "time", "timestamp",
-/// "timestamps", "time_stamp", "offset_time", "time_offset" and "offset", in any case, with or without the suffix of a
-/// unit. A field that states its unit has priority.
+/// "timestamps", "time_stamp", "offset_time", "time_offset" and "offset", in upper or lower case, with or without the
+/// suffix of a unit. A field that states its unit has priority.
 struct TimeFieldChoice {
   std::string field, rival;  ///< name of the selected field, and of a second field with equal priority; empty: none
 
@@ -74,7 +74,7 @@ struct TimeFieldChoice {
 struct LivoxCloud {
   static bool is_type(std::string_view type) { return type.ends_with("/CustomMsg"); }
 
-  /// Parses a message. Returns `too_few` if the bytes end early, and the errors of check_layout().
+  /// Parses a message. Returns `ok`, `too_few` if the bytes end early, or an error of check_layout().
   Status parse(std::span<const std::uint8_t> cdr);
   PointCloudView view() const;
 

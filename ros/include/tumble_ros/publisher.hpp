@@ -23,7 +23,7 @@ struct Odometry {
   /// Covariance of position and of the rotation about the fixed axes of O, in the order x, y, z, rx, ry, rz [m, rad].
   Matrix6 pose_covariance = Matrix6::Zero();
   Vector6 twist_B = Vector6::Zero();  ///< velocity of B's origin and angular velocity, in axes of B [m/s, rad/s]
-  Matrix6 twist_covariance = Matrix6::Zero();  ///< order and axes of twist_B
+  Matrix6 twist_covariance = Matrix6::Zero();  ///< covariance of twist_B
 };
 
 /// RecoveredImu has the contents of sensor_msgs/Imu: an IMU sample whose angular velocity is estimated through
@@ -52,14 +52,14 @@ struct Diagnostics {
   std::vector<std::pair<std::string, std::string>> values;
 };
 
-/// Output names the messages that cost time and may therefore be skipped.
+/// Output lists the messages that are costly to compute. The adapter skips messages that are not needed (wants()).
 enum class Output { odometry_imu, points, map };
 
 /// Publisher receives the results of an adapter. A node converts the results to messages.
 class Publisher {
  public:
   virtual ~Publisher() = default;
-  /// Returns whether anyone reads this output. The adapter does not compute unwanted outputs.
+  /// Returns true if the output is needed.
   virtual bool wants(Output) { return true; }
   virtual void odometry(const Odometry&) = 0;      ///< pose of a registered sweep, or smoothed pose of a sphere
   virtual void odometry_imu(const Odometry&) = 0;  ///< predicted pose at the newest IMU sample
@@ -71,7 +71,7 @@ class Publisher {
 };
 
 /// Converts a pose of the IMU to the odometry of the base frame. `rate` contains the angular velocity and its
-/// covariance. The lever arm from the IMU to the base turns with the body.
+/// covariance. The velocity includes the rotation of the lever arm from the IMU to the base.
 /// @param velocity_covariance_I_m2_s2  covariance of the velocity in IMU axes (SweepReport)
 /// @param T_IB                         pose of the base in IMU axes
 Odometry base_odometry(const PoseState& imu, const Eigen::Matrix3d& velocity_covariance_I_m2_s2, const RateState& rate,

@@ -10,13 +10,13 @@
 
 namespace tumble::ros {
 
-/// Schedule determines when a periodic message is due, by the stamps of the data.
+/// Schedule determines from the stamps of the data when a periodic message is due.
 class Schedule {
  public:
   explicit Schedule(double period_s) : period_ns_(static_cast<TimeNs>(1e9 * period_s)) {}
 
-  /// Returns whether a period has passed since the last time that the message was due; the first call returns true. A
-  /// clock that steps back makes the message due.
+  /// Returns true if a period has passed since the message was last due, at the first call, and if the clock steps
+  /// back.
   bool is_due(TimeNs now_ns) {
     if (last_ns_ && now_ns >= *last_ns_ && now_ns - *last_ns_ < period_ns_) return false;
     last_ns_ = now_ns;

@@ -36,9 +36,9 @@ struct StartPose {
 /// | Publisher::map, diagnostics | at the periods of the parameters |
 ///
 /// The odometry frame has its z axis up. If the base is level at the start, the odometry frame has the origin and
-/// heading of the base frame at the start. For a robot that starts tilted, the origin is wrong by the tilt times the
-/// distance from base to IMU. Results are published within on_imu(). If the clock steps back, the library restarts
-/// after 0.2 s at the newest pose.
+/// heading of the base frame at the start. If the base is tilted at the start, the error of the origin is the tilt
+/// times the distance from base to IMU. Results are published within on_imu(). If the clock steps back, the library
+/// restarts after 0.2 s at the newest pose.
 class TumblingAdapter {
  public:
   using Params = TumblingAdapterParams;
@@ -60,10 +60,10 @@ class TumblingAdapter {
   /// Registers and publishes the sweeps that wait for later samples, at the end of a recording.
   void finish();
   /// Starts a new run. `start` gives position and heading of the base. Without `start`, the run starts at the origin,
-  /// or anywhere in the prior map. Returns `ok`, or the errors of TumblingOdometry::use_map().
+  /// or anywhere in the prior map. Returns `ok`, or an error of TumblingOdometry::use_map().
   Status reset(const std::optional<StartPose>& start = std::nullopt);
-  /// Starts a new run that localises the robot in a map saved by tumble::save_map(). Returns the errors of
-  /// tumble::load_map() and of reset(). After an error of tumble::load_map(), the run continues.
+  /// Starts a new run that localises the robot in a map saved by tumble::save_map(). Returns `ok`, or an error of
+  /// tumble::load_map() or reset(). After an error of tumble::load_map(), the run continues.
   Status load_map(std::span<const std::byte> bytes);
 
   /// Returns the estimated mounting and lever arm as a ROS 2 parameter file, from which the next run can start.

@@ -17,7 +17,7 @@ using Eigen::Vector3d;
 using RateAndAcceleration = Eigen::Matrix<double, 6, 1>;
 using RateCovariance = Eigen::Matrix<double, 6, 6>;
 
-constexpr int kIterations = 4;  // iterations of an update: the centripetal force is quadratic in the rate
+constexpr int kIterations = 4;  // iterations per update, because the centripetal force is quadratic in the rate
 
 struct AccelerometerFilter {
   RateAndAcceleration x = RateAndAcceleration::Zero();
@@ -36,8 +36,7 @@ struct AccelerometerFilter {
 
   void measure_axis(int j, double reading, double variance) { x += component_update(j, reading - x[j], variance, P); }
 
-  // Updates the filter state iteratively. The covariance of the updated state uses the linearisation of the last
-  // iteration.
+  // Iterated update; the covariance uses the linearisation of the last iteration.
   void measure_difference(const Vector3d& p_I_m, const Vector3d& difference, double variance) {
     const RigConstants rig{.lever_arm_m = p_I_m};
     const RateAndAcceleration before = x;
@@ -94,7 +93,7 @@ Status AccelerometerRate::estimate(std::span<const ImuSample> samples,
     }
     for (int j = 0; j < 3; ++j) {
       double low = -params_.rate_max_rad_s, high = params_.rate_max_rad_s;
-      // A reading at the saturation limit is a one-sided bound of the true rate.
+      // The true rate exceeds a reading at the saturation limit, so the reading bounds one side of the range.
       if ((clippings[k].gyro >> j & 1) != 0 && reading[j] > 0.0) low = std::min(reading[j], high);
       if ((clippings[k].gyro >> j & 1) != 0 && reading[j] < 0.0) high = std::max(reading[j], low);
       filter.x[j] = std::clamp(filter.x[j], low, high);

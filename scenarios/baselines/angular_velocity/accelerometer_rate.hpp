@@ -13,31 +13,31 @@
 
 namespace tumble::baselines {
 
-/// AccelerometerRate estimates angular rates from several accelerometers at known positions (gyro-free inertial
-/// system), by an extended Kalman filter.
+/// AccelerometerRate estimates angular rates from several accelerometers at known positions, by an extended Kalman
+/// filter (gyro-free inertial navigation).
 ///
-/// The filter state contains the angular rate w and the angular acceleration alpha, which is driven by white jerk. The
-/// measurement is the difference of the specific force between each auxiliary IMU at p and the primary IMU: alpha x p +
-/// w x (w x p). The motion model is valid in flight, in contact and at rest. The filter also uses the unclipped gyro
-/// axes (`use_gyro`), so the accelerometers only need to supply the clipped axes.
+/// The filter state contains the angular rate w and the angular acceleration alpha, which is driven by white jerk. Each
+/// auxiliary IMU at position p gives one measurement: its specific force minus that of the primary IMU is alpha x p + w
+/// x (w x p). The motion model of white jerk is valid in flight, in contact and at rest. The filter also uses unclipped
+/// gyro axes (`use_gyro`), so the accelerometers only replace the clipped axes.
 ///
-/// AccelerometerRate is designed for long fast rotation and widely spaced accelerometers (projectiles, vehicles).
-/// Centripetal acceleration grows with the squared rate, so noise and misalignment hide slow rotation. The filter
-/// neglects free flight, accelerometer bias and misalignment, and the correlation between the force differences of the
-/// auxiliary IMUs.
+/// AccelerometerRate is designed for long fast rotation and widely spaced accelerometers (projectiles, vehicles). Slow
+/// rotation is lost in noise and misalignment, because centripetal acceleration grows with the squared rate. The filter
+/// neglects accelerometer bias, misalignment, and the correlation between the force differences of the auxiliary IMUs.
+/// In flight, the filter does not use Euler's equations of free rotation.
 ///
-/// With one auxiliary IMU, the rate about the line between the two IMUs is observable only through products with the
-/// other axes' rates. Without auxiliary IMUs, the filter bridges clipped readings by assuming a smooth rate.
+/// With one auxiliary IMU, only products of rates contain the rate about the line between the two IMUs. Without
+/// auxiliary IMUs, the filter assumes a smooth rate during clipping.
 class AccelerometerRate {
  public:
   struct Params {
     RailDetector::Params rails = {};
-    bool tilted_rails = false;  ///< also detects tilted rails (ClippingFinder); the published method does not
+    bool tilted_rails = false;  ///< also detects tilted rails (ClippingFinder), unlike the published method
     bool use_gyro = true;
     double gyro_noise_density = 5.236e-4;  ///< [rad/s/sqrt(Hz)]
-    double accel_noise_density = 1.5e-3;   ///< largest of the accelerometers [m/s^2/sqrt(Hz)]
+    double accel_noise_density = 1.5e-3;   ///< largest density among the accelerometers [m/s^2/sqrt(Hz)]
     double accel_floor_m_s2 = 0.05;        ///< standard deviation of the bias of a force difference between two IMUs
-    double accel_scale_error = 2e-3;       ///< scale and misalignment, relative to the force
+    double accel_scale_error = 2e-3;       ///< scale error and misalignment, relative to the specific force
     double jerk_psd = 1e7;                 ///< density of the white angular jerk [rad^2/s^5]
     double rate_max_rad_s = 50.0;          ///< largest rate about one axis in the result
     double gap_max_s = 1.0;
@@ -48,7 +48,7 @@ class AccelerometerRate {
       visit.group("rails_", p.rails);
       visit(p.tilted_rails,
             switch_field("tilted_rails",
-                         "1: also search tilted saturation limits; 0: treat each axis separately, as published",
+                         "1: also search for tilted saturation limits; 0: treat each axis separately, as published",
                          FieldRank::basic));
       visit(p.use_gyro,
             switch_field("use_gyro", "1: also use the unclipped axes of the primary gyro; 0: use accelerometers only",

@@ -18,7 +18,7 @@ namespace {
 struct Axis {
   std::span<const ImuSample> samples;
   std::vector<bool> clipped;    ///< saturated
-  std::vector<bool> overflown;  ///< saturated beyond the limit: the readings carry no information
+  std::vector<bool> overflown;  ///< clipped beyond the limit: the reading contains no information
   int index = 0;
   double variance = 0.0;  ///< variance of an unclipped reading
 
@@ -30,15 +30,15 @@ struct Value {
   double rate = 0.0, variance = 0.0;
 };
 
-// Evaluates a cubic Hermite polynomial between two samples with known derivatives.
+// Evaluates the cubic Hermite polynomial between two samples, whose derivatives are given.
 double cubic(double share, double span_s, double from, double slope_from, double to, double slope_to) {
   const double u = share, u2 = u * u, u3 = u2 * u;
   return (2.0 * u3 - 3.0 * u2 + 1.0) * from + (u3 - 2.0 * u2 + u) * span_s * slope_from + (3.0 * u2 - 2.0 * u3) * to +
          (u3 - u2) * span_s * slope_to;
 }
 
-// Returns the derivative of the rate at sample k, from the unclipped readings before (step -1) or after (step +1) a
-// gap. Returns 0 if only one reading there is unclipped.
+// Returns the derivative of the rate at sample k, the last before a gap (step -1) or the first after a gap (step +1).
+// Returns 0 if the neighbouring sample outside the gap is clipped or missing.
 double slope_at(const Axis& axis, std::size_t k, int step) {
   if (step < 0 ? k == 0 : k + 1 == axis.samples.size()) return 0.0;
   const std::size_t other = step < 0 ? k - 1 : k + 1;
@@ -62,8 +62,7 @@ std::vector<Value> interpolate(const Axis& axis) {
       const double span_s = axis.time_s(b) - axis.time_s(a), share = (axis.time_s(k) - axis.time_s(a)) / span_s;
       out[k].rate =
           cubic(share, span_s, axis.reading(a), slope_at(axis, a, -1), axis.reading(b), slope_at(axis, b, +1));
-      // A cubic curve has no variance, so the distance between the curve and the clipped reading serves as standard
-      // deviation.
+      // A cubic has no variance. The distance between cubic and clipped reading serves as standard deviation.
       const double departure = out[k].rate - axis.reading(k);
       out[k].variance = axis.variance + departure * departure;
     }
@@ -108,8 +107,8 @@ struct BoundedJerk {
   Matrix noise(double, const Matrix& F) const { return start() - F * start() * F.transpose(); }
 };
 
-// Chain estimates the rate of one axis by a Kalman filter and smoother for a linear Gaussian process. Chain ignores
-// clipped readings, unless `bounds` adds one Gaussian factor per clipped sample.
+// Chain estimates the rate of one axis by a Kalman filter and smoother for a linear Gaussian process. By default, Chain
+// ignores clipped readings. If `bounds` is set, each clipped reading adds one Gaussian measurement.
 template <typename Process>
 class Chain {
  public:
@@ -177,9 +176,9 @@ class Chain {
   std::vector<Moment> after_;
 };
 
-// Computes the most likely rate curve whose magnitude is at least every clipped reading. Each iteration smooths the
-// curve, then adds a hard limit at each clipped reading whose magnitude exceeds the curve. The reported variance
-// belongs to the smoothed curve without limits, truncated at the clipped reading.
+// Computes the most likely rate curve whose magnitude is at least that of every clipped reading. Each iteration smooths
+// the curve, then adds a hard limit where the curve is below a clipped reading. The reported variance belongs to the
+// curve without limits, truncated at the clipped reading.
 std::vector<Value> smooth_with_bounds(const Axis& axis, const ClippedBaseline::Params& params) {
   constexpr int kRounds = 8;
   const BoundedJerk process(params.snap_psd, params.rate_sigma_rad_s);

@@ -46,7 +46,7 @@ struct Belief {
 };
 
 struct Step {
-  Belief before, after;  // before and after the update with this sample
+  Belief before, after;  // estimate before and after the update with this sample
   ErrorCovariance transition = ErrorCovariance::Identity();
 };
 
@@ -55,8 +55,8 @@ struct Noise {
   double gyro_variance = 0.0, accel_variance = 0.0;
 };
 
-// BoundedAcceleration models the rate of one axis by a stationary Matern 3/2 process: white jerk over short times,
-// bounded rate over long times. The state of the Matern 3/2 process is rate and acceleration.
+// BoundedAcceleration models the rate of one axis by a stationary Matern 3/2 process, whose state is rate and
+// acceleration. The process is white jerk over short times and a bounded rate over long times.
 struct BoundedAcceleration {
   double lambda = 1.0, variance = 1.0;
 
@@ -74,8 +74,7 @@ struct BoundedAcceleration {
 void predict(const StandstillSmoother::Params& p, const BoundedAcceleration& process, const Noise& noise,
              const ImuSample& sample, double dt_s, Belief& belief, ErrorCovariance& F) {
   Navigation& n = belief.mean;
-  // The specific force and the rate of a sample are means over the averaging window that ends with the current time
-  // step.
+  // Force and rate of a sample are means over its averaging window, which is the current time step.
   const Eigen::Matrix2d motion = process.transition(dt_s);
   const Vector3d turn = dt_s * (motion(0, 0) * n.rate_rad_s + motion(0, 1) * n.acceleration_rad_s2);
   const Eigen::Quaterniond middle = n.q_WI * so3::exp(0.5 * turn);
@@ -123,8 +122,8 @@ void hold(const StandstillSmoother::Params& p, double reading, int axis, Belief&
   if (held != rate) measure_component(6 + axis, side * (held - rate), kSoftness * kSoftness, belief);
 }
 
-// Returns whether the tilt or velocity error at a standstill is too large for the linear smoother to correct the
-// previous motion.
+// Returns true if the tilt or velocity error at a standstill is too large for a linear smoother to correct the motion
+// before the standstill.
 bool is_lost(const StandstillSmoother::Params& p, const ImuSample& sample, const Belief& belief) {
   const Vector3d up = belief.mean.q_WI * sample.specific_force_m_s2.normalized();
   if (std::atan2(up.head<2>().norm(), up.z()) > p.tilt_max_rad) return true;
@@ -136,7 +135,7 @@ bool is_lost(const StandstillSmoother::Params& p, const ImuSample& sample, const
 
 // Resets attitude and velocity, removes their correlation with earlier states, and keeps the rate estimate.
 void restart(const ImuSample& sample, Belief& belief, ErrorCovariance& F) {
-  constexpr double kAnyTilt = 10.0, kAnyVelocity = 1e4;  // variances
+  constexpr double kAnyTilt = 10.0, kAnyVelocity = 1e4;  // variances for any tilt [rad^2] and velocity [m^2/s^2]
   Navigation& n = belief.mean;
   const Vector3d up = (n.q_WI * sample.specific_force_m_s2).normalized();
   n.q_WI = (so3::shortest_arc(up, Vector3d::UnitZ()) * n.q_WI).normalized();

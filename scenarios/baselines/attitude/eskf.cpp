@@ -52,9 +52,8 @@ void Eskf::predict(const Eigen::Vector3d& rate_rad_s, double dt_s, State& state)
 }
 
 void Eskf::correct(const Eigen::Vector3d& f_I_m_s2, double dt_s, State& state) const {
-  // The Kalman update uses the specific force instead of its direction. During bounded motion, the mean of the specific
-  // force equals gravity, while the mean of its direction is biased. The vertical component of the specific force
-  // contains no information about attitude.
+  // The update uses the specific force and not its direction. During bounded motion, the mean specific force equals
+  // gravity, while the mean direction is biased. The vertical component contains no information about attitude.
   const Eigen::Vector3d up_W = state.q_WI * f_I_m_s2 / params_.gravity_m_s2;
   const Eigen::Vector2d innovation(up_W.y(), -up_W.x());
   const double sigma = params_.acceleration_noise_m_s2_sqrts / params_.gravity_m_s2;

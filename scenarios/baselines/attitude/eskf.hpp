@@ -10,13 +10,13 @@
 namespace tumble::baselines {
 
 /// Eskf estimates attitude by an error-state Kalman filter with six states: attitude error (world axes) and gyro bias.
-/// The specific force measures the up direction of the filter. The filter follows Sola (arXiv 1711.02508, sections
-/// 5-7), but expresses the attitude error in world axes.
+/// The specific force measures the vertical. The filter follows Sola (arXiv 1711.02508, sections 5-7), but expresses
+/// the attitude error in world axes.
 ///
 /// The filter models body acceleration as zero-mean white noise of the specific force. The filter neither normalises
-/// the specific force nor weights it by its norm, because both would bias the mean. During fast translations,
-/// normalising the specific force increased the attitude error from 0.8 deg to 12 deg. Real accelerations are not
-/// white, and the estimated bias of the vertical gyro axis drifts at rest.
+/// the specific force nor weights it by its norm, because both would bias the mean. Normalising increased the attitude
+/// error during fast translations from 0.8 deg to 12 deg. Real accelerations are not white, and the estimated bias of
+/// the vertical gyro axis drifts at rest.
 class Eskf {
  public:
   using Covariance = Eigen::Matrix<double, 6, 6>;
@@ -24,10 +24,10 @@ class Eskf {
   struct Params {
     double gravity_m_s2 = 9.80665;
     double gyro_noise_rad_sqrts = 1e-3;         ///< angle random walk per sqrt(s)
-    double bias_walk_rad_s_sqrts = 3e-5;        ///< per sqrt(s)
+    double bias_walk_rad_s_sqrts = 3e-5;        ///< random walk of the gyro bias per sqrt(s)
     double bias_sigma_start_rad_s = 8.7266e-3;  ///< 0.5 deg/s
     double tilt_sigma_start_rad = 0.02;
-    double acceleration_noise_m_s2_sqrts = 0.5;  ///< density: sigma of the mean over 1 s
+    double acceleration_noise_m_s2_sqrts = 0.5;  ///< noise density: standard deviation of the mean over 1 s
     double gap_max_s = 1.0;
 
     /// Calls the visitor with each parameter's reference, name, unit and limits.

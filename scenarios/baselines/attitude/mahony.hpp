@@ -10,9 +10,9 @@
 namespace tumble::baselines {
 
 /// Mahony estimates attitude by the explicit complementary filter on SO(3) from gyro and accelerometer (Mahony, Hamel,
-/// Pflimlin, IEEE TAC 53(5), 2008, eq 32). The corrected rate is w + kp e + integral of ki e, with the tilt error e =
-/// f/|f| x R^T z in sensor axes. The integral of the tilt error estimates the gyro bias, but also follows lasting
-/// accelerations. Mahony's filter does not estimate the heading.
+/// Pflimlin, IEEE TAC 53(5), 2008, eq 32). The corrected rate is w + kp e + integral of ki e. The tilt error is e =
+/// f/|f| x R^T z in sensor axes. The integral estimates the gyro bias, but also follows lasting accelerations. The
+/// filter does not estimate the heading.
 class Mahony {
  public:
   struct Params {
@@ -33,7 +33,7 @@ class Mahony {
   };
   struct State {
     Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
-    Eigen::Vector3d integral_rad_s = Eigen::Vector3d::Zero();  ///< added to the rate: minus the bias
+    Eigen::Vector3d integral_rad_s = Eigen::Vector3d::Zero();  ///< integral of ki e: minus the gyro bias
     TimeNs last_time_ns = 0;
     bool started = false;
     bool operator==(const State&) const = default;

@@ -12,28 +12,27 @@ namespace tumble::baselines {
 
 /// AutogainFusion estimates the position of a rolling sphere on a flat floor from the rolling velocity and the
 /// integrated acceleration (Zevering et al., IEEE MFI 2021, eqs 6-13). The filter uses the integrated acceleration only
-/// during rotation. The filter limits the integrated acceleration to slightly more than the rolling velocity, then
-/// averages both velocities. Only the sign of the integrated acceleration affects the result, so the path of a sphere
-/// that rolls without slip is up to half too short. AutogainFusion is a baseline for comparisons; its options select
-/// the variants of the paper and of the authors' code.
+/// during rotation, limits it to `limiter` times the rolling velocity, and averages both velocities. The limit usually
+/// leaves only the sign of the integrated acceleration, so the path of a sphere without slip is up to half too short.
+/// AutogainFusion is a baseline; its options select the variants of the paper and of the authors' code.
 class AutogainFusion {
  public:
   struct Params {
     double radius_m = 0.145;
     double gravity_m_s2 = 9.80665;
-    double limiter = 1.2;              ///< |v_acc| to this times |v_rot|; 1.1 in the code
+    double limiter = 1.2;              ///< maximum of |v_acc| / |v_rot|; 1.1 in the code
     double rotation_weight = 0.5;      ///< eq 13
     double acceleration_weight = 0.5;  ///< eq 13
     Autogain::Params autogain = {};    ///< only for the factors of eq 2
 
-    // Each option switches one difference between the paper and the authors' code. The default options follow the
-    // paper's equations as printed.
+    // Each option switches one difference between the paper and the authors' code. The defaults follow the printed
+    // equations.
     bool integrate_in_body = true;    ///< eq 7 in the rotating frame, without w x v; false integrates in W
     bool direction_only = false;      ///< as in the code: subtracts gravity from f / |f|, without multiplying by g
     bool recursive_coupling = false;  ///< as in the code: eq 8 scales the integral itself at each sample
-    bool limit_per_axis = true;       ///< limits along the world's axes; false limits the horizontal vector
-    bool shrink_per_axis = true;      ///< eq 12 subtracts v_z^2 from each axis; false once from the horizontal vector
-    bool vertical_by_norm = false;    ///< as in the code: limits |v_z| by |v_rot|; false by the mean of both sizes
+    bool limit_per_axis = true;       ///< limits along each world axis; false: limits the horizontal vector
+    bool shrink_per_axis = true;      ///< eq 12 subtracts v_z^2 from each axis; false: from the horizontal vector
+    bool vertical_by_norm = false;    ///< as in the code: |v_z| <= |v_rot|; false: |v_z| <= (|v_rot,x| + |v_rot,y|) / 2
 
     double gap_max_s = 1.0;
 
@@ -43,7 +42,8 @@ class AutogainFusion {
       visit(p.radius_m, {"radius_m", "m", 1e-9, 10.0, "radius of the sphere"});
       visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-9, 100.0, "strength of gravity"});
       visit(p.limiter, {"limiter", "1", 0.0, 100.0,
-                        "maximum ratio of integrated to rolling velocity; 1.1 in the authors' code", FieldRank::basic});
+                        "maximum ratio of the integrated velocity to the rolling velocity; 1.1 in the authors' code",
+                        FieldRank::basic});
       visit(p.rotation_weight,
             {"rotation_weight", "1", 0.0, 10.0, "weight of the rolling velocity (eq. 13)", FieldRank::basic});
       visit(p.acceleration_weight, {"acceleration_weight", "1", 0.0, 10.0,
@@ -51,29 +51,31 @@ class AutogainFusion {
       visit.group("autogain_", p.autogain);
       visit(p.integrate_in_body,
             switch_field("integrate_in_body",
-                         "true: integrate eq. 7 in the rotating frame, without the term w x v; false: "
-                         "integrate in the world frame",
+                         "true: integrate the acceleration (eq. 7) in the rotating body frame, without the term w x v; "
+                         "false: in the world frame",
                          FieldRank::basic));
-      visit(
-          p.direction_only,
-          switch_field("direction_only",
-                       "true, as in the authors' code: normalise f before gravity is removed, without multiplying by g",
-                       FieldRank::basic));
+      visit(p.direction_only,
+            switch_field("direction_only",
+                         "true, as in the authors' code: subtract gravity of length 1 from the direction of the "
+                         "specific force, without multiplying by g",
+                         FieldRank::basic));
       visit(p.recursive_coupling,
             switch_field("recursive_coupling",
-                         "true, as in the authors' code: eq. 8 scales the stored integral at each sample",
+                         "true, as in the authors' code: eq. 8 scales the integrated velocity again at each sample",
                          FieldRank::basic));
-      visit(p.limit_per_axis,
-            switch_field("limit_per_axis", "true: limit along the world's axes; false: limit the horizontal vector",
-                         FieldRank::basic));
+      visit(p.limit_per_axis, switch_field("limit_per_axis",
+                                           "true: limit the integrated velocity along each horizontal axis of the "
+                                           "world; false: limit its horizontal norm",
+                                           FieldRank::basic));
       visit(p.shrink_per_axis,
             switch_field("shrink_per_axis",
-                         "true: eq. 12 subtracts v_z^2 from each axis; false: once from the horizontal vector",
+                         "true: eq. 12 subtracts v_z^2 from the square of each horizontal velocity; false: once from "
+                         "the squared horizontal speed",
                          FieldRank::basic));
       visit(p.vertical_by_norm,
             switch_field("vertical_by_norm",
-                         "true, as in the authors' code: limit |v_z| by the norm of v_rot; false: by the "
-                         "mean of both magnitudes"));
+                         "true, as in the authors' code: limit the vertical speed by the horizontal rolling speed; "
+                         "false: by the mean of the rolling speeds along x and y"));
       visit(p.gap_max_s,
             {"gap_max_s", "s", 1e-9, 1e4, "maximum time between two samples; a longer gap ends the run with an error"});
     }

@@ -12,7 +12,7 @@ namespace tumble::baselines {
 /// DoubleIntegration computes the position of an IMU from the specific force and a given attitude: it subtracts gravity
 /// and integrates twice. The integration is second order in the sample period, and exact if the force in world axes is
 /// constant during each sample. The drift is unbounded: a tilt error of 0.1 deg causes an acceleration error of 1.7
-/// cm/s^2, and a position error of 1 m after 11 s.
+/// cm/s^2, and thus a position error of 1 m after 11 s.
 class DoubleIntegration {
  public:
   struct Params {

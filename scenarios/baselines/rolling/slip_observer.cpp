@@ -12,7 +12,8 @@ namespace tumble::baselines {
 
 namespace {
 
-/// Returns the mean measured acceleration over the window, minus the least-squares derivative of the rolling velocity.
+/// Returns the mean measured acceleration over the window minus the derivative of the rolling velocity, which is fitted
+/// by least squares.
 Eigen::Vector2d residual(const SlipObserver::State& state) {
   constexpr int kSize = SlipObserver::kWindow;
   double t = 0.0, t_mean = 0.0;
@@ -74,7 +75,8 @@ void SlipObserver::observe(const ImuSample& sample, const Eigen::Quaterniond& q_
   const Eigen::Vector3d turning = (w - state.last_rate_rad_s) / dt_s;
   // The rotation accelerates the IMU relative to the sphere's centre by equation (I1) of imu_merge.md.
   const Eigen::Vector3d lever = turning.cross(params_.lever_arm_m) + w.cross(w.cross(params_.lever_arm_m));
-  // The specific force is a mean over the averaging window, so the attitude in the middle of the window rotates it.
+  // The specific force is a mean over the averaging window, so it is rotated by the attitude in the middle of the
+  // window.
   const Eigen::Quaterniond q_mid = q_WI * so3::exp(-0.5 * dt_s * w);
   const Eigen::Vector3d a_W = q_mid * (sample.specific_force_m_s2 - lever);
   const Eigen::Vector3d w_W = q_WI * w;
@@ -103,7 +105,7 @@ void SlipObserver::advance_closed(const Eigen::Vector2d& e, double dt_s, State& 
   if (!state.ignoring && e.norm() > params_.open_m_s2) open_event(e, state);
 }
 
-/// Starts a slip event, with the slip velocity and displacement that the earlier residuals give.
+/// Starts a slip event. The residuals before the event determine the initial slip velocity and displacement.
 void SlipObserver::open_event(const Eigen::Vector2d& e, State& state) const {
   state.open = true;
   state.event_s = 0.0;
@@ -114,7 +116,7 @@ void SlipObserver::open_event(const Eigen::Vector2d& e, State& state) const {
     if (state.e_W_m_s2[place].dot(e) <= 0.0) break;
     const double dt_s = state.e_dt_s[place];
     u += dt_s * state.e_W_m_s2[place];
-    path += dt_s * state.event_s * state.e_W_m_s2[place];  // displacement due to the residual from `event_s` ago
+    path += dt_s * state.event_s * state.e_W_m_s2[place];  // displacement due to the residual `event_s` seconds ago
     state.event_s += dt_s;
   }
   state.contact_velocity_W_m_s = u;

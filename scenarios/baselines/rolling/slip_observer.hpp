@@ -11,35 +11,35 @@
 
 namespace tumble::baselines {
 
-/// SlipObserver estimates the position of a rolling sphere on a flat floor with an observer of the slip velocity u of
-/// the contact point: v = r w x n + u.
+/// SlipObserver estimates the position of a rolling sphere on a flat floor. An observer estimates the slip velocity u
+/// of the contact point, with v = r w x n + u.
 ///
 /// If the sphere rolls without slip, the acceleration of its centre is r w' x n. The residual e is the measured
-/// acceleration minus r w' x n, averaged over 11 samples. A slip event starts when the residual e is large. During a
-/// slip event, the observer integrates e to the slip velocity u. The slip event ends when the residual e is small and u
-/// has returned to zero. At the start of a slip event, the observer also integrates e over the last 25 samples, because
-/// a slide starts before its detection. At the end of a slip event, the observer removes the linear drift of the slip
-/// velocity u. If a slip event lasts too long, the observer removes its effect on the position. The window length suits
-/// a sample rate of about 125 Hz.
+/// acceleration minus r w' x n, averaged over 11 samples. The window length suits a sample rate of about 125 Hz.
+///
+/// A slip event starts when |e| is large, and ends when |e| is small and u has returned to zero. During the event, the
+/// observer integrates e to the slip velocity u. A slide starts before its detection, so the observer also integrates
+/// the last 25 residuals at the start of the event. At the end of the event, it removes the linear drift of u. If the
+/// event lasts too long, the observer removes the effect of the event on the position.
 ///
 /// The observer neglects tilt changes within a slip event, impacts and slopes. In simulations with realistic physics,
 /// the estimated position is hardly better than with the rolling assumption alone.
 class SlipObserver {
  public:
-  static constexpr int kWindow = 11;   ///< samples for fitting acceleration and rate; the delay is half of this
+  static constexpr int kWindow = 11;   ///< samples for fitting acceleration and rate; the delay is half the window
   static constexpr int kHistory = 25;  ///< samples integrated at the start of an event
 
   struct Params {
     double radius_m = 0.145;
     double gravity_m_s2 = 9.80665;
     Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();  ///< from centre to IMU, sensor axes
-    double open_m_s2 = 0.5;                                 ///< |e| that starts an event
-    double quiet_m_s2 = 0.25;                               ///< |e| below which an event may end
-    double quiet_time_s = 0.12;                             ///< shortest time below quiet_m_s2 before an event ends
-    double closing_speed_m_s = 0.08;                        ///< |u| below which an event may end
-    double timeout_s = 2.0;                                 ///< an event that lasts longer is undone
-    double ignore_time_s = 1.0;                             ///< required time below quiet_m_s2 after a time-out
-    double closed_decay_per_s = 8.0;                        ///< decay of u outside events
+    double open_m_s2 = 0.5;                                 ///< |e| above this value starts a slip event
+    double quiet_m_s2 = 0.25;                               ///< a slip event can end while |e| is below this value
+    double quiet_time_s = 0.12;                             ///< required time with |e| < quiet_m_s2 to end an event
+    double closing_speed_m_s = 0.08;                        ///< a slip event can end while |u| is below this value
+    double timeout_s = 2.0;                                 ///< a longer slip event does not change the position
+    double ignore_time_s = 1.0;                             ///< after a time-out: required time with |e| < quiet_m_s2
+    double closed_decay_per_s = 8.0;                        ///< decay rate of u outside slip events
     double bias_tau_s = 1.0;    ///< time constant of e's mean in quiet phases (tilt, accelerometer bias)
     double blend_tau_s = 0.25;  ///< time constant for applying a position correction
     double gap_max_s = 1.0;
@@ -50,7 +50,9 @@ class SlipObserver {
       visit(p.radius_m, {"radius_m", "m", 1e-9, 10.0, "radius of the sphere"});
       visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-9, 100.0, "strength of gravity"});
       visit(p.lever_arm_m, {"lever_arm_m", "m", -10.0, 10.0, "lever arm from the centre to the IMU, sensor axes"});
-      visit(p.open_m_s2, {"open_m_s2", "m/s^2", 1e-9, 100.0, "a slip event starts when the residual exceeds this value",
+      visit(p.open_m_s2, {"open_m_s2", "m/s^2", 1e-9, 100.0,
+                          "a slip event starts when the residual exceeds this value; residual: measured acceleration "
+                          "minus acceleration of rolling",
                           FieldRank::basic});
       visit(p.quiet_m_s2, {"quiet_m_s2", "m/s^2", 1e-9, 100.0,
                            "a slip event may end when the residual is below this value", FieldRank::basic});
@@ -59,10 +61,11 @@ class SlipObserver {
       visit(p.closing_speed_m_s, {"closing_speed_m_s", "m/s", 1e-9, 10.0,
                                   "a slip event may end when the contact speed is below this value", FieldRank::basic});
       visit(p.timeout_s,
-            {"timeout_s", "s", 1e-9, 100.0, "maximum duration of a slip event; the effect of a longer event is removed",
-             FieldRank::basic});
+            {"timeout_s", "s", 1e-9, 100.0,
+             "maximum duration of a slip event; the position change by a longer event is undone", FieldRank::basic});
       visit(p.ignore_time_s, {"ignore_time_s", "s", 0.0, 100.0,
-                              "after an event was removed, the next event may start after this quiet time"});
+                              "after an undone event, the next event starts only after the residual has been below "
+                              "quiet_m_s2 for this time"});
       visit(p.closed_decay_per_s,
             {"closed_decay_per_s", "1/s", 0.0, 1e3, "decay rate of the contact velocity outside slip events"});
       visit(p.bias_tau_s,
@@ -76,8 +79,8 @@ class SlipObserver {
   struct State {
     Eigen::Vector2d p_WG_m = Eigen::Vector2d::Zero();
     Eigen::Vector2d v_WG_m_s = Eigen::Vector2d::Zero();
-    Eigen::Vector2d contact_velocity_W_m_s = Eigen::Vector2d::Zero();  ///< contact velocity
-    Eigen::Vector2d bias_m_s2 = Eigen::Vector2d::Zero();               ///< mean of e
+    Eigen::Vector2d contact_velocity_W_m_s = Eigen::Vector2d::Zero();  ///< velocity u of the contact point
+    Eigen::Vector2d bias_m_s2 = Eigen::Vector2d::Zero();               ///< mean of e in quiet phases
     Eigen::Vector2d pending_m = Eigen::Vector2d::Zero();               ///< correction not yet applied
     Eigen::Vector2d event_m = Eigen::Vector2d::Zero();                 ///< displacement due to u in this event
     std::array<Eigen::Vector2d, kWindow> a_W_m_s2{};    ///< ring buffers; the newest is at (count - 1) mod size
@@ -88,8 +91,8 @@ class SlipObserver {
     Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero();
     std::int64_t count = 0, residuals = 0;
     double event_s = 0.0, quiet_s = 0.0;
-    bool open = false;      ///< during a slip or slide
-    bool ignoring = false;  ///< after a time-out
+    bool open = false;      ///< a slip event is in progress
+    bool ignoring = false;  ///< a time-out ended the last slip event; new events are ignored
     TimeNs last_time_ns = 0;
     bool started = false;
     State();

@@ -92,7 +92,7 @@ class Ros2BagWriter : public BagWriter {
     }
   }
 
-  /// Returns the id of a topic in the database; a new topic is registered first.
+  /// Returns the id of a topic in the database, after registering a new topic.
   std::int64_t number_of(const BagTopic& topic) {
     const std::size_t known = summary_.topics.size();
     const std::size_t place = summary_.place_of(topic);
@@ -108,8 +108,7 @@ class Ros2BagWriter : public BagWriter {
     return static_cast<std::int64_t>(place) + 1;
   }
 
-  /// Stores the definition of a message type, for readers without ROS. The type hash may be empty, because readers
-  /// accept an empty hash.
+  /// Stores the definition of a message type, for readers without ROS. Readers accept an empty type hash.
   void define(const std::string& type) {
     SQLite::Statement statement(
         *database_,
@@ -142,11 +141,11 @@ class Ros2BagWriter : public BagWriter {
   std::unique_ptr<SQLite::Database> database_;
   std::unique_ptr<SQLite::Statement> insert_;
   Ros2Summary summary_;
-  std::set<std::string> defined_;  ///< types already defined
+  std::set<std::string> defined_;  ///< types whose definition is stored
 };
 
-/// StoredBag contains the files of a ROS 2 bag in order, their storage ("sqlite3" or "mcap"), and their compression:
-/// "", "file" or "message".
+/// StoredBag contains the files of a ROS 2 bag in order, their storage ("sqlite3" or "mcap"), and their compression
+/// ("", "file" or "message").
 struct StoredBag {
   std::string kind = "sqlite3";
   std::vector<path> files;
@@ -154,7 +153,7 @@ struct StoredBag {
   std::string note = {};
 };
 
-/// Returns the compression of the bag from its metadata.
+/// Returns the compression of the bag according to its metadata.
 std::string packed_by(const YAML::Node& root, const path& metadata) {
   const auto text = [&](const char* key) {
     std::string out = root[key] ? root[key].as<std::string>("") : "";
@@ -223,7 +222,7 @@ StoredBag storage_of(const path& bag) {
       fail_at(metadata, fmt::format("the storage is '{}'; it must be sqlite3 or mcap", out.kind));
     out.packed = packed_by(root, metadata);
     for (const YAML::Node& each : root["relative_file_paths"]) {
-      const path name = path(each.as<std::string>()).filename();  // only files within the folder
+      const path name = path(each.as<std::string>()).filename();  // only files within the folder are read
       out.files.push_back(bag / name);
       if (!std::filesystem::exists(out.files.back()))
         fail_at(out.files.back(),

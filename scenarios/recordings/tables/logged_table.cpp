@@ -19,7 +19,7 @@ std::size_t numbers_in(const CsvLine& line) {
   return static_cast<std::size_t>(std::count_if(line.fields.begin(), line.fields.end(), is_number));
 }
 
-/// Returns whether at least half of the fields are numbers; the other fields of a sample are names of frames.
+/// Returns true if at least half of the fields are numbers; other fields of a sample are names of frames.
 bool is_sample(const CsvLine& line) {
   return 2 * numbers_in(line) >= line.fields.size();
 }
@@ -52,7 +52,7 @@ LoggedTable::LoggedTable(const std::filesystem::path& path) : text_(path) {
   drop_open_end(line);
   samples_ = text_.place();
   header_ = line;
-  if (!found) return;  // the file has no line but comments
+  if (!found) return;  // the file contains only comments
   if (is_sample(line)) {
     samples_ = before;
     has_header_ = false;

@@ -15,7 +15,7 @@ constexpr double kHeldShare = 0.05, kFrozenShare = 0.98;
 constexpr double kRailLeast_m_s2 = 14.7;
 constexpr int kRailReadings = 5, kRailContrast = 3;
 
-/// Returns the first row and all rows whose reading differs from the reading in the previous row.
+/// Returns the first row, and all rows whose reading differs from that in the previous row.
 std::vector<std::size_t> fresh_rows(const std::vector<Eigen::Vector3d>& readings) {
   std::vector<std::size_t> rows;
   for (std::size_t k = 0; k < readings.size(); ++k) {
@@ -24,8 +24,8 @@ std::vector<std::size_t> fresh_rows(const std::vector<Eigen::Vector3d>& readings
   return rows;
 }
 
-/// Returns regular times for the readings in `rows`. The true time of each reading is between the times of the previous
-/// row and of its row.
+/// Returns regular times for the readings in `rows`. The true time of each reading is between the previous row and its
+/// row.
 std::vector<std::int64_t> beat_of(const std::vector<std::int64_t>& time_ns, const std::vector<std::size_t>& rows) {
   std::vector<std::int64_t> stamps;
   std::vector<StampBounds> bounds;
@@ -40,14 +40,13 @@ double repeated_share(std::size_t fresh, std::size_t rows) {
   return rows < 2 ? 0.0 : static_cast<double>(rows - fresh) / static_cast<double>(rows - 1);
 }
 
-/// If the readings of a sensor almost always repeat, the sensor is frozen or noise-free at rest, so its period is
-/// unknown.
+/// A sensor whose readings almost always repeat is frozen, or noise-free at rest; its period is unknown.
 bool is_repeated(double share) {
   return share > kHeldShare && share < kFrozenShare;
 }
 
-/// Interpolates readings linearly at the increasing times `times`; before the first and after the last reading, the
-/// nearest reading is used.
+/// Interpolates readings linearly at the increasing times `times`. Before the first and after the last reading, the
+/// value is constant.
 std::vector<Eigen::Vector3d> interpolated(const std::vector<std::int64_t>& own,
                                           const std::vector<Eigen::Vector3d>& values,
                                           const std::vector<std::int64_t>& times) {

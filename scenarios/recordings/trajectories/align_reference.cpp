@@ -24,17 +24,17 @@ constexpr int kSearch_ms = 100;
 constexpr double kSlopeStep_s = 4e-3;
 constexpr int kAlignmentParts = 8;
 constexpr int kRounds = 20;
-/// The vector pairs have the following standard deviations and number of consecutive samples with correlated errors.
+/// Standard deviations of the vector pairs, and numbers of consecutive samples with correlated errors.
 constexpr double kRateSigma_rad_s = 0.15, kForceSigma_m_s2 = 1.0;
 constexpr double kRateRun = 5.0, kForceRun = 25.0;
 
 using Vectors = std::vector<Eigen::Vector3d>;
 
-/// SamplePair is a sample with known gyro and reference values.
+/// SamplePair is a sample whose gyro reading and reference are known.
 struct SamplePair {
   std::int64_t time_ns = 0;
   Eigen::Vector3d w_I, f_I;
-  Eigen::Vector3d w_V = Eigen::Vector3d::Zero();  ///< at the current delay
+  Eigen::Vector3d w_V = Eigen::Vector3d::Zero();  ///< reference rate at the current delay
   Eigen::Quaterniond q_V = Eigen::Quaterniond::Identity();
   double speed_rad_s = 0.0;
 };
@@ -79,8 +79,8 @@ double correlation(const std::vector<SamplePair>& pairs, const std::vector<doubl
   return spread > 0.0 ? (n * ab - a * b) / std::sqrt(spread) : -1.0;
 }
 
-/// Performs one Gauss-Newton step of the delay on |w| of the samples `first` to `end` - 1; rates slightly earlier and
-/// later give the derivative.
+/// Performs one Gauss-Newton step of the delay, from |w| of the samples `first` to `end` - 1. Rates slightly earlier
+/// and later give the derivative.
 double delay_step(const std::vector<SamplePair>& pairs, const std::array<std::vector<double>, 3>& speeds,
                   std::size_t first, std::size_t end) {
   std::vector<double> sizes;
@@ -113,7 +113,7 @@ double deviation_of_mean(const std::vector<double>& values) {
   return n > 1.0 ? std::sqrt(squares / (n - 1.0) / n) : 0.0;
 }
 
-/// Returns the first and last index of part i if n samples are divided into equal parts.
+/// Returns first index and end of part i, if n samples are divided into equal parts.
 std::array<std::size_t, 2> part(std::size_t i, std::size_t n) {
   return {i * n / kAlignmentParts, (i + 1) * n / kAlignmentParts};
 }
@@ -139,7 +139,7 @@ void estimate_delay(const std::vector<ReferencePose>& poses, const std::vector<S
   alignment.delay_sigma_s = deviation_of_mean(steps);
 }
 
-/// Interpolates the reference at a given delay, and removes pairs without a known reference.
+/// Interpolates the reference at the given delay, and removes pairs with an unknown reference.
 void pair_up(const std::vector<ReferencePose>& poses, double delay_s, std::vector<SamplePair>& pairs) {
   std::vector<std::int64_t> times;
   for (const SamplePair& pair : pairs) times.push_back(pair.time_ns + std::llround(delay_s * 1e9));
@@ -149,7 +149,7 @@ void pair_up(const std::vector<ReferencePose>& poses, double delay_s, std::vecto
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     if (!rates[k].allFinite()) continue;
     while (next < poses.size() && poses[next].time_ns < times[k]) ++next;
-    const ReferencePose &before = poses[next - 1], &after = poses[next];  // a rate needs poses on both sides
+    const ReferencePose &before = poses[next - 1], &after = poses[next];  // the rate needs a pose on both sides
     const double share =
         static_cast<double>(times[k] - before.time_ns) / static_cast<double>(after.time_ns - before.time_ns);
     pairs[k].w_V = rates[k];
@@ -159,8 +159,8 @@ void pair_up(const std::vector<ReferencePose>& poses, double delay_s, std::vecto
   pairs = std::move(kept);
 }
 
-/// Returns the up direction in the reference's world, from the mean specific force and a rotation between IMU and
-/// reference. The function averages all samples, because accelerations cancel over the recording.
+/// Returns the vertical in the reference's world, from the mean specific force and the rotation between IMU and
+/// reference. The mean is over all samples, because accelerations cancel over the recording.
 Eigen::Vector3d up_in_world(const std::vector<SamplePair>& all, const Eigen::Quaterniond& q_IV) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const SamplePair& pair : all) sum += pair.q_V * (q_IV.conjugate() * pair.f_I);
@@ -181,7 +181,7 @@ Eigen::Quaterniond closest_rotation(const Eigen::Matrix3d& B) {
   return Eigen::Quaterniond(q.w() < 0.0 ? Eigen::Vector4d(-q) : q).normalized();
 }
 
-/// Returns the rotation that best fits the samples `first` to `end` - 1 for a given direction of gravity.
+/// Returns the rotation that fits the samples `first` to `end` - 1 best, for a given direction of gravity.
 Eigen::Quaterniond rotation(const std::vector<SamplePair>& pairs, std::size_t first, std::size_t end,
                             const Eigen::Vector3d& up) {
   Eigen::Matrix3d B = Eigen::Matrix3d::Zero();

@@ -33,7 +33,8 @@ std::vector<double> step_rates_rad_s(const std::vector<ReferencePose>& poses) {
   return rates;
 }
 
-/// Returns the lower median of up to four steps; at an end of the recording without steps, the body counts as resting.
+/// Returns the lower median of up to four step rates on one side; 0 (rest) if there are none at an end of the
+/// recording.
 double side_rad_s(const std::vector<double>& rates, std::ptrdiff_t k, std::ptrdiff_t direction) {
   std::vector<double> side;
   for (auto i = static_cast<std::ptrdiff_t>(kNear); i <= static_cast<std::ptrdiff_t>(kFar); ++i) {
@@ -46,7 +47,7 @@ double side_rad_s(const std::vector<double>& rates, std::ptrdiff_t k, std::ptrdi
   return *middle;
 }
 
-/// Returns the first and last step of each jump of the attitude.
+/// Returns the first and the last step of each jump of the attitude.
 std::vector<std::array<std::size_t, 2>> find_leaps(const std::vector<double>& rates, double& fastest_rad_s) {
   std::vector<std::array<std::size_t, 2>> leaps;
   for (std::size_t k = 0; k < rates.size(); ++k) {

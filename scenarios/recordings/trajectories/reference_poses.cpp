@@ -17,7 +17,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// The matrices in KITTI files have seven digits.
+/// Matrices in KITTI files have seven digits.
 constexpr double kRotationTolerance = 1e-3;
 
 [[noreturn]] void fail(const Table& table, const Table::Row& row, const std::string& what) {
@@ -62,18 +62,17 @@ bool is_unknown(const ReferencePose& pose) {
 
 std::string problem_of(ReferencePose& pose, const ReferencePose* before) {
   if (!pose.p_WA_m.allFinite() || !pose.q_WA.coeffs().allFinite()) return "the pose is not finite";
-  constexpr double kFurthest_m = 1e9;  // beyond any Earth-centred coordinate
+  constexpr double kFurthest_m = 1e9;  // above any Earth-centred coordinate
   if (const double far_m = pose.p_WA_m.cwiseAbs().maxCoeff(); far_m > kFurthest_m)
     return fmt::format("the position is {:.3g} m from the origin; it must be within {:.0g} m", far_m, kFurthest_m);
   const double norm = pose.q_WA.norm();
   if (!(std::abs(norm - 1.0) <= kReferenceNormTolerance))
     return fmt::format("the quaternion's norm is {:f}; it must be 1 within 1 %", norm);
-  // A quaternion that is normalised up to rounding is not changed.
+  // A quaternion whose norm is 1 except for rounding stays unchanged.
   if (std::abs(norm - 1.0) > 1e-12) pose.q_WA.normalize();
   if (before == nullptr || pose.time_ns > before->time_ns) return "";
   return fmt::format(
-      "the time stamp {} ns does not increase, because the previous time stamp is {} ns. Sort the file of poses by "
-      "time",
+      "the time stamp {} ns must be larger than the previous time stamp, {} ns. Sort the file of poses by time",
       pose.time_ns, before->time_ns);
 }
 

@@ -14,14 +14,14 @@ namespace {
 
 constexpr std::size_t kLeastPoses = 3;
 
-/// Fits a parabola to the poses `first` to `last`, and returns its derivative at the requested time.
+/// Fits a parabola to the poses `first` to `last`, and returns its derivative at `time_ns`.
 Eigen::Vector3d slope_rad_s(const std::vector<ReferencePose>& poses, std::size_t first, std::size_t last,
                             std::int64_t time_ns) {
   std::size_t nearest = first;
   for (std::size_t k = first; k <= last; ++k) {
     if (std::abs(poses[k].time_ns - time_ns) < std::abs(poses[nearest].time_ns - time_ns)) nearest = k;
   }
-  // The length of the window normalises the time, for good conditioning.
+  // Times are relative to half the window, for good conditioning.
   const double unit_s = 0.5e-9 * static_cast<double>(poses[last].time_ns - poses[first].time_ns);
   Eigen::Matrix3d N = Eigen::Matrix3d::Zero(), b = Eigen::Matrix3d::Zero();
   for (std::size_t k = first; k <= last; ++k) {
@@ -40,7 +40,7 @@ std::vector<Eigen::Vector3d> reference_rates(const std::vector<ReferencePose>& p
   std::vector<std::int64_t> stamps;
   for (const ReferencePose& pose : poses) stamps.push_back(pose.time_ns);
   const auto step = static_cast<double>(median_step_ns(stamps));
-  // The window is slightly enlarged, so that rounding does not add or drop a sample at its edge.
+  // The window is slightly larger, so that rounding does not add or drop a sample at its edge.
   const auto reach = std::llround(1.01 * std::max(static_cast<double>(kRateWindow_ns), kRateSteps * step));
   const auto gap = std::llround(2.5 * step);
   std::vector<Eigen::Vector3d> rates(times_ns.size(),

@@ -18,8 +18,8 @@ namespace {
 constexpr std::int64_t kStepMin_ns = 100000, kStepUsual_ns = 1000000;
 constexpr std::int64_t kSamplesMax = 2000000;
 constexpr std::int64_t kLongestReference_ns = 86400ll * 1000000000;
-/// kReach_ns is half of the time interval for differentiating poses, as for BROAD, so that the noise at rest is below
-/// the thresholds for rest.
+/// Half of the time interval for differentiating poses, as for BROAD: the noise at rest is then below the thresholds
+/// for rest.
 constexpr std::int64_t kReach_ns = 70000000;
 
 std::vector<std::int64_t> times_of(const std::vector<ReferencePose>& poses) {
@@ -39,7 +39,7 @@ std::int64_t grid_step(const std::vector<std::int64_t>& times, std::int64_t end_
   return usual_steps * kStepUsual_ns;
 }
 
-/// Interpolation interpolates between two poses that are close enough in time; elsewhere, the pose is unknown.
+/// Interpolation interpolates between two poses that are close in time; elsewhere, the pose is unknown.
 class Interpolation {
  public:
   Interpolation(const std::vector<ReferencePose>& poses, std::int64_t gap_ns) : poses_(poses), gap_ns_(gap_ns) {}

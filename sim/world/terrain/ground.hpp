@@ -11,12 +11,12 @@
 
 namespace tumble::sim {
 
-/// Ground contains heights of the ground on a square grid centred on the origin. Generators change the heights; then
-/// the ground is added to a world as one height field.
+/// Ground contains heights of the ground on a square grid centred on the origin. Generators change the heights;
+/// add_to() then adds the ground to a world as one height field.
 class Ground {
  public:
-  /// Creates level ground at height 0: `side` by `side` nodes over |x|, |y| <= half_extent_m; `side` must be at least
-  /// 2.
+  /// Creates level ground at height 0, with `side` by `side` nodes over |x|, |y| <= half_extent_m. `side` must be at
+  /// least 2.
   Ground(int side, double half_extent_m);
 
   int side() const { return side_; }
@@ -26,8 +26,8 @@ class Ground {
   double coordinate_m(int index) const { return index * cell_m() - half_extent_m_; }
   double node_m(int row, int column) const { return heights_m_[static_cast<std::size_t>(row) * side_ + column]; }
 
-  /// Returns the bilinear height between the nodes; beyond the edge, the function returns the height of the edge. The
-  /// triangles of MuJoCo differ from the bilinear height by the twist of a cell: 4 mm per 20 cm cell at 0.4 /m.
+  /// Returns the bilinear height between the nodes, or the height of the edge beyond the edge. MuJoCo's triangles
+  /// differ from the bilinear height by the twist of a cell: 4 mm per 20 cm cell at 0.4 /m.
   double height_m(double x_m, double y_m) const;
 
   /// Replaces each height by f(x_m, y_m, height_m).
@@ -64,8 +64,8 @@ class Ground {
   std::vector<double> heights_m_;
 };
 
-/// Returns 0 within `inner_m`, 1 beyond `outer_m`, and a smooth transition between. Relief fades around a position so
-/// that a robot can rest there.
+/// Returns 0 within `inner_m`, 1 beyond `outer_m`, and a smooth transition between. Relief multiplied by this factor is
+/// level around a position, so that a robot can rest there.
 double fade(double distance_m, double inner_m, double outer_m);
 
 }  // namespace tumble::sim

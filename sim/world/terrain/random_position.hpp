@@ -19,8 +19,8 @@ struct Disc {
   double radius_m = 0.0;
 };
 
-/// Draws uniform positions from the area until `fits` accepts one. Throws InvalidSituation with `what` after 1000
-/// rejections.
+/// Draws uniform positions from the area until `fits` accepts one. After 1000 rejections, throws InvalidSituation with
+/// `what`.
 template <typename Fits>
 Eigen::Vector2d draw_position(Stream& stream, const Rectangle& area, const char* what, Fits fits) {
   constexpr int kAttempts = 1000;

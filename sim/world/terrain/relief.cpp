@@ -14,7 +14,7 @@ Relief::Relief(Stream& stream, const ReliefSpectrum& spectrum) {
     const double turn = stream.uniform(0.0, 2.0 * std::numbers::pi);
     const double direction = spectrum.ruled ? 0.0 : turn;
     const double k = 2.0 * std::numbers::pi / length_m;
-    // log-uniform wavelengths have a density of 1/k, so the squared amplitude must be proportional to k^(1 - exponent)
+    // Log-uniform wavelengths have a density of 1/k, so the squared amplitude must be proportional to k^(1 - exponent).
     const double amplitude_m = std::pow(length_m, 0.5 * (spectrum.exponent - 1.0));
     waves_.push_back(
         {k * std::cos(direction), k * std::sin(direction), stream.uniform(0.0, 2.0 * std::numbers::pi), amplitude_m});
@@ -35,7 +35,7 @@ void add_bumps(Ground& ground, Stream& stream, int count, double height_m) {
     const double x_m = stream.uniform(-half_m, half_m), y_m = stream.uniform(-half_m, half_m);
     const double top_m = stream.uniform(-height_m, height_m);
     const double sigma_m = stream.uniform(0.2, 0.7);
-    // less than 0.04 % of the bump's height remains beyond four sigmas
+    // Less than 0.04 % of the bump's height remains beyond four sigmas.
     ground.add_near(x_m, y_m, 4.0 * sigma_m, [&](double x, double y) {
       const double dx = x - x_m, dy = y - y_m;
       return top_m * std::exp(-0.5 * (dx * dx + dy * dy) / (sigma_m * sigma_m));

@@ -14,8 +14,8 @@ namespace tumble::sim {
 struct RockField {
   int count = 0;
   double largest_m = 0.3;  ///< largest half axis
-  /// horizontal half axes are uniform in [smallest_share, 1] * largest_m, heights in [0.75 smallest_share, 0.7] *
-  /// largest_m
+  /// Horizontal half axes are uniform in [smallest_share, 1] * largest_m, heights in [0.75 smallest_share, 0.7] *
+  /// largest_m.
   double smallest_share = 0.4;
   Rectangle area;
   Disc clear;  ///< no rock reaches into this disc
@@ -28,7 +28,7 @@ struct Rock {
   double yaw_rad;
 };
 
-/// Places rocks on the ground, uniformly over the area; rocks may overlap. Throws InvalidSituation if the clear disc
+/// Places rocks on the ground, uniformly over the area. Rocks may overlap. Throws InvalidSituation if the clear disc
 /// leaves no room for rocks.
 std::vector<Rock> strew_rocks(Stream& stream, const RockField& field, const Ground& ground);
 /// Adds the rocks to the world as surfaces "rock_0", "rock_1" and so on.

@@ -20,7 +20,7 @@ struct Flight {
   double length_m() const { return steps * tread_m; }
 };
 
-/// Step is the box of step i = 1 .. steps. The top of step i is i risers below the top of the flight; the last step is
+/// Step is the box of step i = 1 .. steps. The top of step i is i risers below the top of the flight. The last step is
 /// level with the ground below the flight.
 struct Step {
   Eigen::Vector3d centre_W_m;

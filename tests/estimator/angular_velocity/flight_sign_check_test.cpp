@@ -89,18 +89,19 @@ std::string sense_told(std::vector<ImuSample> samples, FlightSignCheck::Body bod
 
 const std::vector<std::pair<std::string, std::function<void(ImuSample&)>>>& other_senses() {
   static const std::vector<std::pair<std::string, std::function<void(ImuSample&)>>> all = {
-      {" that a sign error of the accelerometer explains", [](ImuSample& s) { s.specific_force_m_s2 *= -1.0; }},
-      {" that a sign error of accelerometer axis x explains", [](ImuSample& s) { s.specific_force_m_s2.x() *= -1.0; }},
-      {" that a sign error of accelerometer axis z explains", [](ImuSample& s) { s.specific_force_m_s2.z() *= -1.0; }},
-      {" that exchanged accelerometer axes x and y explain",
+      {" that agrees with an inverted accelerometer", [](ImuSample& s) { s.specific_force_m_s2 *= -1.0; }},
+      {" that agrees with an inverted accelerometer axis x", [](ImuSample& s) { s.specific_force_m_s2.x() *= -1.0; }},
+      {" that agrees with an inverted accelerometer axis z", [](ImuSample& s) { s.specific_force_m_s2.z() *= -1.0; }},
+      {" that agrees with exchanged accelerometer axes x and y",
        [](ImuSample& s) { std::swap(s.specific_force_m_s2.x(), s.specific_force_m_s2.y()); }},
-      {" that exchanged accelerometer axes z and x explain",
+      {" that agrees with exchanged accelerometer axes z and x",
        [](ImuSample& s) { std::swap(s.specific_force_m_s2.z(), s.specific_force_m_s2.x()); }},
-      {" that a sign error of gyro axis y explains", [](ImuSample& s) { s.angular_velocity_rad_s.y() *= -1.0; }},
-      {" that exchanged gyro axes y and z explain",
+      {" that agrees with an inverted gyro axis y", [](ImuSample& s) { s.angular_velocity_rad_s.y() *= -1.0; }},
+      {" that agrees with exchanged gyro axes y and z",
        [](ImuSample& s) { std::swap(s.angular_velocity_rad_s.y(), s.angular_velocity_rad_s.z()); }},
-      {" that a gyro with half the true scale explains", [](ImuSample& s) { s.angular_velocity_rad_s *= 0.5; }},
-      {" that a gyro with twice the true scale explains", [](ImuSample& s) { s.angular_velocity_rad_s *= 2.0; }}};
+      {" that agrees with a gyro that reads half the true rate", [](ImuSample& s) { s.angular_velocity_rad_s *= 0.5; }},
+      {" that agrees with a gyro that reads twice the true rate",
+       [](ImuSample& s) { s.angular_velocity_rad_s *= 2.0; }}};
   return all;
 }
 

@@ -49,11 +49,12 @@ TEST(ImuPlausibility, ARollOfASphereIsPlausibleAtEveryRate) {
 
 TEST(ImuPlausibility, WrongUnitsAndAxesAreNot) {
   const auto says = [](const std::function<void(ImuSample&)>& harm) { return std::string(verdict_of(harm).field); };
-  const std::string size = "mean specific force in steady windows (share of gravity)",
-                    turning = "ratio of gravity's rotation (accelerometer) to the rotation measured by the gyro",
-                    still = "rotation of a steady force (share of the rotation measured by the gyro)",
-                    naming =
-                        "rotation left unexplained by other gyro axes or signs (share of that for the stated axes)";
+  const std::string
+      size = "mean specific force in steady windows (share of gravity)",
+      turning = "ratio of gravity's rotation (accelerometer) to the rotation measured by the gyro",
+      still = "rotation of a steady force, divided by the rotation measured by the gyro",
+      naming =
+          "unexplained rotation of gravity with other gyro axes or signs, divided by the value with the stated axes";
   EXPECT_EQ(says([](ImuSample& sample) { sample.specific_force_m_s2 /= 9.80665; }), size);
   EXPECT_EQ(says([](ImuSample& sample) { sample.specific_force_m_s2 *= 9.80665; }), size);
   EXPECT_EQ(says([](ImuSample& sample) { sample.angular_velocity_rad_s *= 57.29578; }), turning);

@@ -144,7 +144,7 @@ TEST(RevolutionHypotheses, WhereTheWholeCannotBeSolvedAgainTheAnswerBeforeStands
   const HandHeldSmoother::Report report = solved.report;
   const auto fails = [](hand_held::Problem& problem, HandHeldSmoother::Report& changed) {
     EXPECT_TRUE(problem.solve(changed).ok());
-    return Status{ErrorCode::diverged, "iteration of the smoother for hand-held motion", 1.0, 0.0};
+    return Status{ErrorCode::diverged, "iteration in which the smoother for hand-held motion failed", 1.0, 0.0};
   };
   hand_held::test_revolutions(solved.problem, solved.report, fails);
   EXPECT_EQ(solved.report.revolutions_tested, 1);

@@ -60,7 +60,7 @@ TEST(SameFailure, WhatDoesNotFailIsRefused) {
               testing::HasSubstr("ate_m is 0.5, which is not worse than the limit 1"));
   EXPECT_THAT(complaint({"ate_m", 1.0}, outcome(OutcomeStatus::ok)), testing::HasSubstr("ate_m is missing"));
   EXPECT_THAT(complaint({}, outcome(OutcomeStatus::ok, {{"map_failed", 0.0}})), testing::HasSubstr("does not fail"));
-  EXPECT_THAT(complaint({}, outcome(OutcomeStatus::killed)), testing::HasSubstr("the machine"));
+  EXPECT_THAT(complaint({}, outcome(OutcomeStatus::killed)), testing::HasSubstr("the operating system"));
 }
 
 }  // namespace

@@ -87,8 +87,9 @@ TEST(DataSheet, ANumberThatIsMissingIsNamed) {
   }
   less.close();
   EXPECT_EQ(fixture::complaint([&] { load_data_sheet(whole, "mti30"); }), "");
-  EXPECT_THAT(fixture::complaint([&] { load_data_sheet(own, "mti30"); }),
-              HasSubstr("mti30.yaml: 'accel_rail_m_s2' is missing; a data sheet needs every number of kind 'imu'"));
+  EXPECT_THAT(
+      fixture::complaint([&] { load_data_sheet(own, "mti30"); }),
+      HasSubstr("mti30.yaml: 'accel_rail_m_s2' is missing; a data sheet of kind 'imu' must state each of its numbers"));
   std::filesystem::remove_all(own.root);
 }
 

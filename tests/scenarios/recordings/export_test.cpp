@@ -140,10 +140,9 @@ TEST_F(Export, NoFileOfASensorIsWrittenOverAnother) {
   fixture::Numbers numbers;
   fixture::add_lidar(numbers, recording_, "lidar", 2, 4);
   write_recording(folder_ / "a.h5", fixture::info(), recording_.sensors, &recording_.truth);
-  EXPECT_THAT(
-      export_recording(folder_ / "a.h5", "csv", folder_ / "csv"),
-      ElementsAre(
-          "'truth' is the name of a topic or frame that does not belong to a sensor: IMU 0 is written as 'truth_2'"));
+  EXPECT_THAT(export_recording(folder_ / "a.h5", "csv", folder_ / "csv"),
+              ElementsAre("'truth' is the name of a topic or frame that does not belong to a sensor, so IMU 0 is "
+                          "written as 'truth_2'"));
   const auto lines = [&](const char* file) {
     const std::string text = fixture::bytes_of(folder_ / "csv" / file);
     return std::count(text.begin(), text.end(), '\n');
@@ -152,7 +151,7 @@ TEST_F(Export, NoFileOfASensorIsWrittenOverAnother) {
   EXPECT_EQ(lines("truth_2.csv"), 71);
   EXPECT_EQ(lines("imu.csv"), 71);
   EXPECT_THAT(export_recording(folder_ / "a.h5", "pcd", folder_ / "pcd"),
-              ElementsAre("'lidar' is also the name of another sensor: lidar 1 is written as 'lidar_2'"));
+              ElementsAre("'lidar' is also the name of another sensor, so lidar 1 is written as 'lidar_2'"));
   EXPECT_TRUE(std::filesystem::exists(folder_ / "pcd/lidar_000002.pcd"));
   EXPECT_TRUE(std::filesystem::exists(folder_ / "pcd/lidar_2_000001.pcd"));
 }
@@ -173,8 +172,9 @@ TEST(ExportNames, ASensorGivesWayOnlyToAnother) {
   const ExportNames mixed = named({"os", "no name of a file", "imu_1"}, {"os", "os"});
   EXPECT_THAT(mixed.imus.names, ElementsAre("os", "imu_1_2", "imu_1"));
   EXPECT_THAT(mixed.lidars.names, ElementsAre("os_2", "os_3"));
-  EXPECT_THAT(mixed.lidars.notes, ElementsAre("'os' is also the name of another sensor: lidar 0 is written as 'os_2'",
-                                              "'os' is also the name of another sensor: lidar 1 is written as 'os_3'"));
+  EXPECT_THAT(mixed.lidars.notes,
+              ElementsAre("'os' is also the name of another sensor, so lidar 0 is written as 'os_2'",
+                          "'os' is also the name of another sensor, so lidar 1 is written as 'os_3'"));
   for (const char* name : {"truth", "body", "world", "map", "odom", "base_link", "tf", "tf_static", "clock"})
     EXPECT_THAT(named({}, {name}).lidars.names, ElementsAre(std::string(name) + "_2"));
 }

@@ -63,7 +63,7 @@ TEST(ImuNotes, AxesThatGravityContradictsAreNamed) {
   EXPECT_THAT(note_of([](sim::ImuRecord& imu) {
                 for (Eigen::Vector3d& f : imu.accel_m_s2) f.z() = -f.z();
               }),
-              HasSubstr("caution: gravity in the accelerometer rotates as if"));
+              HasSubstr("caution: the gravity that the accelerometer measures rotates as if"));
 }
 
 TEST(ImuNotes, ForcesThatAreNotGravitysAreSaid) {

@@ -193,7 +193,7 @@ TEST_F(LoggerTable, TimesThatAreNoneHaveTheirPlace) {
         << time;
   }
   EXPECT_THAT(complaint_of(table("time_s,gx,gy,gz,ax,ay,az", {"0", "0.1", "0.05"}, kRow)),
-              HasSubstr("log.csv:4: the time stamp does not increase"));
+              HasSubstr("log.csv:4: the time stamp (first time stamp + "));
 }
 
 /// The test uses the same three samples, with other lines around them and other fields in them.

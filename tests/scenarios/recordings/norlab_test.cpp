@@ -198,7 +198,7 @@ TEST_F(OdometryTable, BadLinesAreRefusedWithTheirPlace) {
   const std::string good = head_ + "10,0,1,2,3,0,0,0,1\n10,500000000,1,2,3,0,0,0.6,0.8\n";
   EXPECT_EQ(complaint_of(good), "");
   EXPECT_THAT(complaint_of(good + "10,500000000,1,2,3,0,0,0,1\n"),
-              HasSubstr("a.csv:4: the time stamp 10500000000 ns does not increase"));
+              HasSubstr("a.csv:4: the time stamp 10500000000 ns must be larger than"));
   EXPECT_THAT(complaint_of(good + "11,1000000000,1,2,3,0,0,0,1\n"),
               HasSubstr("a.csv:4: column 1 must be a whole number from 0 to 999999999; it is '1000000000'"));
   EXPECT_THAT(complaint_of(good + "11,0,1,2,3,0,0,0.6,0.9\n"), HasSubstr("a.csv:4: the quaternion's norm is"));

@@ -116,9 +116,9 @@ TEST_F(Reference, BadLinesAreNamed) {
   const std::string good = "# t x y z q\n1.0 0 0 0 0 0 0 1\n1.5 1 0 0 0 0 0 1\n";
   EXPECT_EQ(complaint(good), "");
   EXPECT_THAT(complaint(good + "1.5 1 0 0 0 0 0 1\n"),
-              HasSubstr("a.txt:4: the time stamp 1500000000 ns does not increase"));
+              HasSubstr("a.txt:4: the time stamp 1500000000 ns must be larger than"));
   EXPECT_THAT(complaint(good + "1.2 1 0 0 0 0 0 1\n"),
-              HasSubstr("a.txt:4: the time stamp 1200000000 ns does not increase"));
+              HasSubstr("a.txt:4: the time stamp 1200000000 ns must be larger than"));
   EXPECT_THAT(complaint(good + "1.6 nan 0 0 0 0 0 1\n"), HasSubstr("a.txt:4: the pose is not finite"));
   EXPECT_THAT(complaint(good + "1.6 0 -1e308 0 0 0 0 1\n"),
               HasSubstr("a.txt:4: the position is 1e+308 m from the origin; it must be within 1e+09 m"));

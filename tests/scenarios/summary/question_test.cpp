@@ -103,7 +103,8 @@ TEST_F(QuestionTest, AMarginAsksForMore) {
   EXPECT_EQ(ask(question, 60).front().finding, Finding::worse);
   question.margin = {0.15, false};
   EXPECT_EQ(ask(question, 60).front().finding, Finding::worse);
-  EXPECT_STREQ(finding_text(ask(question, 60).front(), question), "not by the margin") << "it is better on every draw";
+  EXPECT_STREQ(finding_text(ask(question, 60).front(), question), "not better by the margin")
+      << "it is better on every draw";
   question.margin = {0.05, false};
   EXPECT_EQ(ask(question, 60).front().finding, Finding::better);
 }
@@ -156,9 +157,9 @@ TEST_F(QuestionTest, IsClaimedBeforeTheDraws) {
       EXPECT_THAT(error.what(), HasSubstr(what));
     }
   };
-  refused(question_of(200), "stores the question");
+  refused(question_of(200), "belongs to the question");
   results.set_note(kQuestionNote, "");
-  refused(question_of(100), "from a run without this question");
+  refused(question_of(100), "of a run without --until");
 }
 
 TEST_F(QuestionTest, OfNothingIsOpen) {

@@ -22,24 +22,24 @@ struct AuxiliaryAccelerometer {
 };
 
 /// AuxiliaryImu describes the mounting and accuracy of an additional IMU C on the same rigid body as the primary IMU.
-/// The estimator does not estimate the biases and mounting errors of an additional IMU. The standard deviations of an
-/// additional IMU's readings include the errors of bias and mounting.
+/// RateSmoother and RateStream do not estimate the biases and mounting errors of an additional IMU. These errors
+/// increase the standard deviations of its readings.
 struct AuxiliaryImu {
   Eigen::Isometry3d T_IC = Eigen::Isometry3d::Identity();  ///< pose of C in the axes of the primary IMU
   double gyro_noise_density = 5.236e-4;                    ///< [rad/s/sqrt(Hz)]; allowed: [1e-9, 1]
   double accel_noise_density = 5.9e-4;                     ///< [m/s^2/sqrt(Hz)]; allowed: [1e-9, 10]
   double gyro_error_rad_s = 0.01;  ///< standard deviation of bias and other rate-independent errors; [1e-9, 10]
-  double accel_error_m_s2 = 0.07;  ///< difference of the accelerometer biases of the two IMUs; allowed: [1e-9, 10]
-  double scale_error = 2e-3;       ///< scale and misalignment error, as a fraction of the reading; allowed: [0, 1]
+  double accel_error_m_s2 = 0.07;  ///< standard deviation of the difference of both IMUs' biases; [1e-9, 10]
+  double scale_error = 2e-3;       ///< relative scale and misalignment error; allowed: [0, 1]
   double position_error_m = 2e-3;  ///< standard deviation of the position p_IC; allowed: [1e-9, 1]
-  double clock_error_s = 1e-3;     ///< time offset between the clocks of the two IMUs; allowed: [0, 0.1]
+  double clock_error_s = 1e-3;     ///< standard deviation of the clocks' time offset; allowed: [0, 0.1]
   SensingDirections gyro_elements = {}, accel_elements = {};  ///< sensing directions; needed if an element clips
 };
 
 /// AuxiliaryReading is the reading of an additional IMU at the time of a sample of the primary IMU. The rate and force
 /// are in the axes of the additional IMU, and NaN marks an axis without a valid reading. While a sensing element clips,
-/// AuxiliaryReading stores the components along the unsaturated sensing elements instead of the axes. The device's
-/// misalignment compensation spreads the error of a saturated sensing element over all axes.
+/// the device's misalignment compensation spreads its error over all axes. AuxiliaryReading then stores components
+/// along the unsaturated sensing elements instead of the axes.
 struct AuxiliaryReading {
   Eigen::Vector3d rate_rad_s, force_m_s2;
   Eigen::Vector3d rate_sigma_rad_s, force_sigma_m_s2;
@@ -47,15 +47,15 @@ struct AuxiliaryReading {
   /// Creates a reading in which all components are NaN.
   AuxiliaryReading();
   bool measures_all_rates() const { return rate_rad_s.allFinite(); }
-  /// Returns whether two readings are equal bit for bit, where NaN equals NaN.
+  /// Returns true if two readings are equal bit for bit, where NaN equals NaN.
   bool same(const AuxiliaryReading& other) const;
 };
 
 /// Interpolates the readings of an additional IMU at the time stamps of the primary IMU. Cost: O(N). The function
-/// interpolates linearly between neighbouring readings that are at most `gap_max_s` apart. Readings of clipped sensing
-/// elements are excluded from the interpolation. The argument `clippings` contains one entry of ClippingFinder per
-/// sample. Returns the errors of check_samples() except `gap`, or `too_few` if `clippings` has fewer entries than
-/// `samples`. On error, `out` is unchanged. If `samples` is empty, all interpolated readings are NaN.
+/// interpolates linearly between neighbouring readings that are at most `gap_max_s` apart, and excludes readings of
+/// clipped sensing elements. The argument `clippings` contains one entry of ClippingFinder per sample. Returns `ok`, an
+/// error of check_samples() other than `gap`, or `too_few` if `clippings` has fewer entries than `samples`. On error,
+/// `out` is unchanged. If `samples` is empty, all interpolated readings are NaN.
 Status align(const AuxiliaryImu& auxiliary_imu, std::span<const ImuSample> samples, std::span<const Clipping> clippings,
              std::span<const ImuSample> primary, double gap_max_s, std::vector<AuxiliaryReading>& out);
 

@@ -22,8 +22,8 @@ struct SaturationLevels {
   bool accel_clips_after_compensation = false;  ///< the accelerometer clips after misalignment compensation
 
   /// Returns the saturation planes that are used to classify readings as clipped. If the device clips its output after
-  /// misalignment compensation, runs of equal readings identify the clipped samples exactly. For a device that clips
-  /// after compensation, the function returns planes only for sensing elements without a known saturation limit.
+  /// misalignment compensation, runs of equal readings identify the clipped samples exactly. For such a device, the
+  /// function returns planes only for sensing elements without a known saturation limit.
   RailPlanes planes_in_use(Triad triad = Triad::gyro) const;
   /// Returns the sensing directions of the three sensing elements of the gyro or the accelerometer. The argument
   /// `unknown_sigma` is the standard deviation of a cross-axis sensitivity that no saturation plane determines.
@@ -44,10 +44,9 @@ ElementReading element_reading(const ImuSample& sample, const Clipping& clipping
 /// Converts the detected clipping of a sample to ClipFlag bits.
 std::uint8_t clip_flags(const Clipping& clipping);
 
-/// ConfirmedSaturation contains only saturation limits that are certain, for comparing several IMUs whose readings may
-/// freeze. ConfirmedSaturation includes saturation planes, because slow motion and frozen sensors do not produce
-/// saturation planes. A limit derived only from equal readings is excluded, because a slow motion or a frozen sensor
-/// also causes equal readings.
+/// ConfirmedSaturation contains the saturation limits that a frozen sensor cannot imitate, for comparing several IMUs.
+/// Slow motion and frozen sensors cause equal readings, but no saturation planes. ConfirmedSaturation therefore
+/// excludes limits that were derived only from equal readings.
 struct ConfirmedSaturation {
   RailPlanes gyro, accel;                                 ///< saturation planes used to classify readings
   double gyro_range_rad_s = 0.0, accel_range_m_s2 = 0.0;  ///< range from the data sheet; 0: unknown
@@ -74,11 +73,11 @@ class ClippingFinder {
       visit.group("rails_", p.axis_aligned_rails);
       visit.group("planes_", p.planes);
       visit.group("accel_planes_", p.accel_planes);
-      visit(
-          p.tilted,
-          switch_field(
-              "tilted",
-              "1: also search tilted saturation limits; 0: search only upright ones and use the device's clip flags"));
+      visit(p.tilted,
+            switch_field(
+                "tilted",
+                "1: also search for tilted saturation limits; 0: search only for upright saturation limits and use the "
+                "device's clip flags"));
     }
   };
   struct Found {

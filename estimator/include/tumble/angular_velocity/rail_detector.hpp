@@ -24,8 +24,8 @@ struct Clipping {
 /// allows.
 struct RailPlateauParams {
   int samples = 4;  ///< minimum number of readings of a plateau
-  /// Largest spread of the readings of a plateau, as a fraction of the saturation limit. Unsaturated readings have a
-  /// larger spread because of sensor noise.
+  /// Largest spread of the readings of a plateau, relative to the saturation limit. Unsaturated readings have a larger
+  /// spread because of sensor noise.
   double plateau_spread_ratio = 2e-5;
   /// A gyro plateau below `low_gyro_plateau_rad_s` needs twice as many readings, and a jump at its start or end.
   double low_gyro_plateau_rad_s = 1.0;
@@ -69,8 +69,10 @@ struct RailDetectorParams {
   /// data sheet or the user.
   std::optional<double> stated_gyro_rad_s = std::nullopt;
   std::optional<double> stated_accel_m_s2 = std::nullopt;
-  double clip_enter_ratio = 0.003;          ///< a reading within this fraction of the saturation limit starts clipping
-  double clip_leave_ratio = 0.02;           ///< neighbours of a clipped reading are clipped within this fraction
+  /// A reading starts clipping above (1 - clip_enter_ratio) * saturation limit.
+  double clip_enter_ratio = 0.003;
+  /// A reading ends clipping below (1 - clip_leave_ratio) * saturation limit.
+  double clip_leave_ratio = 0.02;
   double range_contradiction_ratio = 0.02;  ///< minimum relative difference that contradicts the stated range
 
   using Expert = RailDetectorExpertParams;
@@ -115,7 +117,7 @@ class RailDetector {
     double run_first = 0.0;
     int run_length = 0;
     double before = 0.0;  ///< previous reading
-    double entry = 0.0;   ///< change at the start of the run; 0: first run of the recording
+    double entry = 0.0;   ///< change of the reading at the start of the run; 0: first run
     double digit = 0.0;   ///< smallest observed change between two readings; 0: none yet
     double last = 0.0;
     bool clipped = false;
@@ -147,12 +149,12 @@ class RailDetector {
   /// from the largest plateau on another axis, or else from the stated range. A saturation limit from another axis or
   /// from the stated range applies only while all readings of channel c are below the limit.
   std::optional<double> rail(const State& state, int c) const;
-  /// Returns whether a plateau or a larger reading contradicts the stated range of channel c.
+  /// Returns true if a plateau or a larger reading contradicts the stated range of channel c.
   bool disagrees(const State& state, int c) const;
 
  private:
   std::optional<double> stated(int c) const;
-  /// Returns whether the current run of readings is a plateau that started or ended with the given jump.
+  /// Returns true if the current run of readings is a plateau that started or ended with the given jump.
   bool plateau(int c, const Channel& channel, double jump) const;
   Params params_;
 };

@@ -31,17 +31,17 @@ struct RailPlane {
   double log_odds = 0.0;          ///< natural log odds of saturation against unsaturated motion
 
   bool seen(int sign) const { return samples[sign > 0 ? 1 : 0] > 0; }
-  /// Returns the distance of a reading below the plane with the sign `sign` (-1 or 1) [rad/s]. The distance is negative
+  /// Returns how far a reading is below the saturation plane of sign `sign` (-1 or 1) [rad/s]. The result is negative
   /// if the reading is beyond the plane.
   double margin_rad_s(const Eigen::Vector3d& reading_rad_s, int sign) const {
     return distance_rad_s - sign * (row.dot(reading_rad_s) - offset_rad_s);
   }
-  /// Returns whether a reading is at or beyond the plane with the sign `sign`. Returns false if no saturation with this
+  /// Returns true if a reading is at or beyond the plane with the sign `sign`. Returns false if no saturation with this
   /// sign was observed.
   bool holds(const Eigen::Vector3d& reading_rad_s, int sign) const {
     return seen(sign) && margin_rad_s(reading_rad_s, sign) <= tolerance_rad_s;
   }
-  /// Returns whether some readings are too far beyond the plane for the plane to be a saturation limit.
+  /// Returns true if readings are so far beyond the plane that the plane cannot be a saturation limit.
   bool contradicted_by(std::span<const Eigen::Vector3d> readings_rad_s) const;
   bool operator==(const RailPlane&) const = default;
 };

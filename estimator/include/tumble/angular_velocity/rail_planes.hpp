@@ -49,11 +49,13 @@ class RailPlaneFinder {
     /// Range of the sensor according to its data sheet [rad/s], if known. RailPlaneFinder assumes that the saturation
     /// limit is not far below the stated range.
     std::optional<double> stated_rad_s = std::nullopt;
-    double offset_sigma_ratio = 0.02;  ///< prior deviation of the offset and between elements, as a fraction of r
-    int samples_min = 4;               ///< minimum number of samples on the plane of one sign
-    double log_odds_before = -6.0;     ///< prior log odds of saturation for each element and sign
-    double log_odds_min = 1.0;         ///< minimum log odds for accepting a plane
-    double log_odds_keep = -3.0;       ///< minimum log odds for keeping an accepted plane
+    /// Prior standard deviation of the offset b, and of the difference of r between two sensing elements, relative to
+    /// r.
+    double offset_sigma_ratio = 0.02;
+    int samples_min = 4;            ///< minimum number of samples on the plane of one sign
+    double log_odds_before = -6.0;  ///< prior log odds of saturation for each element and sign
+    double log_odds_min = 1.0;      ///< minimum log odds for accepting a plane
+    double log_odds_keep = -3.0;    ///< minimum log odds for keeping an accepted plane
     /// Saturation planes found in an earlier run of the same device. RailPlaneFinder uses known planes from the start
     /// of a run until readings contradict the planes. Saturation planes of one device change by a fraction of a percent
     /// between runs. A new plane near a known plane has a higher prior probability.

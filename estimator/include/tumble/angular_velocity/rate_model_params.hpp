@@ -36,17 +36,16 @@ struct RateModelParams {
   /// of the additional IMUs.
   std::vector<AuxiliaryImu> auxiliary_imus = {};
 
-  /// Noise density of the gyro [rad/s/sqrt(Hz)]. The default gyro noise density, 0.03 deg/s/sqrt(Hz), is typical of an
-  /// industrial MEMS gyro.
+  /// Noise density of the gyro [rad/s/sqrt(Hz)]. The default, 0.03 deg/s/sqrt(Hz), is typical of an industrial MEMS
+  /// gyro.
   double gyro_noise_density = 5.236e-4;
-  /// Noise density of the accelerometer [m/s^2/sqrt(Hz)]. The default accelerometer noise density, 60 ug/sqrt(Hz), is
-  /// typical of an industrial MEMS accelerometer.
+  /// Noise density of the accelerometer [m/s^2/sqrt(Hz)]. The default, 60 ug/sqrt(Hz), is typical of an industrial MEMS
+  /// accelerometer.
   double accel_noise_density = 5.9e-4;
   /// Known sensor errors, which the estimator subtracts from the readings.
   SensorErrors errors = {};
-  /// Largest possible angular rate and angular acceleration of the body. The maximum rate and acceleration limit the
-  /// estimate while the gyro is clipped. Allowed values are [1, 1e4] rad/s for the rate and [1, 1e7] rad/s^2 for the
-  /// angular acceleration.
+  /// Largest possible angular rate and angular acceleration of the body. Both values limit the estimate while the gyro
+  /// is clipped. Allowed values are [1, 1e4] rad/s for the rate and [1, 1e7] rad/s^2 for the angular acceleration.
   double rate_max_rad_s = 50.0;
   double acceleration_max_rad_s2 = 5000.0;
 

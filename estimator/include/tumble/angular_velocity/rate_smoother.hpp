@@ -33,7 +33,7 @@ struct RateSmootherParams {
   /// Sensor errors that an earlier run estimated (RateReport::sensor_errors). RateSmoother uses the earlier sensor
   /// errors only if the estimation of sensor errors is enabled.
   std::optional<KnownSensorErrors> calibrated_errors = std::nullopt;
-  double gap_max_s = 1.0;  ///< a longer time between samples separates parts of the recording
+  double gap_max_s = 1.0;  ///< a longer time between two samples is a gap; see estimate()
 
   using Expert = RateSmootherExpertParams;
   Expert expert = {};  ///< rarely changed parameters
@@ -61,13 +61,13 @@ struct RateSmootherParams {
 struct RateReport {
   int iterations = 0;
   bool converged = false;
-  int restarts = 0;              ///< restarts from other initial values, because the first solution contained no flight
+  int restarts = 0;              ///< number of restarts with other initial values after a solution without flight
   double last_step_rad_s = 0.0;  ///< largest change of a rate in the last iteration
   RigCalibration calibration;    ///< estimated calibration; can initialise the next run
   /// Mahalanobis distance of the estimated rig constants from their prior, in standard deviations. A distance far above
   /// 1 indicates a wrong prior, or a run without flight that RateSmoother classified as flight.
   double calibration_mahalanobis = 0.0;
-  bool calibration_at_prior = false;          ///< whether the rig constants were fixed at their prior
+  bool calibration_at_prior = false;          ///< the rig constants were fixed at their prior
   std::array<std::optional<double>, 6> rail;  ///< saturation limits: gyro [rad/s], accelerometer [m/s^2]; empty: none
   std::array<bool, 6> rail_observed{};        ///< the limit was observed on this axis, not inferred from another axis
   RailPlanes planes;                          ///< saturation planes of the gyro's sensing elements, where observed
@@ -75,19 +75,19 @@ struct RateReport {
   /// Estimated sensor errors and the covariance of the estimate.
   KnownSensorErrors sensor_errors;
   double data_sheet_probability = 1.0, synchronous_probability = 1.0;  ///< see SensorErrorFit
-  /// Standard deviation of a delay common to gyro and accelerometer [s]. The standard deviation of the common delay is
-  /// 0 if the device agrees with its data sheet.
+  /// Standard deviation of a delay common to gyro and accelerometer [s]. The value is zero if the device agrees with
+  /// its data sheet.
   double common_delay_sigma_s = 0.0;
   double gyro_update_s = 0.0, accel_update_s = 0.0;  ///< update interval of repeated readings; 0: no repeated readings
   int error_rounds = 0;                              ///< number of optimisations with corrected readings
   bool clips_after_compensation = false;             ///< the gyro clips after misalignment compensation, axis by axis
-  std::array<bool, 6> contradicts_stated_range{};    ///< whether the readings contradict the stated range
+  std::array<bool, 6> contradicts_stated_range{};    ///< the readings contradict the stated range
   bool rate_unit_suspect = false;   ///< a gyro reading exceeds RateModelParams::rate_max_rad_s: the unit may be degrees
   bool force_unit_suspect = false;  ///< the median specific force is near 1: the unit may be g
   std::size_t samples = 0, clipped = 0, recovered_flight = 0, recovered_contact = 0, bounded_only = 0;
   std::size_t missing_readings = 0;  ///< samples in which a gyro axis overflowed (flipped sign)
   double flight_share = 0.0;         ///< fraction of samples classified as free flight
-  /// Gyro axes that may be saturated without a detected saturation: one byte per sample, bit j for axis j.
+  /// Gyro axes that may be saturated at a limit that was not found: one byte per sample, bit j for axis j.
   std::vector<std::uint8_t> suspect_axes;
 };
 
@@ -115,10 +115,9 @@ struct RateReport {
 /// RateSmoother also estimates SensorErrors: scale, misalignment, g-sensitivity, and the accelerometer's delay and
 /// window. RateSmoother corrects the readings with the estimated sensor errors and repeats the optimisation. The
 /// function fit_sensor_errors() chooses the prior magnitude of the sensor errors that fits the readings. The
-/// covariances of rates and rig constants include the remaining uncertainty of the sensor errors, as considered
-/// parameters (Schmidt, 1966). Considered parameters prevent the covariance from treating constant sensor errors as
-/// independent noise. If gyro and accelerometer are not synchronous, RateSmoother assumes that the later of the two
-/// sensors is delayed.
+/// covariances of rates and rig constants include the remaining uncertainty of the sensor errors, as consider
+/// parameters (Schmidt, 1966). Otherwise, the covariance would treat constant sensor errors as independent noise. If
+/// gyro and accelerometer are not synchronous, RateSmoother assumes that the later of the two sensors is delayed.
 ///
 /// The sensing elements of a gyro clip along their own axes, which are not quite orthogonal. The device's misalignment
 /// compensation then mixes the clipped values into all output axes (RailPlaneFinder). While a sensing element clips,

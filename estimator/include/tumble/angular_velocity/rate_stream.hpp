@@ -36,9 +36,9 @@ namespace tumble {
 /// StreamingClippingFinder detects saturation limits and saturation planes from the readings. After the detection of a
 /// new saturation limit, RateStream classifies the samples in the window again. RateStream mistakes a clipped sample
 /// for a measurement only if the sample left the window before the detection of the saturation limit. With the
-/// calibration of an earlier run, the rate error of RateStream is 1.1 times the rate error of RateSmoother. With the
-/// calibration of an earlier run, 99 % of the rate errors are within three standard deviations. If RateStream estimates
-/// the calibration during the tumble, the rate error is 1.6 times the error of RateSmoother, or 1.2 times with a lag of
+/// calibration of an earlier run, the rate error of RateStream is 1.1 times the rate error of RateSmoother, and 99 % of
+/// the errors are within three standard deviations. If RateStream estimates the calibration during the tumble, the rate
+/// error is 1.6 times the error of RateSmoother, or 1.2 times with a lag of
 /// 0.5 s. The measured error ratios are in docs/maths/rate_stream.md. The rate errors during one flight are correlated.
 /// RateStream increases the covariance of calibration and rates until enough flight samples are processed. The
 /// limitations of RateSmoother also apply to RateStream.
@@ -73,7 +73,7 @@ class RateStream {
 
   /// Reports current faults of the IMU: frozen axes (FrozenAxes), forces in flight that fit another sign or scale
   /// (FlightSignCheck), and rates beyond RateModelParams::rate_max_rad_s, which are possibly not in rad/s. While a gyro
-  /// axis is frozen, the rate about this axis has the largest rate read so far as standard deviation.
+  /// axis is frozen, the standard deviation of the rate about this axis is the largest rate read so far.
   SensorHealth health(const State& state) const;
 
   /// Returns the estimated rig constants and their covariance.
@@ -83,7 +83,7 @@ class RateStream {
   /// accelerometer from impacts, unless the data sheet excludes a delay (RateStreamDelay).
   KnownSensorErrors sensor_errors(const State& state) const;
 
-  /// Returns whether two states lead to identical results, bit for bit. The comparison ignores buffers.
+  /// Returns true if two states lead to identical results, bit for bit. The comparison ignores buffers.
   static bool equal(const State& a, const State& b);
 
   /// Checks the consistency of a state that was loaded from a file. Returns the first violated condition.
@@ -143,7 +143,7 @@ class RateStream {
   std::size_t capacity_;
   std::size_t samples_per_step_;  ///< number of samples between steps
   double prior_delay_s_;          ///< prior delay of the accelerometer
-  bool delay_is_estimated_;       ///< whether the delay may differ from the prior delay
+  bool delay_is_estimated_;       ///< true if the delay may differ from the prior delay
 };
 
 }  // namespace tumble

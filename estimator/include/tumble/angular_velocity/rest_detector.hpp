@@ -22,7 +22,7 @@ namespace tumble {
 class RestDetector {
  public:
   struct Params {
-    double rate_max_rad_s = 0.05;     ///< maximum of the mean rate minus the bias, per axis
+    double rate_max_rad_s = 0.05;     ///< maximum difference between mean rate and bias, per axis
     double rate_spread_rad_s = 0.03;  ///< maximum distance of a reading from the mean reading, per axis
     double force_min_m_s2 = 5.0;      ///< minimum force at rest; excludes flight
     double force_max_m_s2 = 1e3;      ///< maximum force at rest; excludes impacts
@@ -59,8 +59,8 @@ class RestDetector {
     double weight = 0.0;              ///< number of readings in the sums; older readings count less
     TimeNs first_ns = 0;              ///< time of the run's first sample
     TimeNs last_mean_ns = 0;          ///< time of the last reading
-    TimeNs within_bias_since_ns = 0;  ///< time since which the mean rate is within the bias bound
-    bool rests = false;               ///< whether the IMU is at rest, up to the last reading
+    TimeNs within_bias_since_ns = 0;  ///< start of the time in which the mean rate is within the bias bound
+    bool rests = false;               ///< true if the IMU is at rest, up to the last reading
     // Sums of the samples since the last averaged reading.
     Eigen::Vector3d pending_rate_rad_s = Eigen::Vector3d::Zero();
     Eigen::Vector3d pending_force_m_s2 = Eigen::Vector3d::Zero();

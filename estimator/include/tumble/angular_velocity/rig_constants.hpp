@@ -41,8 +41,8 @@ struct RigConstants {
   bool operator==(const RigConstants&) const = default;
 };
 
-/// RigCalibration contains rig constants with their covariance, as estimated in one run and usable as the prior of
-/// another.
+/// RigCalibration contains the rig constants that one run estimated, with their covariance. A later run can use them as
+/// prior.
 struct RigCalibration {
   RigConstants constants;
   RigConstants::Matrix covariance = RigConstants::Matrix::Identity();

@@ -23,11 +23,11 @@ namespace tumble {
 /// is the rate. Saave computes the clipped axis of the rate from the force component along l and the two unclipped
 /// axes. In the smoothing stage, Saave smooths the rates of all samples with a white-noise-on-jerk prior.
 ///
-/// Saave recovers at most one clipped axis per sample, the first in the order x, y, z. Saave assigns the variance of an
-/// unclipped reading to the other clipped axes. The published method assumes free flight, an unclipped accelerometer,
-/// no bias, and no angular acceleration across the rotation axis. If the IMU is close to the rotation axis (small |l|),
-/// the estimate has a large error that Saave does not detect. Saave assigns the same variance to all recovered rates.
-/// The smoothed rates of clipped axes may be below the saturation limit.
+/// Saave recovers at most one clipped axis per sample, the first in the order x, y, z. Further clipped axes of the
+/// sample have the variance of an unclipped reading. The published method assumes free flight, an unclipped
+/// accelerometer, no bias, and no angular acceleration across the rotation axis. If the IMU is close to the rotation
+/// axis (small |l|), the estimate has a large error that Saave does not detect. Saave assigns the same variance to all
+/// recovered rates. The smoothed rates of clipped axes may be below the saturation limit.
 class Saave {
  public:
   struct Params {

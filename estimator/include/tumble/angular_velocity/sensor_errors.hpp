@@ -54,7 +54,8 @@ struct SensorErrorPriors {
   double g_sensitivity_s_m = 5.3e-6, g_sensitivity_uncalibrated_s_m = 1.8e-4;
   /// Standard deviations of the accelerometer's delay relative to the gyro. In a calibrated device, gyro and
   /// accelerometer have equal filters of about 400 Hz. In an uncalibrated device, gyro and accelerometer have separate
-  /// windows and filters. The prior of the window difference scales with the square of the delay's standard deviation.
+  /// windows and filters. The prior of accel_filter_time_variance_s2 is proportional to the square of the delay's
+  /// standard deviation.
   double delay_s = 1e-4, delay_uncalibrated_s = 5e-3;
 
   /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
@@ -94,11 +95,10 @@ struct SensorErrorEvidence {
   SensorErrors::Vector gradient = SensorErrors::Vector::Zero();
 };
 
-/// Reduces, by the factor `share`, the information about sensor errors that free motion of a body does not determine;
-/// see rate_smoother.md (R39). The unobservable directions are a scale common to all axes of a sensor, and a common
-/// rotation of gyro and accelerometer. In the unobservable directions, residuals of the motion model wrongly appear as
-/// information about the sensor errors. The wrong information grows with the number of samples, because smaller motions
-/// have smaller residuals.
+/// Multiplies the information about unobservable sensor errors by `share`; see rate_smoother.md (R39). Free motion of a
+/// body does not determine a scale common to all axes of a sensor, and a common rotation of gyro and accelerometer. For
+/// these errors, residuals of the motion model wrongly appear as information. The wrong information grows with the
+/// number of samples, because smaller motions have smaller residuals.
 void discount_unobservable(double share, SensorErrorEvidence& evidence);
 
 /// SensorErrorFit contains the sensor errors estimated from readings and prior.
@@ -110,11 +110,11 @@ struct SensorErrorFit {
 
 /// Estimates the sensor errors by Bayesian model averaging over prior standard deviations. Each model assumes
 /// calibrated, uncalibrated or intermediate standard deviations for scale and misalignment, for g-sensitivity, and for
-/// sampling. For each model, the function computes the Gaussian posterior of the sensor errors and the likelihood of
-/// the readings. The returned sensor errors are the mean and covariance of the mixture of all models. If the readings
-/// fit the data sheet, unobservable sensor errors therefore keep the small uncertainty of the data sheet. Cost: O(1),
-/// about 30 systems of 29 unknowns. The argument `earlier_runs` is the result of calibration_evidence() for earlier
-/// runs of the device.
+/// delay and averaging. For each model, the function computes the Gaussian posterior of the sensor errors and the
+/// likelihood of the readings. The returned sensor errors are the mean and covariance of the mixture of all models. If
+/// the readings fit the data sheet, unobservable sensor errors therefore keep the small uncertainty of the data sheet.
+/// Cost: O(1), about 30 systems of 29 unknowns. The argument `earlier_runs` is the result of calibration_evidence() for
+/// earlier runs of the device.
 SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const SensorErrorPriors& sizes,
                                  const SensorErrorEvidence& earlier_runs = {});
 

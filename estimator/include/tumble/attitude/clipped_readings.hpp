@@ -17,16 +17,16 @@ namespace tumble {
 struct ClippedReadings {
   Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();  ///< sensing directions of the gyro, one per row
   std::vector<ClipSigns> signs;                        ///< one entry per sample
-  std::vector<std::uint8_t> near;                      ///< one entry per sample: bits of possible_partial_saturation()
+  std::vector<std::uint8_t> near;  ///< per sample: bit j is set if gyro element j may be partly saturated
 
   ClippedElements clipped() const { return {rows, signs}; }
 
-  /// Treats gyro readings that may be saturated at an unknown limit as lower bounds instead of measurements. The
-  /// argument `axes` contains one byte per sample; bit j is set if the reading of axis j may be saturated.
+  /// Marks suspect gyro readings as lower bounds. A suspect reading may be saturated at an unknown limit. Bit j of
+  /// `axes[k]` is set if the reading of axis j of sample k is suspect.
   void mark_suspect(std::span<const ImuSample> samples, std::span<const std::uint8_t> axes);
 
-  /// Marks an estimated rate as a lower bound if its reading may have been saturated during a part of the averaging
-  /// window. The argument `rates` contains one rate per sample.
+  /// Changes the source of a measured rate to `bounded_only` if its reading may be saturated during a part of its
+  /// averaging window. The argument `rates` contains one rate per sample.
   void mark_partly_saturated(std::span<RateState> rates) const;
 };
 

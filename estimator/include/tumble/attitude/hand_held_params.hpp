@@ -12,10 +12,10 @@ struct HandMotionParams {
   double velocity_tau_s = 0.3;         ///< correlation time of the hand's velocity
   double position_tau_s = 1.0;         ///< correlation time of the hand's position
   double position_leak_s = 10.0;       ///< time constant with which the hand's position returns to zero
-  double hand_noise_adaptation = 0.8;  ///< weight of the measured acceleration power, 0 to 1
+  double hand_noise_adaptation = 0.8;  ///< weight of the measured acceleration power: 0 (not used) to 1
   double hand_window_s = 2.0;          ///< averaging time of the measured acceleration power
   double hand_noise_floor_ratio =
-      1.0;  ///< minimum acceleration density, as a fraction of the density for `hand_sigma_m_s2`
+      1.0;  ///< minimum ratio of the adapted to the assumed power spectral density of the hand's acceleration
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -38,13 +38,13 @@ struct HandMotionParams {
 
 /// HandHeldReadingParams describes the errors of IMU readings other than white noise.
 struct HandHeldReadingParams {
-  double deficit_error_ratio = 0.02;    ///< error of an unclipped element, per saturation deficit of a clipped element
+  double deficit_error_ratio = 0.02;    ///< error of an unclipped element / saturation deficit of a clipped element
   double rail_sigma_rad_s = 0.01;       ///< standard deviation of a saturation limit
-  double accel_error_ratio = 0.02;      ///< additional force noise per m/s^2 of difference from gravity
-  double rotation_error_sqrts = 1e-3;   ///< random walk of the attitude per rad/s of rotation
+  double accel_error_ratio = 0.02;      ///< additional force noise / (magnitude of the force - gravity)
+  double rotation_error_sqrts = 1e-3;   ///< angle random walk per rad/s of rate, from scale errors
   double recovered_sigma_rad_s = 1.0;   ///< clipped rates with a smaller standard deviation count as recovered
   double recovered_tau_s = 0.005;       ///< correlation time of the error of a recovered rate
-  double recovered_scale_sigma = 6e-3;  ///< scale error of measured rates near recovered rates
+  double recovered_scale_sigma = 6e-3;  ///< standard deviation of the gyro's scale error next to recovered rates
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -77,8 +77,8 @@ struct HandHeldRestParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.rest_sigma_rad_s,
-          {"rest_sigma_rad_s", "rad/s", 1e-6, 10.0, "standard deviation of the rate at rest, per node"});
+    visit(p.rest_sigma_rad_s, {"rest_sigma_rad_s", "rad/s", 1e-6, 10.0,
+                               "standard deviation of the rate at a node of the smoother, at rest"});
     visit(p.rest_sigma_m_s, {"rest_sigma_m_s", "m/s", 1e-6, 10.0, "standard deviation of the velocity at rest"});
     visit(p.rest_sigma_m_s2,
           {"rest_sigma_m_s2", "m/s^2", 1e-6, 10.0, "standard deviation of the acceleration at rest"});

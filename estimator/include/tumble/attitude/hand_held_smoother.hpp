@@ -17,7 +17,7 @@
 
 namespace tumble {
 
-/// ClipSigns states which sensing elements of an IMU are clipped in one sample: -1 at the negative limit, 1 at the
+/// ClipSigns contains one value per sensing element of an IMU: -1 if clipped at the negative limit, 1 if clipped at the
 /// positive limit, 0 if unsaturated. The value kMissing marks a gyro reading that is invalid because of an overflow.
 struct ClipSigns {
   static constexpr std::int8_t kMissing = 2;
@@ -47,7 +47,7 @@ struct ClippedElements {
 /// saturated. HandHeldSmoother estimates attitude, rate, angular acceleration and hand motion at equal time steps,
 /// called nodes. HandHeldSmoother also estimates the biases and the lever arm of the IMU. A Gauss-Newton solver uses
 /// the arrow structure of the normal equations, and the inverse of the normal matrix gives the covariances. Memory
-/// (about 7 kB per node) and computation grow in proportion to the duration, whatever the IMU's sample rate.
+/// (about 7 kB per node) and computation are proportional to the duration, and independent of the IMU's sample rate.
 ///
 /// HandHeldSmoother assumes that the body is not thrown (see `hand_acceleration_ratio`) and has no hard contact.
 /// HandHeldSmoother assumes constant biases, and reports the heading relative to the start.
@@ -65,14 +65,14 @@ class HandHeldSmoother {
     /// ratio above 2 indicates that the body was thrown (specific force about 0) or handled roughly. The ratio is a
     /// diagnostic and does not influence the estimate.
     double hand_acceleration_ratio = 0.0;
-    /// Counters of clipped segments whose number of full revolutions is ambiguous. The counter revolutions_tested
-    /// counts clipped segments that are long and uncertain enough to test another number of revolutions. The counter
-    /// revolutions_corrected counts, in each round, the segments in which another number of revolutions fitted better.
-    /// The counter revolutions_ambiguous counts segments in which another number of revolutions has odds of at least 1
-    /// to 1000. The rate covariance includes the spread of the possible numbers of revolutions.
+    /// During long clipping, the number of full revolutions can be ambiguous. HandHeldSmoother tests other numbers of
+    /// revolutions in `revolutions_tested` clipped segments. The counter revolutions_corrected counts, in each round,
+    /// the segments in which another number of revolutions fitted better. The counter revolutions_ambiguous counts
+    /// segments in which another number has odds of at least 1 to 1000. The rate covariance includes the spread of the
+    /// possible numbers of revolutions.
     int revolutions_tested = 0, revolutions_corrected = 0, revolutions_ambiguous = 0;
-    /// Number of tests of another number of revolutions in which the solver failed. After a failure, HandHeldSmoother
-    /// restores the previous solution, and counts the segment in revolutions_ambiguous.
+    /// Number of revolution tests in which the solver failed. HandHeldSmoother then restores the previous solution, and
+    /// counts the segment in revolutions_ambiguous.
     int revolutions_failed = 0;
   };
 

@@ -17,16 +17,16 @@ namespace tumble {
 ///
 /// HandHeldStream marginalises the oldest node into a Gaussian prior on the next node, the biases and the lever arm.
 /// The function push() returns each rate when its sample is `lag_s` old. The window `window_s` is longer than the lag,
-/// so that each step also relinearises nodes older than the lag. The function start() allocates all memory of the
-/// stream. A run that is continued from a saved State gives bit-identical results.
+/// so that each step also relinearises nodes that are older than the lag. The function start() allocates all memory of
+/// the stream. A run that is continued from a saved State gives bit-identical results.
 ///
 /// HandHeldStream differs from HandHeldSmoother as follows. While no sample in the window is clipped, the solver runs
 /// only for every fifth node. The initial attitude comes from a single force reading. The assumed density of the hand's
 /// acceleration adapts to the nodes that have left the window, with the time constant `hand_window_s` / 2.
-/// HandHeldStream does not test whether a clipped segment has an additional full revolution. The rate covariance
-/// includes the error of one additional revolution (C42, C43 of carried.md). After the detection of a new saturation
-/// limit, HandHeldStream classifies only the readings in the window again. The prior from marginalised nodes uses the
-/// assumed jerk, but reported covariances use the increased jerk (`jerk_inflation`).
+/// HandHeldStream does not test other numbers of full revolutions in a clipped segment. The rate covariance includes
+/// the error of one additional revolution (C42, C43 of carried.md). After the detection of a new saturation limit,
+/// HandHeldStream classifies only the readings in the window again. The prior from marginalised nodes uses the assumed
+/// jerk, but reported covariances use the increased jerk (`jerk_inflation`).
 ///
 /// Cost: each new node costs one Gauss-Newton step, O(window).
 class HandHeldStream {
@@ -54,7 +54,7 @@ class HandHeldStream {
   struct Reading {
     ImuSample sample;
     ClipSigns signs;
-    /// Centre and end of the sample's averaging window, from the first sample's centre.
+    /// Times of the centre and the end of the averaging window, relative to the centre of the first sample.
     double centre_s = 0.0, end_s = 0.0;
     std::int64_t node = 0;  ///< node closest to the centre of the averaging window
     bool rest = false;
@@ -79,14 +79,14 @@ class HandHeldStream {
     hand_held::Node prior_node;
     hand_held::Constants prior_constants;
     double acceleration_power_ratio =
-        1.0;  ///< measured acceleration power of marginalised nodes, relative to the assumed power
+        1.0;  ///< ratio of measured to assumed acceleration power of the hand, over marginalised nodes
     RestDetector::State rests;
     std::int64_t reported_node = -1;  ///< node of the last reported estimate
     Eigen::Matrix3d reported_covariance_rad2_s2 = Eigen::Matrix3d::Zero();
     std::int64_t start_ns = 0;
     std::size_t samples = 0;
     std::size_t failures = 0;  ///< number of steps skipped because the normal equations were not positive definite
-    /// Duration of the current clipping of each gyro element up to the last reported sample, and the time integral of
+    /// Per gyro element, for the current clipped segment up to the last reported sample: duration, and time integral of
     /// the rate's standard deviation.
     Eigen::Vector3d clipped_duration_s = Eigen::Vector3d::Zero(), clipped_angle_sigma_rad = Eigen::Vector3d::Zero();
     std::size_t revolutions_ambiguous = 0;       ///< number of segments that may contain an additional revolution
@@ -104,8 +104,8 @@ class HandHeldStream {
 
   /// Processes one sample, and computes the rate `out` of the sample that is `lag_s` old. The argument `known` contains
   /// the current clip signs of the newest samples, up to `sample`. If the clip signs of a sample in the window changed,
-  /// push() processes the sample again. The output `out` is empty while the window fills, or if `wanted` is false. If
-  /// `wanted` is false, push() skips most of the computation. The argument `repeated` describes repeated readings
+  /// push() processes the sample again. The output `out` is empty while the window fills. If `wanted` is false, `out`
+  /// is always empty, and push() skips most of the computation. The argument `repeated` describes repeated readings
   /// (sample and hold) of the log. A repeated reading counts once, at the time when the sensor took the reading (R95 of
   /// rate_stream.md). Returns `ok`, `non_finite`, `time_order`, `gap`, `out_of_range` (no signs) or `degenerate`
   /// (sensing directions that do not span the axes). On error, `state` is unchanged and `out` is empty.

@@ -29,7 +29,7 @@ struct ImuMergeParams {
   int count = 1;
   double rate_noise_rad_s = 0.01;  ///< standard deviation of the mean rate over a window
   double window_s = 4e-3;          ///< averaging time of the readings
-  double offset_sigma_s = 3e-3;    ///< prior standard deviation of each IMU's time offset; 0: exact
+  double offset_sigma_s = 3e-3;    ///< prior standard deviation of each IMU's time offset; 0: synchronous clocks
   double gyro_range_rad_s = 1e3;   ///< readings at or above this rate are saturated
   double accel_range_m_s2 = 1e5;
   double gap_max_s = 1.0;
@@ -62,11 +62,12 @@ struct ImuMergeParams {
 ///
 /// On a rigid body, the specific force is linear in position. The mean force of all IMUs is therefore exactly the force
 /// at their mean position, for any angular acceleration. If one IMU disagrees while three or more IMUs agree, ImuMerge
-/// excludes the disagreeing IMU from the sample. ImuMerge then corrects the mean force for the shifted mean position,
-/// using the rate of the remaining IMUs. While the body rotates, a Kalman filter estimates each IMU's bias, scale,
-/// misalignment and time offset relative to the mean of all IMUs. ImuMerge corrects significant time offsets; averaging
-/// reduces the remaining gyro errors. In fast rotation, averaging does not reduce accelerometer errors, because large
-/// opposite forces cancel in the mean. ImuMerge therefore estimates and corrects the accelerometer errors.
+/// excludes the disagreeing IMU from the sample. The exclusion shifts the mean position of the IMUs. ImuMerge corrects
+/// the mean force for this shift of the position, using the rate of the remaining IMUs. While the body rotates, a
+/// Kalman filter estimates each IMU's bias, scale, misalignment and time offset relative to the mean of all IMUs.
+/// ImuMerge corrects significant time offsets; averaging reduces the remaining gyro errors. In fast rotation, averaging
+/// does not reduce accelerometer errors, because large opposite forces cancel in the mean. ImuMerge therefore estimates
+/// and corrects the accelerometer errors.
 ///
 /// ImuMerge excludes an IMU with a saturated accelerometer from the mean force. ImuMerge also excludes an IMU that
 /// disagrees with the others and may have been saturated during a part of the sample. If most IMUs may be saturated,
@@ -84,8 +85,9 @@ struct ImuMergeParams {
 /// ImuMerge treats an IMU whose reading is not finite as absent. An IMU is frozen if its gyro or accelerometer repeats
 /// one reading while the readings of other IMUs change. An IMU is also frozen if its accelerometer repeats one reading
 /// while the direction of gravity rotates. ImuMerge excludes a frozen IMU until its readings have changed for
-/// `unfreeze_after_s`. ImuMerge permanently excludes an IMU that disagrees for long (scale, axes, unit of measurement),
-/// as long as two other IMUs remain. Repeated readings of a body at rest do not count as frozen.
+/// `unfreeze_after_s`. ImuMerge permanently excludes an IMU that disagrees for long, for example because of a wrong
+/// scale, wrong axes or a wrong unit. At least two other IMUs must remain. Repeated readings of a body at rest do not
+/// count as frozen.
 ///
 /// ImuMerge assumes that all clocks have the same rate, and does not detect an error that all IMUs share.
 class ImuMerge {
@@ -102,9 +104,9 @@ class ImuMerge {
 
   explicit ImuMerge(const Params& params);
 
-  /// Returns the ratio of the measured force differences between IMUs to the differences expected from rotation and
-  /// positions. The ratio of force differences is 1 if forces and rotation agree, and -1 if the sign of the
-  /// accelerometers is inverted. The result is empty until the body has rotated enough.
+  /// Returns the ratio of measured to expected force differences between IMUs. The expected differences follow from
+  /// rotation and positions. The ratio is 1 if forces and rotation agree, and -1 if the sign of the accelerometers is
+  /// inverted. The result is empty until the body has rotated enough.
   static std::optional<double> lever_arm_agreement(const State& state);
 
   /// Returns `out_of_range` with the duration [s] if all active IMUs are frozen, and otherwise `ok`. While all IMUs are

@@ -45,10 +45,10 @@ class RegimeSmoother {
   };
   struct Report {
     RateReport rate;
-    bool judged = false;                     ///< whether RegimeSmoother estimated the following probabilities
+    bool judged = false;                     ///< RegimeSmoother estimated the probabilities below
     RegimeProbabilities probabilities{};     ///< mean probabilities over all samples
     double hand_held_probability_max = 0.0;  ///< largest probability of hand-held motion in a clipped segment
-    bool hand_held_smoother_ran = false;     ///< whether HandHeldSmoother ran successfully; its report follows
+    bool hand_held_smoother_ran = false;     ///< HandHeldSmoother succeeded; `hand_held` contains its report
     HandHeldSmoother::Report hand_held;
   };
 

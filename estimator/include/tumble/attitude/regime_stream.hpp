@@ -20,13 +20,14 @@ namespace tumble {
 /// A filter over the reported samples estimates the probabilities of flight, contact and hand-held motion. The
 /// probabilities depend on earlier samples and, through the smoothed rate, on later samples within the lag. The weight
 /// of HandHeldStream is the smallest probability of hand-held motion in the clipped segment, as in RegimeSmoother. If
-/// RateStream resets its calibration in more than half of the steps of its lag, clipped samples do not change the
-/// probabilities. HandHeldStream pauses while the probability of hand-held motion is below `hand_held_probability_min`,
-/// and then restarts. RegimeStream reports RateStream's rate for each unclipped sample.
+/// RateStream resets its calibration in more than half of the steps within its lag, the body is probably not in flight.
+/// Clipped samples then do not change the probabilities. HandHeldStream pauses while the probability of hand-held
+/// motion is below `hand_held_probability_min`, and then restarts. RegimeStream reports RateStream's rate for each
+/// unclipped sample.
 ///
-/// RateStream fits angular accelerations to the measured force, which can wrongly explain gravity in gentle hand-held
-/// motion. RegimeStream therefore estimates the probabilities with the time derivative of the rates instead of
-/// RateStream's angular accelerations.
+/// RateStream fits angular accelerations to the measured force. In gentle hand-held motion, such an angular
+/// acceleration can wrongly explain gravity. RegimeStream therefore estimates the probabilities with the time
+/// derivative of the rates instead of RateStream's angular accelerations.
 class RegimeStream {
  public:
   struct Params {
@@ -64,8 +65,8 @@ class RegimeStream {
     std::size_t combined_samples = 0;  ///< number of reported samples combined with HandHeldStream
     std::size_t starts = 0;            ///< number of starts of HandHeldStream
     std::size_t rig_resets = 0;        ///< last value of RateStream's counter of calibration resets
-    double resets = 0.0;               ///< resets of RateStream's calibration, decaying over its lag
-    bool hand_held_running = false;    ///< whether HandHeldStream is running
+    double resets = 0.0;  ///< number of calibration resets of RateStream, decaying with the time constant `rate.lag_s`
+    bool hand_held_running = false;  ///< true if HandHeldStream is running
     /// Samples that may determine the smallest probability of hand-held motion within the last `segment_gap_max_s`. The
     /// oldest entry of `near` has the smallest probability.
     std::vector<ReportedProbability> near;

@@ -37,8 +37,8 @@ class RegimeEvidence {
  public:
   struct Params {
     double gravity_m_s2 = 9.80665;
-    double flight_force_sigma_m_s2 = 0.3;    ///< standard deviation of the residual force in flight: drag, bandwidth
-    double flight_share = 0.05;              ///< additional standard deviation, as a fraction of the lever arm's force
+    double flight_force_sigma_m_s2 = 0.3;    ///< standard deviation of the residual force in flight
+    double flight_share = 0.05;              ///< additional standard deviation / force a x r + w x (w x r)
     double hand_sigma_m_s2 = 5.0;            ///< standard deviation of a hand's acceleration
     double hand_distance_m = 0.05;           ///< distance of the IMU from the hand
     double contact_force_max_m_s2 = 1000.0;  ///< largest contact force; the smallest contact force is 1 m/s^2

@@ -44,8 +44,8 @@ class Strapdown {
   Params params_;
 };
 
-/// Computes the attitude with yaw 0 from a specific force at rest in sensor axes, which points upwards. Returns
-/// `degenerate` if the force is below 1e-6 m/s^2.
+/// Computes the attitude with yaw 0 from the specific force at rest, given in sensor axes. At rest, the specific force
+/// points upwards. Returns `degenerate` if the force is below 1e-6 m/s^2.
 Status level(const Eigen::Vector3d& specific_force_m_s2, Eigen::Quaterniond& q_WI);
 
 }  // namespace tumble

@@ -71,23 +71,24 @@ struct TumbleAttitudeParams {
 /// TumbleAttitude measures the gyro bias and keeps the attitude constant, so that noise changes neither tilt nor
 /// heading.
 ///
-/// The size of the motion is not known in advance: a few centimetres, or the way down a hill. TumbleAttitude accepts a
-/// large velocity or displacement as real motion if the tilt variance cannot explain the value. After accepting a large
-/// motion, TumbleAttitude increases the assumed standard deviation of velocity or displacement for `motion_tau_s`.
+/// The extent of the motion is not known in advance, and ranges from a few centimetres to a whole hillside.
+/// TumbleAttitude accepts a large velocity or displacement as real motion if the tilt variance cannot explain the
+/// value. After accepting a large motion, TumbleAttitude increases the assumed standard deviation of velocity or
+/// displacement for `motion_tau_s`.
 ///
 /// The centre of a rolling sphere of radius r has the velocity r w x n, with the rate w and the floor's normal n. The
 /// IMU's velocity differs from the centre's velocity by w x (R rho), with the attitude R and the lever arm rho. The
-/// rolling constraint predicts the integral of the specific force, which determines tilt and bias without the
-/// derivative of the rate. A velocity that does not fit the rolling constraint indicates slip. During slip,
+/// rolling constraint predicts the integral of the specific force. The integral determines tilt and bias, and does not
+/// need the derivative of the rate. A velocity that does not fit the rolling constraint indicates slip. During slip,
 /// TumbleAttitude pauses its corrections for at most `slip_timeout_s`.
 ///
 /// TumbleAttitude averages the readings of a fast IMU over `reading_s`, and extrapolates the attitude between averages.
 /// In a gap longer than `gap_min_s`, TumbleAttitude interpolates the rate and keeps the velocity, with increased
 /// variances. A body that is at rest before and after a gap is assumed to be at rest during the gap. If a gap increases
-/// the tilt's standard deviation to `gap_lost_tilt_rad`, the linearisation of the Kalman filter is invalid. After a
-/// long gap, a coarse alignment estimates the tilt in parallel to the Kalman filter. Until the coarse alignment
-/// succeeds, the covariance is constant. If the Kalman filter and the coarse alignment disagree, the filter restarts
-/// from the alignment.
+/// the tilt's standard deviation to `gap_lost_tilt_rad`, the linearisation of the Kalman filter is invalid. A coarse
+/// alignment then estimates the tilt in parallel to the Kalman filter. Until the coarse alignment ends, the reported
+/// tilt variance is at least the variance after the gap. If Kalman filter and coarse alignment disagree, the filter
+/// restarts from the alignment.
 ///
 /// TumbleAttitude has no heading reference. TumbleAttitude assumes an accelerometer without bias and scale errors,
 /// which would cause a tilt error at rest.

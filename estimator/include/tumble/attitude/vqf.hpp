@@ -12,8 +12,8 @@ namespace tumble {
 
 /// VqfExpertParams contains the VQF parameters for which the authors use one value for all devices.
 struct VqfExpertParams {
-  double bias_sigma_motion_rad_s = 1.7453e-3;  ///< bias uncertainty in motion: 0.1 deg/s
-  double bias_sigma_rest_rad_s = 5.2360e-4;    ///< bias uncertainty at rest: 0.03 deg/s
+  double bias_sigma_motion_rad_s = 1.7453e-3;  ///< standard deviation of the bias in motion: 0.1 deg/s
+  double bias_sigma_rest_rad_s = 5.2360e-4;    ///< standard deviation of the bias at rest: 0.03 deg/s
   double vertical_forgetting = 1e-4;           ///< decay of the unobservable vertical bias to zero
   double rest_tau_s = 0.5;                     ///< time constant of the low-pass filter for detecting rest
 
@@ -35,13 +35,13 @@ struct VqfExpertParams {
 struct VqfParams {
   double tau_s = 3.0;  ///< time constant of the low-pass filter on the specific force
   bool rest_bias_estimation = true;
-  bool motion_bias_estimation = true;  ///< without bias estimation at rest and in motion: basic filter of the authors
+  bool motion_bias_estimation = true;         ///< if both bias estimations are off, Vqf is the authors' basic filter
   double bias_sigma_start_rad_s = 8.7266e-3;  ///< prior standard deviation of the gyro bias: 0.5 deg/s
   double bias_forgetting_s = 100.0;           ///< time in which the bias variance grows to (0.1 deg/s)^2
   double bias_clip_rad_s = 3.4907e-2;         ///< largest accepted bias: 2 deg/s
   double rest_time_s = 1.5;
   double rest_rate_rad_s = 3.4907e-2;  ///< maximum difference of gyro and low-passed gyro at rest: 2 deg/s
-  double rest_force_m_s2 = 0.5;        ///< maximum distance of force and low-passed force at rest
+  double rest_force_m_s2 = 0.5;        ///< maximum difference of force and low-passed force at rest
   double gap_max_s = 1.0;
 
   using Expert = VqfExpertParams;

@@ -49,7 +49,7 @@ void visit_by_name(Params& params, Each each) {
   std::remove_cv_t<Params>::fields(params, visitor);
 }
 
-/// Returns whether `name` equals one of `patterns`. A pattern that ends in '*' matches every name with that prefix.
+/// Returns true if `name` equals one of `patterns`. A pattern that ends in '*' matches every name with that prefix.
 template <class Text>
 bool matches_any(std::string_view name, std::span<const Text> patterns) {
   return std::any_of(patterns.begin(), patterns.end(), [&](std::string_view pattern) {

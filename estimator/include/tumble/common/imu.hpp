@@ -31,7 +31,7 @@ struct ImuSample {
   std::uint8_t device_clip_flags = 0;  ///< ClipFlag bits; 0 if the device reports no clipping
 };
 
-/// Returns whether all angular rates and specific forces of an IMU sample are finite.
+/// Returns true if all angular rates and specific forces of an IMU sample are finite.
 inline bool is_finite(const ImuSample& sample) {
   return sample.angular_velocity_rad_s.allFinite() && sample.specific_force_m_s2.allFinite();
 }
@@ -40,7 +40,7 @@ inline bool is_finite(const ImuSample& sample) {
 /// a magnitude above 1e6, and otherwise `ok`.
 Status check_sample(const ImuSample& sample);
 
-/// Checks the time stamps of two consecutive samples. Returns `time_order` unless `time_ns` is greater than
+/// Checks the time stamps of two consecutive samples. Returns `time_order` if `time_ns` is not later than
 /// `previous_ns`. Returns `gap`, with the gap in seconds, if the time stamps are more than `gap_max_s` apart.
 Status check_stamp_order(TimeNs time_ns, TimeNs previous_ns, double gap_max_s);
 

@@ -17,12 +17,11 @@
 /// be const. The function `fields` calls `visit(p.member, Field)` for each number, boolean, enumeration and Vector3d of
 /// the struct. The function `fields` calls `visit.group("prefix_", p.member)` for each nested `Params` struct.
 ///
-/// Poses, planes and calibrations in a `Params` struct are not visited, because users do not enter poses and planes as
-/// plain numbers. The bounds of a Field are constants. Constructors check conditions that relate two parameters.
+/// Poses, planes and calibrations in a `Params` struct are not visited, because users do not enter them as plain
+/// numbers. The bounds of a Field are constants. Constructors check conditions that relate two parameters.
 namespace tumble {
 
-/// FieldRank sets the order of parameters in a listing. The rank `basic` marks the parameters that users usually set
-/// first.
+/// FieldRank sets the order of parameters in a listing. The rank `basic` marks the parameters that most users adapt.
 enum class FieldRank : std::uint8_t { basic, advanced };
 
 /// Field describes one parameter of a `Params` struct. All strings in a Field must have static lifetime.
@@ -84,7 +83,7 @@ class BoundsChecker {
   OutOfBounds& out_;
 };
 
-/// Throws InvalidParams with the full name of the invalid parameter, unless `found` is empty.
+/// If `found` contains an error, throws InvalidParams with the full name of the parameter.
 void throw_if_out_of_bounds(const OutOfBounds& found);
 
 }  // namespace detail

@@ -22,7 +22,7 @@ namespace tumble {
 /// stamps decrease exponentially. The method is the fading-memory polynomial filter of first degree (Morrison,
 /// Introduction to Sequential Smoothing and Prediction, 1969, ch. 13). The error of an estimated time is 1.1 sqrt(T /
 /// memory_s) times the jitter of the time stamps, where T is the sample period. A constant delay of the host is not
-/// observable. In the fit, dropped samples count as samples.
+/// observable. The sample number also counts dropped samples.
 ///
 /// SampleClock returns the first 32 time stamps unchanged. Later time stamps are unchanged if the jitter is below
 /// `jitter_min` of the period, which indicates time stamps of the sensor's own clock. Time stamps are also unchanged if
@@ -35,7 +35,7 @@ namespace tumble {
 class SampleClock {
  public:
   struct Params {
-    double memory_s = 2.0;      ///< time constant of the fit; sensor clocks are stable for longer
+    double memory_s = 2.0;      ///< time constant of the fit
     double jitter_min = 0.005;  ///< minimum jitter of corrected time stamps, in sample periods
     double jitter_max = 0.15;
 
@@ -58,7 +58,7 @@ class SampleClock {
     std::array<TimeNs, kFirstFitStamps> start{};  ///< time stamps collected for the first fit
     std::optional<TimeNs> stamp_ns;               ///< last time stamp
     TimeNs time_ns = 0;                           ///< last estimated sample time
-    bool line_fitted = false;                     ///< whether the line and its sums below are valid
+    bool line_fitted = false;                     ///< the line and its sums below are valid
     double period_ns = 0.0;                       ///< slope of the line: estimated sample period
     double fit_residual_ns = 0.0;                 ///< value of the line at the last sample minus the time stamp
     double sum = 0.0, weighted_number_sum = 0.0,
@@ -66,7 +66,7 @@ class SampleClock {
     double mean_square_error_ns2 = 0.0,
            lag_one_error_product_ns2 = 0.0;  ///< mean square prediction error; mean product of successive errors
     double prediction_error_ns = 0.0;        ///< last prediction error
-    std::size_t outliers = 0;                ///< consecutive prediction errors close to half a period
+    std::size_t outliers = 0;                ///< number of consecutive prediction errors close to half a period
   };
 
   /// Throws InvalidParams if a parameter is out of bounds.
@@ -80,7 +80,7 @@ class SampleClock {
   /// Returns the standard deviation of the time stamps about the fitted line [s]. The result is empty before the first
   /// fit.
   static std::optional<double> jitter_s(const State& state);
-  /// Returns whether push() currently corrects time stamps.
+  /// Returns true if push() currently corrects time stamps.
   bool corrects_stamps(const State& state) const;
 
   /// Checks the consistency of a state that was loaded from a file. Returns the first violated condition.

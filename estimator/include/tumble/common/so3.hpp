@@ -11,8 +11,8 @@ namespace tumble::so3 {
 /// Returns the skew-symmetric matrix [v]x of a vector v, which satisfies [v]x w = v x w.
 Eigen::Matrix3d hat(const Eigen::Vector3d& v);
 
-/// Returns the unit quaternion of a rotation by |phi| radians about the vector phi. The quaternion is exact to the
-/// rounding of |phi|. The vector phi = 0 gives the identity.
+/// Returns the unit quaternion of a rotation by |phi| radians about the vector phi. The rotation angle is exact up to
+/// the rounding of |phi|. The vector phi = 0 gives the identity.
 Eigen::Quaterniond exp(const Eigen::Vector3d& phi);
 
 /// Returns the shortest rotation vector (length at most pi) of a unit quaternion. The quaternions q and -q give equal

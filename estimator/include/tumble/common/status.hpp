@@ -45,7 +45,7 @@ class InvalidParams : public std::invalid_argument {
   InvalidParams(const std::string& field, double value, const std::string& bound);
 };
 
-/// Throws InvalidParams unless `low <= value <= high`. NaN also throws.
+/// Throws InvalidParams if `value` is NaN or outside of [low, high].
 void require_within(const char* field, double value, double low, double high);
 
 }  // namespace tumble

@@ -20,28 +20,28 @@ struct SweepCalibration {
   double time_offset_s = 0.0;                              ///< IMU clock minus lidar clock
   Eigen::Vector3d gravity_W_m_s2 = Eigen::Vector3d(0.0, 0.0, -9.80665);
 
-  /// Adds a small error vector to the calibration, in the order of SweepCalibration.
+  /// Adds a small error vector to the calibration. SweepCalibration defines the order of the vector.
   void add(const Eigen::Matrix<double, kErrorCount, 1>& error);
   /// Returns the error vector that transforms `other` to this calibration, to first order in the rotation difference.
   Eigen::Matrix<double, kErrorCount, 1> minus(const SweepCalibration& other) const;
 };
 
-/// Returns `out_of_range` if a calibration is more than StatedCalibration::kDistanceMax_sigmas from the stated
-/// calibration.
+/// Returns `out_of_range` if `deviations`, the result of StatedCalibration::deviations(), exceeds
+/// StatedCalibration::kDistanceMax_sigmas.
 Status verdict_on(double deviations);
 
 /// StatedCalibration is the calibration that the caller states, with one standard deviation per axis for each part
 /// (rotation, translation, time offset). A standard deviation of 0 marks an exact part of the calibration.
 struct StatedCalibration {
-  static constexpr double kDistanceMax_sigmas = 5.0;  ///< plausible error in standard deviations
+  static constexpr double kDistanceMax_sigmas = 5.0;  ///< largest plausible distance from the stated calibration
 
   SweepCalibration calibration;
   double mount_sigma_rad = 0.0, mount_sigma_m = 0.0, time_offset_sigma_s = 0.0;
 
   /// Returns the distance between an estimated calibration and the stated calibration in standard deviations. The
-  /// distance is the maximum over rotation, translation and time offset, see mapping.md (R69). The calibration distance
-  /// is infinite if `estimated` changes a value that was stated as exact. The calibration distance excludes gravity,
-  /// because each run estimates gravity.
+  /// distance is the maximum over rotation, translation and time offset, see mapping.md (R69). The distance is infinite
+  /// if `estimated` changes a value that was stated as exact. The distance excludes gravity, because each run estimates
+  /// gravity.
   double deviations(const SweepCalibration& estimated) const;
   /// Returns `out_of_range` if `estimated` is more than `kDistanceMax_sigmas` standard deviations from the stated
   /// calibration. A larger distance means that the stated calibration is wrong.

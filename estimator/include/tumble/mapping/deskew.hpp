@@ -34,7 +34,7 @@ struct PointBounds {
 /// PointCounts contains the numbers of received and usable lidar returns of a sweep.
 struct PointCounts {
   std::size_t received = 0;
-  std::size_t finite = 0;  ///< number of returns with finite coordinates; misses may be NaN
+  std::size_t finite = 0;  ///< number of returns with finite coordinates; a laser pulse without a return may be NaN
   std::size_t used = 0;
   bool has_ring_numbers = false;  ///< false if the device does not report ring numbers
 };
@@ -49,8 +49,7 @@ PointCounts select_points(std::span<const LidarPoint> points, const PointBounds&
 /// objects.
 void apply_calibration(const SweepCalibration& calibration, double later_s, std::span<const SweepPoint> points,
                        std::vector<SweepPoint>& moved);
-/// Recomputes the points in place for another calibration, and adds `later_s` to the times of the points in the IMU's
-/// clock.
+/// Recomputes `points` for another calibration in place, like the function above.
 void apply_calibration(const SweepCalibration& calibration, double later_s, std::span<SweepPoint> points);
 
 /// Computes the lever arm vector u_i = S(t_i) + R(t_i) x_i of SweepTrajectory for each point i. Cost: O(n). The
@@ -64,8 +63,8 @@ void compute_lever_arm_vectors(const SweepTrajectory& trajectory, std::span<cons
 void deskew(const SweepTrajectory& trajectory, std::span<const SweepPoint> points, double target_s,
             std::vector<Eigen::Vector3f>& positions_I_m);
 
-/// SweepSampler keeps the first point in each cube of edge `voxel_m` in the world. The kept points have an even
-/// density, so that the registration needs fewer points.
+/// SweepSampler keeps the first point in each cube of edge `voxel_m` in the world. The registration needs fewer points
+/// if their density is even.
 class SweepSampler {
  public:
   /// Writes the indices of the kept points to `chosen`, in increasing order.

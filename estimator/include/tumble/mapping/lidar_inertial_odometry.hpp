@@ -30,10 +30,10 @@ class StateLayout;
 /// position, attitude and velocity at the start of a sweep together. The refined velocity also improves the deskewing.
 ///
 /// The z axis of the world frame points upwards, along the specific force at rest. The earliest sweep with
-/// `matches_min` points starts the map. If the map starts within half a second, the first IMU sample defines origin and
-/// yaw of the world. If the map starts more than half a second after the first IMU sample, the first sweep defines
-/// origin and yaw, and dead reckoning gives velocity and tilt. Pass IMU samples in time order. Pass each sweep after
-/// the IMU samples that cover the sweep. LidarInertialOdometry starts no threads, uses no files and prints nothing.
+/// `matches_min` points starts the map. If the map starts within half a second after the first IMU sample, that sample
+/// defines origin and yaw of the world. If the map starts later, its first sweep defines origin and yaw, and dead
+/// reckoning gives velocity and tilt. Pass IMU samples in time order. Pass each sweep after the IMU samples that cover
+/// the sweep. LidarInertialOdometry starts no threads, uses no files and prints nothing.
 ///
 /// LidarInertialOdometry estimates the lidar's mounting, its time offset and gravity if their standard deviations are
 /// not 0. All unknowns form one state with one covariance. LidarInertialOdometry is an iterated error-state filter over
@@ -72,14 +72,15 @@ class LidarInertialOdometry {
 
   /// Correction of the attitude at a start in motion, where the mean force is not gravity.
   struct StartTilt {
-    Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  ///< corrects the attitude of the levelled start
+    Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  ///< correction of the levelled attitude
     double sigma_rad = 0.0;                                        ///< standard deviation of the corrected tilt
 
     template <class Self, class Visitor>
     static void members(Self& s, Visitor& visit);
   };
-  /// Returns the tilt of the start according to gravity in the map, for another run over the same data. The result is
-  /// empty after a start at rest, or if the motion does not determine gravity better than the start.
+  /// Returns the tilt at the start, computed from the direction of gravity in the map. A second run over the same data
+  /// can use it. The result is empty after a start at rest, or if the motion does not determine gravity more accurately
+  /// than the start.
   std::optional<StartTilt> start_tilt() const;
   /// Sets the tilt of a start in motion. Call set_start_tilt() before the first sweep.
   void set_start_tilt(const StartTilt& tilt);
@@ -91,8 +92,8 @@ class LidarInertialOdometry {
   /// LidarInertialOdometry compares the local map with the prior map after each registered sweep. After localisation,
   /// poses and covariances are in the frame of the prior map, and SweepReport::in_prior_map is true. If `map.T_MI` is
   /// set, use_map() also calls set_start_pose(). LidarInertialOdometry keeps the whole prior map, also beyond
-  /// map_radius_m. Returns the errors of check_prior_map(), or `time_order` after the first sweep. On error, the state
-  /// is unchanged.
+  /// map_radius_m. Returns `ok`, an error of check_prior_map(), or `time_order` after the first sweep. On error, the
+  /// state is unchanged.
   Status use_map(PriorMap map);
   /// Copies the prior map, if any, and the parameters of the prior map from another object. The localisation restarts
   /// from the pose of set_start_pose(), or else from the pose in the prior map.
@@ -108,8 +109,8 @@ class LidarInertialOdometry {
 
   /// Sets an odometer's velocity at the start of the next sweep, which is the end of the last sweep. The odometer's
   /// velocity is in IMU axes, with one standard deviation for all axes. The odometer's velocity replaces the estimated
-  /// velocity only in the prediction of the next sweep. Returns `non_finite`, or `out_of_range` if the standard
-  /// deviation is not above 0. On error, the state is unchanged.
+  /// velocity only in the prediction of the next sweep. Returns `non_finite` if a number is not finite, or
+  /// `out_of_range` if the standard deviation is not above 0. On error, the state is unchanged.
   Status add_velocity(const Eigen::Vector3d& v_WI_I_m_s, double sigma_m_s);
   /// Sets an odometer's reading for the next sweep. The reading must be between the end of the last sweep and the end
   /// of the next sweep, with a margin of 20 ms. LidarInertialOdometry fuses the reading with the inertial prediction,
@@ -134,9 +135,9 @@ class LidarInertialOdometry {
 
   /// Predicts pose and velocity with covariance at the last of `samples`, by inertial integration from the end of the
   /// last sweep. The state of the odometry is unchanged. If no sample is later than the last sweep, predict() returns
-  /// the pose at the end of the last sweep. Call predict() to get a pose before the next sweep is complete. Returns the
-  /// errors of add_imu(), or `empty` before the first sweep. Cost: O(samples since the last sweep). The optional output
-  /// `velocity_covariance_I_m2_s2` is defined as in SweepReport.
+  /// the pose at the end of the last sweep. Call predict() to get a pose before the next sweep is complete. Returns
+  /// `ok`, an error of add_imu(), or `empty` before the first sweep. Cost: O(samples since the last sweep). The
+  /// optional output `velocity_covariance_I_m2_s2` is defined as in SweepReport.
   Status predict(std::span<const ImuSample> samples, std::span<const RateState> rates, PoseState& pose,
                  Eigen::Matrix3d* velocity_covariance_I_m2_s2 = nullptr) const;
 

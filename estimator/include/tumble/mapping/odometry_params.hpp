@@ -69,9 +69,9 @@ struct OdometryParams {
   double time_offset_sigma_s = 0.0;
   double range_min_m = 0.3;        ///< minimum range of a usable return
   double range_max_m = 100.0;      ///< maximum range of a usable return
-  Eigen::AlignedBox3d own_body_L;  ///< returns inside this box hit the robot; empty (default): keeps all returns
+  Eigen::AlignedBox3d own_body_L;  ///< returns inside this box hit the robot and are removed; empty: none
   double sweep_voxel_m = 0.25;     ///< edge of the voxels; the registration uses one point per voxel
-  /// Threads for the registration. The results do not depend on the number of threads.
+  /// Runs the loops of the registration on the caller's threads. The results do not depend on the number of threads.
   ParallelFor parallel_for;
 
   using Expert = OdometryExpertParams;

@@ -8,7 +8,7 @@
 
 namespace tumble {
 
-/// PlaneVerdict states whether neighbouring map points form a plane, or else why not.
+/// PlaneVerdict is `plane` if neighbouring map points form a plane, and otherwise the reason why they do not.
 enum class PlaneVerdict { plane, too_few, collinear, one_scan_line, too_thick };
 
 /// PlaneFit is a plane through neighbouring map points, with the equation normal . x = normal . centre.
@@ -25,13 +25,12 @@ struct PlaneFit {
 /// PlaneBounds limits the eigenvalues l0 <= l1 <= l2 of the covariance of neighbouring map points.
 struct PlaneBounds {
   int neighbours_min = 5;
-  /// Neighbours are collinear if l1 is below the fraction collinear_ratio_max of l2. Collinear neighbours would give a
-  /// wrong normal, for example on one ring of a lidar at rest.
+  /// Neighbours are collinear if l1 < collinear_ratio_max * l2. Collinear neighbours would give a wrong normal, for
+  /// example on one ring of a lidar at rest.
   double collinear_ratio_max = 0.03;
-  double rough_share = 0.1;  ///< neighbours are not a plane if l0 exceeds this fraction of l1
-  /// Minimum number of neighbours outside the most frequent scan line. With fewer neighbours outside, the fitted plane
-  /// could be the plane of a lidar ring instead of the surface. For example, a lidar ring around a pillar or through a
-  /// room's corner is in its own plane.
+  double rough_share = 0.1;  ///< neighbours are not a plane if l0 > rough_share * l1
+  /// Minimum number of neighbours that are not on the most frequent scan line. With fewer such neighbours, the fitted
+  /// plane could be the plane of a lidar ring instead of the surface, for example at a pillar or a room's corner.
   int off_line_neighbours_min = 2;
 
   /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.

@@ -48,7 +48,7 @@ class Registration {
 
   /// Aligns the points of a sweep to a map. The argument `points` must have been computed with the calibration of
   /// `prior`. The function rebuilds `trajectory` from `prior` and `samples` up to `end_ns`. The output `trajectory`
-  /// contains the aligned motion. Returns the errors of SweepTrajectory::build().
+  /// contains the aligned motion. Returns `ok` or an error of SweepTrajectory::build().
   Status align(const Prior& prior, std::span<const MotionSample> samples, TimeNs end_ns,
                std::span<const SweepPoint> points, const VoxelMap& map, SweepTrajectory& trajectory, Result& result);
 

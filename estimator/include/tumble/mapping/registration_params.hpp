@@ -19,7 +19,7 @@ struct RegistrationExpertParams {
   /// Factor below 1 on the weight of each point, because neighbouring lidar returns share the map's errors.
   double correlation_discount = 0.1;
   double cluster_m = 1.0;        ///< edge of a cube whose points have correlated errors
-  double match_ratio_min = 0.1;  ///< minimum number of matches as a fraction of the points
+  double match_ratio_min = 0.1;  ///< minimum ratio of matches to points
   /// Minimum number of matches for accepting a registration that agrees with the prior but violates `matches_min` or
   /// `match_ratio_min`. The large default of agreeing_matches_needed disables the exception for agreeing registrations.
   std::size_t agreeing_matches_needed = 1'000'000'000;
@@ -42,7 +42,8 @@ struct RegistrationExpertParams {
     visit(p.match_ratio_min,
           {"match_ratio_min", "1", 0.0, 1.0, "minimum share of matched points in an accepted result"});
     visit(p.agreeing_matches_needed, {"agreeing_matches_needed", "1", 1, 1e9,
-                                      "minimum number of matches for a result that agrees with the prior"});
+                                      "minimum number of matches with which a result that agrees with the prior is "
+                                      "accepted"});
     visit(p.inlier_ratio_min, {"inlier_ratio_min", "1", 0.0, 1.0,
                                "minimum share of matches within three standard deviations in an accepted result"});
     visit.group("plane_", p.plane);
@@ -55,7 +56,7 @@ struct RegistrationParams {
   int neighbours = 8;             ///< number of nearest neighbours for a plane fit
   double match_distance_m = 1.0;  ///< maximum distance of matched map points
   int iterations_max = 30;
-  double range_sigma_m = 0.02;  ///< minimum range noise; at far range, range_sigma_ratio times the range
+  double range_sigma_m = 0.02;  ///< standard deviation of the range: max(range_sigma_m, range_sigma_ratio * range)
   double range_sigma_ratio = 0.0015;
   double skew_sigma_m_s = 0.25;   ///< growth rate of a point's standard deviation during the sweep; 0: none
   std::size_t matches_min = 100;  ///< minimum number of matches

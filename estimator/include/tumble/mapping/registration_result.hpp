@@ -10,7 +10,7 @@
 
 namespace tumble {
 
-/// RegistrationVerdict states whether a registration converged, or else why the result is the prior.
+/// RegistrationVerdict is `converged`, or the reason why the result is the prior.
 enum class RegistrationVerdict : std::uint8_t {
   converged,
   too_few,   ///< too few matches; the result is the prior
@@ -36,9 +36,9 @@ struct RegistrationResult {
   double correction_m = 0.0;  ///< position correction at the start, even if rejected as too large
   double correction_rad = 0.0;
   int iterations = 0;
-  /// Ascending eigenvalues of the normal matrix of the pose per unit of weight, without the prior. The attitude is
-  /// scaled to metres by the root-mean-square lever arm. The columns of `directions` are the eigenvectors of the normal
-  /// matrix. The translation part of the normal matrix has trace 1.
+  /// Ascending eigenvalues of the normal matrix of the pose, without the prior. The attitude is scaled to metres by the
+  /// root-mean-square lever arm. The matrix is scaled so that its translation part has trace 1. The columns of
+  /// `directions` are its eigenvectors.
   Eigen::Matrix<double, 6, 1> eigenvalues = Eigen::Matrix<double, 6, 1>::Zero();
   Eigen::Matrix<double, 6, 6> directions = Eigen::Matrix<double, 6, 6>::Identity();
   /// Standard deviation of the pose in its least constrained direction, from the surfaces alone. The standard deviation

@@ -34,12 +34,12 @@ struct SweepReport {
   std::vector<PoseState> smoothed;
   double inlier_ratio = 0.0;      ///< fraction of the registered points that are inliers
   double eigenvalue_ratio = 0.0;  ///< smallest divided by largest eigenvalue of the scaled normal matrix
-  /// Standard deviation of the pose in the least constrained direction, from the surfaces of the current sweep alone. A
-  /// standard deviation of 0 means that the sweep was not aligned.
+  /// Standard deviation of the pose in the least constrained direction, from the surfaces of the current sweep alone.
+  /// The value 0 means that the sweep was not aligned.
   double least_constrained_sigma_m = 0.0;
   /// Normalised innovation: correction of pose and velocity in standard deviations of the inertial prediction, divided
-  /// by sqrt(9). The mean innovation is at most 1 if the covariances of prediction and surfaces are right. An
-  /// innovation of 0 means that the sweep was not aligned.
+  /// by sqrt(9). The mean innovation is at most 1 if the covariances of prediction and surfaces are correct. The value
+  /// 0 means that the sweep was not aligned.
   double innovation = 0.0;
   /// Standard deviation of the position relative to the map around the robot. The covariance of `pose` also includes
   /// the map's drift and tilt, which grow with the travelled distance.

@@ -103,8 +103,8 @@ class SweepTrajectory {
   /// call, and speeds up calls in time order. Any value of `hint` in [0, intervals()) is valid.
   static constexpr double kExtrapolation_s = 0.02;
   PreintegratedMotion at(double t_s, std::size_t& hint) const;
-  /// Computes the lever arm vector S(t) + R(t) x of each point x. The function lever_arm_vectors() returns exactly the
-  /// same values as at(), and is faster for several points.
+  /// Computes the lever arm vector S(t) + R(t) x of each point x. The function is faster than at() for several points,
+  /// and gives bit-identical results.
   void lever_arm_vectors(std::span<const SweepPoint> points, std::span<Eigen::Vector3f> levers_W_m) const;
   DeficitDerivative deficit_derivative(double t_s, std::size_t& hint) const;
   std::size_t intervals() const { return intervals_.size(); }
@@ -125,8 +125,8 @@ class SweepTrajectory {
   /// noise.
   MotionState state(double t_s) const;
 
-  /// Transition contains the first-order derivatives of the state at time t_s (position, attitude, velocity).
-  /// Transition differentiates with respect to the start state, the saturation deficit, and gravity.
+  /// Transition contains the first-order derivatives of the state at time t_s (position, attitude, velocity) with
+  /// respect to the start state, the saturation deficit and gravity.
   struct Transition {
     Eigen::Matrix<double, 9, 9> jacobian_start;
     Eigen::Matrix<double, 9, kDeficitSize> jacobian_deficit_s;

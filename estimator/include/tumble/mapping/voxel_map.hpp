@@ -53,18 +53,17 @@ class VoxelMap {
 
   explicit VoxelMap(const Params& params);
 
-  /// Adds a point unless the cube at its position already has a point, and returns whether the point was added. The
-  /// argument `sigma_m` is the standard deviation of the point's position. The arguments `sweep` and `line` are labels,
-  /// which the functions sweep() and line() return. VoxelMap rejects points that are not finite or beyond 2^20 cells.
+  /// Adds a point if the cube at its position is empty. Returns true if the point was added. The argument `sigma_m` is
+  /// the standard deviation of the point's position. The arguments `sweep` and `line` are labels, which the functions
+  /// sweep() and line() return. VoxelMap rejects points that are not finite or beyond 2^20 cells.
   bool insert(const Eigen::Vector3f& position_W_m, float sigma_m, std::uint32_t sweep,
               std::uint32_t line = kUnknownScanLine) {
     return add(position_W_m, sigma_m, sweep, line) != kNoPoint;
   }
 
-  /// Adds a point unless the cube at its position already has a point. Returns the index of the new point, or kNoPoint
-  /// if the point was rejected.
+  /// Adds a point like insert(). Returns the index of the new point, or kNoPoint if the point was rejected.
   std::uint32_t add(const Eigen::Vector3f& position_W_m, float sigma_m, std::uint32_t sweep, std::uint32_t line);
-  /// Returns whether add() would reject a point, because its cube already has a point or the position is outside the
+  /// Returns true if add() would reject a point, because its cube already has a point or the position is outside the
   /// map's range. Call is_occupied() first if the properties of a point are expensive to compute.
   bool is_occupied(const Eigen::Vector3f& position_W_m) const;
 
@@ -112,7 +111,7 @@ class VoxelMap {
   /// constant.
   std::uint32_t line(std::uint32_t index) const { return line_[index]; }
   /// Returns the number of sweeps that saw through the point minus the number of sweeps that observed the point,
-  /// limited to 0 and 255.
+  /// limited to [0, 255].
   std::uint8_t seen_through(std::uint32_t index) const { return seen_through_[index]; }
 
  private:

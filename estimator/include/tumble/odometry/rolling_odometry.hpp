@@ -105,8 +105,8 @@ class RollingOdometry {
     PoseState pose;  ///< pose of the sphere's centre; live poses have no attitude covariance
     /// Angular velocity of the sphere, in sphere axes.
     Eigen::Vector3d angular_velocity_rad_s = Eigen::Vector3d::Zero();
-    /// Covariance of the velocity of the sphere's centre, in sphere axes. With a lag, the covariance omits the variance
-    /// of the contact modes.
+    /// Covariance of the velocity of the sphere's centre, in sphere axes. With a lag, the covariance omits the
+    /// uncertainty of the contact mode.
     Eigen::Matrix3d velocity_covariance_B_m2_s2 = Eigen::Matrix3d::Zero();
     RollingMode mode = RollingMode::grip;
     bool at_rest = false;
@@ -123,10 +123,10 @@ class RollingOdometry {
   ~RollingOdometry() = default;
 
   /// Processes simultaneous readings of all IMUs, with the time stamp of the first IMU. SampleClock corrects time
-  /// stamps with jitter. Pass NaN for an IMU without a reading. OutlierFilter rejects single wild readings of each IMU,
-  /// and may delay the samples of all IMUs by one; newest() is then one sample older. On error, the state is unchanged.
-  /// The errors are `too_few` (wrong number of IMUs, or no reading), `time_order`, `degenerate` (no gravity in the
-  /// first sample), `gap` and `out_of_range`. The error `out_of_range` means that the run has finished, the time stamp
+  /// stamps with jitter. Pass NaN for an IMU without a reading. OutlierFilter rejects single outliers of each IMU, and
+  /// may delay the samples of all IMUs by one. newest() is then one sample older. On error, the state is unchanged. The
+  /// errors are `too_few` (wrong number of IMUs, or no reading), `time_order`, `degenerate` (no gravity in the first
+  /// sample), `gap` and `out_of_range`. The error `out_of_range` means that the run has finished, the time stamp
   /// exceeds kStampMax_ns, or the only IMU with readings has a frozen axis.
   ///
   /// A single wrong time stamp causes the loss of one sample. After a gap of more than a second, the second sample
@@ -134,13 +134,13 @@ class RollingOdometry {
   /// run restarts. A restart finishes the poses so far and continues at the newest pose, like reset(pose). Poses after
   /// a restart have the flag `uncertain`. The covariance of these poses includes the unknown motion during the gap.
   Status add_imus(std::span<const ImuSample> samples);
-  /// Processes a sample of a sphere with one IMU. Returns the errors of add_imus().
+  /// Processes a sample of a sphere with one IMU. Returns `ok` or an error of add_imus().
   Status add_imu(const ImuSample& sample) { return add_imus({&sample, 1}); }
 
   /// Processes a sample of one IMU whose samples are not simultaneous with those of the other IMUs. RollingOdometry
   /// resamples the IMUs to common times, at most 0.05 s late. RollingOdometry treats an IMU without readings as absent.
-  /// Returns the errors of add_imus(), or `out_of_range` for an invalid IMU number. After a clock steps back, add_imu()
-  /// rejects samples until reset().
+  /// Returns `ok`, an error of add_imus(), or `out_of_range` for an invalid IMU number. After a clock steps back,
+  /// add_imu() rejects samples until reset().
   Status add_imu(std::size_t unit, const ImuSample& sample);
 
   /// Returns the pose at the newest sample, from all data so far. The result is empty before the first sample.
@@ -151,7 +151,8 @@ class RollingOdometry {
   std::optional<Pose> take();
 
   /// Ends the run and smooths the remaining poses. After finish(), add_imus() rejects samples until reset(). Returns
-  /// the first error of the remaining samples, or with kWholeRecording the errors of merge_recordings().
+  /// `ok`, or the first error of the remaining samples. With kWholeRecording, returns `ok` or an error of
+  /// merge_recordings().
   Status finish();
 
   /// Starts a new run at the origin and at rest. After reset(), take() still returns the remaining poses of the old
@@ -179,7 +180,7 @@ class RollingOdometry {
   /// Returns the number of bridged gaps between samples, and the longest gap [s].
   std::int64_t bridged_gaps() const { return state_->live.gaps; }
   double longest_gap_s() const { return state_->live.gap_longest_s; }
-  /// Returns whether the sphere was already moving at the first samples.
+  /// Returns true if the sphere was already moving at the first samples.
   bool started_in_motion() const { return state_->live.started_in_motion; }
 
   /// Returns the state of ImuMerge, which contains the frozen, disagreeing and delayed IMUs.
@@ -189,7 +190,7 @@ class RollingOdometry {
   std::size_t rejected_readings() const;
   /// Returns the number of restarts after a gap or after a clock that stepped back.
   std::size_t restart_count() const { return restart_count_; }
-  /// Returns the jitter of the time stamps [s], while SampleClock corrects the time stamps.
+  /// Returns the jitter of the time stamps [s] while SampleClock corrects them, and otherwise an empty value.
   std::optional<double> estimated_jitter_s() const;
 
   /// The functions save(), load() and saved_params() work like the functions of TumblingOdometry. A saved state has at

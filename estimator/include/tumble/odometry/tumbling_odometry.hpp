@@ -60,7 +60,7 @@ struct RecordingEstimate;
 /// within ten metres. A call needs at most 64 KiB of stack.
 ///
 /// TumblingOdometry starts no threads, uses no files and prints nothing. A copy of a TumblingOdometry contains the
-/// complete state, so a run can be split. The limitations of RegimeStream and LidarInertialOdometry apply to
+/// complete state, so the copy can continue the run. The limitations of RegimeStream and LidarInertialOdometry apply to
 /// TumblingOdometry.
 class TumblingOdometry {
  public:
@@ -73,7 +73,7 @@ class TumblingOdometry {
     Status status;  ///< status of add_sweep(); `report.trajectory` is empty without a pose
     LidarInertialOdometry::SweepReport report;
     /// Transform from the world to the frame of the position readings, estimated from readings up to the sweep's end.
-    /// Empty if unknown.
+    /// The value is empty if the transform is unknown.
     std::optional<PositionFrame> position_frame;
   };
 
@@ -85,14 +85,14 @@ class TumblingOdometry {
   /// first sweep. Until the robot is localised, poses are in a local frame, and health() reports the missing
   /// localisation. After localisation, `report.in_prior_map` is true, and poses are in the frame of the prior map. The
   /// function reset() keeps the prior map and localises the robot again. The argument of reset(pose) is a pose in the
-  /// prior map. Returns the errors of LidarInertialOdometry::use_map().
+  /// prior map. Returns `ok` or an error of LidarInertialOdometry::use_map().
   Status use_map(PriorMap map);
   /// Processes an IMU sample, and registers the sweeps whose rates become available. Time stamps must increase. Returns
   /// `non_finite`, `out_of_range`, `time_order` or `gap` if the sample is rejected. A single wrong time stamp causes
   /// the loss of one sample. After a gap of more than a second, the second sample restarts the rate estimation with the
   /// current calibration, and inertial integration bridges the gap. If the clock steps back, add_imu() rejects samples
   /// with `time_order` for 0.2 s. The run then restarts at the newest pose, like reset(pose). OutlierFilter rejects
-  /// single wild readings and may delay a sample by one; newest() is then one sample older.
+  /// single outliers and may delay a sample by one. newest() is then one sample older.
   Status add_imu(const ImuSample& sample);
   /// Processes a sweep of points fired in [start_ns, end_ns], at any time after the sweep's last point. The function
   /// copies the points. The function drops points from before the end of the last sweep, because time stamps of sweeps
@@ -104,9 +104,9 @@ class TumblingOdometry {
   /// Processes a sweep of one of several lidars: 0 is the first lidar, k is `further_lidars[k - 1]`. TumblingOdometry
   /// registers the points of a further lidar together with the simultaneous sweep of the first lidar. The points of a
   /// further lidar must therefore arrive before the registration of the sweep, which is `lag_s` after the end of the
-  /// sweep. A lag of two sweeps suffices. The lidars need no synchronisation. Limitation: the ranges and the own-body
-  /// box of the first lidar also apply to the points of further lidars, in axes of the first lidar. Returns the errors
-  /// of add_sweep() for the first lidar, and `out_of_range` for an unknown lidar.
+  /// sweep. A lag of two sweep periods is long enough. The lidars need no synchronisation. Limitation: the ranges and
+  /// the own-body box of the first lidar also apply to the points of further lidars, in axes of the first lidar.
+  /// Returns `ok`, an error of add_sweep() for the first lidar, or `out_of_range` for an unknown lidar.
   Status add_sweep(std::size_t lidar, TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points);
   /// Processes an odometer reading (detail/odometer_reading.hpp). An odometer reading must arrive before the
   /// registration of its sweep, which is `lag_s` after the end of the sweep. If a sweep has several odometer readings,
@@ -119,22 +119,22 @@ class TumblingOdometry {
   /// Processes a position reading, for example from GPS or a beacon. Position readings leave poses and map unchanged.
   /// Position readings determine Sweep::position_frame, in which poses do not drift (PositionAlignment). Position
   /// readings may arrive in any order, but before the registration of their sweep. Position readings also work with
-  /// kWholeRecording. On error, the state is unchanged. Returns the errors of add_velocity(); `out_of_range` also means
-  /// that the covariance is not symmetric and positive definite.
+  /// kWholeRecording. On error, the state is unchanged. Returns `ok` or an error of add_velocity(); `out_of_range` also
+  /// means that the covariance is not symmetric and positive definite.
   Status add_position(const PositionReading& position);
   /// Returns the next registered sweep, in time order. The result is empty if no registered sweep waits.
   std::optional<Sweep> take();
-  /// Registers all sweeps that the IMU samples cover, at the end of a run or during a halt. After finish(), take()
-  /// returns the registered sweeps. After finish(), mapper().window_trajectories() returns the final poses of the
-  /// sweeps in the window. If more samples are added after finish(), the rate estimation restarts with the current
-  /// calibration.
+  /// Registers all sweeps that the IMU samples cover. Call finish() at the end of a run or during a halt. After
+  /// finish(), take() returns the registered sweeps. After finish(), mapper().window_trajectories() returns the final
+  /// poses of the sweeps in the window. If more samples are added after finish(), the rate estimation restarts with the
+  /// current calibration.
   ///
   /// With kWholeRecording, finish() processes the whole recording, and later samples and sweeps are rejected until
   /// reset(). The function take() then returns all sweeps with their final poses in `report.pose` and
-  /// `report.trajectory`. Returns the errors of RateSmoother::estimate(), for example `too_few`, or the error of a
+  /// `report.trajectory`. Returns `ok`, an error of RateSmoother::estimate() such as `too_few`, or the error of a
   /// sample in the mapper. Without kWholeRecording, finish() returns `ok`. The function finish() calls `on_sweep`
-  /// before each sweep with the numbers of processed sweeps and of all sweeps, for a progress display. Each pass over
-  /// the recording starts again at 0 processed sweeps.
+  /// before each sweep, with the number of processed sweeps and the number of all sweeps, for a progress display. Each
+  /// pass over the recording starts again at 0 processed sweeps.
   Status finish(const SweepProgress& on_sweep = {});
   /// Starts a new run with a new map, at the origin and at rest. After reset(), take() still returns the remaining
   /// sweeps of the old run, and counters keep their values.
@@ -172,9 +172,9 @@ class TumblingOdometry {
   const SaturationLevels& rails() const;
   /// Returns the number of restarts after a gap or after a clock that stepped back.
   std::size_t restart_count() const { return restart_count_; }
-  /// Returns the number of samples that OutlierFilter rejected because of wild readings or time stamps.
+  /// Returns the number of samples that OutlierFilter rejected because of a wrong reading or time stamp.
   std::size_t rejected_readings() const { return outlier_filter_state_.rejected; }
-  /// Returns whether SecondPass has replaced the map and the pose.
+  /// Returns true if SecondPass has replaced the map and the pose.
   bool second_pass_applied() const { return second_pass_.applied(); }
   /// The following counters are 0 in normal operation. The function rejected_samples() counts IMU samples that the
   /// mapper rejected. The function dropped_sweeps() counts sweeps that take() did not return in time. The function
@@ -186,7 +186,8 @@ class TumblingOdometry {
   std::size_t unused_odometer_readings() const { return readings_.spanning_two_sweeps(); }
   /// Returns the number of unused points of further lidars: the points arrived late, or the first lidar had no sweep.
   std::size_t unused_points() const { return further_lidars_.unused_points(); }
-  /// Returns the jitter of the IMU's time stamps about a regular clock [s], while SampleClock corrects the time stamps.
+  /// Returns the jitter of the IMU's time stamps about a regular clock [s] while SampleClock corrects them, and
+  /// otherwise an empty value.
   std::optional<double> estimated_jitter_s() const;
   /// Returns the mapper, which provides the map and the calibration of the lidar.
   const LidarInertialOdometry& mapper() const;

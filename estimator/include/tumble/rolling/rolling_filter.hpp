@@ -71,7 +71,7 @@ class RollingFilter {
     double slip_probability = 0.0;  ///< probability that the contact point moves, at the last node
     double bump_probability = 0.0;  ///< part of slip_probability for modes in which the sphere hops
     bool at_rest = false;
-    bool spins_in_place = false;  ///< slow rotation about the contact point; no gyro bias update
+    bool spins_in_place = false;  ///< the sphere rotates slowly about the contact point; no update of the gyro bias
     bool uncertain = false;  ///< an event increased the position's standard deviation by more than event_sigma_growth_m
     bool started_in_motion = false;
     std::int64_t gaps = 0;  ///< number of bridged gaps

@@ -18,7 +18,7 @@ enum class RollingMode : std::uint8_t {
 };
 inline constexpr int kRollingModes = 5;
 
-/// Returns whether the contact point may move along the floor in the contact mode `mode`.
+/// Returns true if the contact point may move along the floor in the contact mode `mode`.
 inline bool may_slip(RollingMode mode) {
   return mode == RollingMode::slip || mode == RollingMode::bump;
 }
@@ -70,11 +70,12 @@ struct RollingIntegrals {
   double squared_rate_integral_rad2_s = 0.0;
   double rate_clipped_s = 0.0, force_clipped_s = 0.0;  ///< duration of saturated readings
   double recovered_rate_s = 0.0;                       ///< duration of recovered rates
-  double impact_m_s = 0.0;                             ///< integral of | |f| - g | above its usual level
+  double impact_m_s = 0.0;                             ///< integral of the part of | |f| - g | above its usual level
   double unexplained_impact_m_s = 0.0;                 ///< part of impact_m_s that rotation does not explain
   Eigen::Vector3d subsample_saturation_W_m_s =
       Eigen::Vector3d::Zero();  ///< standard deviation of force lost to saturation shorter than a sample
-  // Duration of a gap, and the variances that the gap adds to the angle, to rate times time, and to the velocity.
+  // Duration of a gap, and the variances that the gap adds to angle, rate and velocity. The rate variance is multiplied
+  // by the duration.
   double gap_s = 0.0, gap_angle_variance_rad2 = 0.0, gap_rate_variance_rad2_s = 0.0, gap_speed_variance_m2_s2 = 0.0;
   double node_s = 0.0;
   bool operator==(const RollingIntegrals&) const = default;

@@ -19,8 +19,8 @@ struct RollingExpertParams {
   /// readings without averaging.
   double reading_s = 4e-3;
   /// Parameters of the rest detector, which processes the mean reading of each node. The rate limit of 0.0115 rad/s per
-  /// axis is 0.02 rad/s in total, at which the sphere rolls at 3 mm/s. A rate limit of 0.02 rad/s per axis would
-  /// increase the drift of a sphere that comes to rest by half.
+  /// axis is 0.02 rad/s in total, at which the sphere rolls at 3 mm/s. With a limit of 0.02 rad/s per axis, the drift
+  /// of a sphere that comes to rest would be 1.5 times as large.
   RestDetector::Params rest = {
       .rate_max_rad_s = 0.0115, .rate_spread_rad_s = 0.016, .force_spread_m_s2 = 0.15, .rest_s = 0.4, .memory_s = 0.1};
   RollingPriorParams prior = {};

@@ -23,8 +23,8 @@ namespace tumble {
 /// Bryson-Fraser smoother needs no matrix inverse, only the gains of the Kalman filter. RollingSmoother interpolates
 /// the errors of a sample from the errors of its two neighbouring nodes.
 ///
-/// With a fixed lag, the reported position is constant while the sphere is at rest. With a fixed lag, RollingSmoother
-/// corrects the position for errors of the path before a rest when motion resumes. If the whole run is smoothed,
+/// With a fixed lag, the reported position is constant while the sphere is at rest. When motion resumes,
+/// RollingSmoother corrects the position for errors of the path before the rest. If the whole run is smoothed,
 /// RollingSmoother corrects the path before a rest directly.
 ///
 /// RollingSmoother treats the contact modes as certain, except for the spread of positions that RollingFilter prunes at
@@ -35,7 +35,7 @@ class RollingSmoother {
 
   struct Params {
     RollingParams filter = {};
-    /// Process noise of the smoother, as a fraction of the process noise of RollingFilter. The reported covariance uses
+    /// Ratio of the process noise of the smoother to the process noise of RollingFilter. The reported covariance uses
     /// the full process noise of RollingFilter.
     double final_pass_noise_ratio = 0.65;
     double lag_s = kWholeRun;    ///< delay of an estimate behind the newest sample
@@ -79,7 +79,7 @@ class RollingSmoother {
     bool spins_in_place = false;
     bool operator==(const NodeModes&) const = default;
   };
-  /// FinalPassState is the state of the smoother at the node up to which estimates are reported.
+  /// FinalPassState is the state of the smoother at the committed node, up to which estimates are reported.
   struct FinalPassState {
     RollingNominal nominal;
     RollingFilter::Covariance P = RollingFilter::Covariance::Zero();
@@ -116,13 +116,12 @@ class RollingSmoother {
   /// unchanged. The first call of step() allocates the memory for samples within the lag. Later calls of step()
   /// allocate memory only for `out` and for the processing of a block. The memory grows with the duration (64 bytes per
   /// sample, 152 per node) if the sample rate exceeds rate_max_hz, if the lag contains over a million samples, or with
-  /// kWholeRun. The call of step() for the last sample of a block does the computations of the block. The computations
-  /// of a block need 14 KiB of memory per node of lag and block. If a block has many nodes, the computations need 4 MiB
-  /// plus 0.3 KiB per node.
+  /// kWholeRun. The call of step() for the last sample of a block smooths the block. Smoothing temporarily needs 14 KiB
+  /// of memory per node of lag and block, or 4 MiB plus 0.3 KiB per node if there are many nodes.
   Status step(const ImuSample& sample, State& state, std::vector<RollingEstimate>& out) const;
 
-  /// Ends the run, and passes the remaining estimates to `take`, in time order, smoothed with all data. For a whole run
-  /// of N nodes, finish() temporarily needs 4 MiB + N * 0.3 KiB of memory, in addition to the state.
+  /// Ends the run. The function smooths the remaining estimates with all data, and passes them to `take` in time order.
+  /// For a whole run of N nodes, finish() temporarily needs 4 MiB + N * 0.3 KiB of memory, in addition to the state.
   using EstimateCallback = std::function<void(const RollingEstimate&)>;
   void finish(State& state, const EstimateCallback& take) const;
   void finish(State& state, std::vector<RollingEstimate>& out) const;

@@ -31,15 +31,15 @@ inline constexpr int kErrorCount = 29;  ///< number of sensor errors, which all 
 using ErrorMatrix = Eigen::Matrix<double, kBlockSize, kErrorCount>;
 using BorderErrors = Eigen::Matrix<double, kBorderSize, kErrorCount>;
 
-/// Eliminates a block from the system, see ArrowSystem::eliminate().
+/// The functions eliminate() to marginal() are the functions of ArrowSystem with the same name.
 bool eliminate(Block& block, Block* next, Corner& corner);
 bool solve_corner(const Corner& corner, BorderVector& step, BorderMatrix& covariance);
 StateVector back_substitute(const Block& block, const StateVector* next_step, const BorderVector& border_step);
 Conditional back_conditional(const Block& block, const Conditional* next);
 Marginal marginal(const Conditional& conditional, const BorderMatrix& border_covariance);
 
-/// Eliminates the sensor-error columns of an already eliminated `block` into the border and into the next block (null
-/// for the last block).
+/// Eliminates the sensor-error columns `errors` of `block`, after eliminate(). The function adds the result to `border`
+/// and to the columns `next` of the next block (null for the last block).
 void eliminate_errors(const Block& block, ErrorMatrix& errors, ErrorMatrix* next, BorderErrors& border);
 
 /// Returns the derivative of an eliminated block with respect to each sensor error. Call eliminate_errors() first. The

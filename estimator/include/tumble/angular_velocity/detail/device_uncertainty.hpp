@@ -7,9 +7,9 @@
 
 namespace tumble {
 
-/// Computes the uncertainty of a device's sensor errors from the measurements of a run so far. The prior is a mixture
-/// of two cases: the device matches its data sheet, or is uncalibrated (SensorErrorPriors). DeviceUncertainty needs
-/// less computation than fit_sensor_errors(). See rate_stream.md (R102), (R103).
+/// Computes the uncertainty of a device's sensor errors from the readings of the run so far. The prior is a mixture of
+/// two cases: the device matches its data sheet, or is uncalibrated (SensorErrorPriors). DeviceUncertainty needs less
+/// computation than fit_sensor_errors(). See rate_stream.md (R102), (R103).
 class DeviceUncertainty {
  public:
   /// Weight of the samples in estimates of the sensor errors. The weight is below 1 because the errors of the flight
@@ -27,12 +27,12 @@ class DeviceUncertainty {
     SensorErrors::Matrix system, corrected_covariance;
   };
 
-  /// Constructs from the prior. `uncalibrated` is the prior probability of an uncalibrated device.
+  /// The argument `uncalibrated` is the prior probability of an uncalibrated device.
   DeviceUncertainty(const SensorErrorPriors& sizes, double uncalibrated);
 
-  /// Computes `posterior` from the measurement information. Cost: O(1), two systems of 29 unknowns, no allocation. If
-  /// the information is not finite, `posterior` is the prior. The argument `is_uncalibrated` states that the device is
-  /// known to deviate from its data sheet.
+  /// Computes `posterior` from `evidence`, the information of the readings about the sensor errors. Cost: O(1), two
+  /// systems of 29 unknowns, no allocation. If the information is not finite, `posterior` is the prior. The argument
+  /// `is_uncalibrated` states that the device is known to deviate from its data sheet.
   void update(const SensorErrorEvidence& evidence, Work& work, Posterior& posterior,
               bool is_uncalibrated = false) const;
 
@@ -41,8 +41,9 @@ class DeviceUncertainty {
   /// `sigma_s` is its standard deviation.
   double data_sheet_odds(double delay_s, double sigma_s) const;
 
-  /// Estimates from `evidence` the remaining delay of the accelerometer, for a device with any delay within `reach_s`.
-  /// See rate_stream.md (R107). Cost: O(1), no allocation. Returns 0 if the information is indefinite.
+  /// Estimates the remaining delay of the accelerometer from `evidence`. The delay has a zero-mean prior with the
+  /// standard deviation `reach_s`, and the result is limited to +-`reach_s`. See rate_stream.md (R107). Cost: O(1), no
+  /// allocation. Returns 0 if the information is indefinite.
   double delay_correction_s(const SensorErrorEvidence& evidence, double reach_s) const;
 
   /// Resets the posterior to the prior.

@@ -18,9 +18,10 @@ namespace tumble {
 ///
 /// In free flight, the force at the lever arm t from the centre of mass is a x t + w x (w x t), with the rate w and the
 /// angular acceleration a. FlightSignCheck compares the readings with the force of free flight, for the true sensor and
-/// for each alternative in `kAlternatives`. If an alternative agrees within `share` for `run_s`, the flight time of the
-/// alternative increases. On the ground, readings do not agree with free flight for `run_s`. If one axis of the gyro is
-/// saturated, the force along the lever arm determines the rate of the saturated axis. The force along the lever arm is
+/// for each alternative in `kAlternatives`. If the readings agree with an alternative within `share` for at least
+/// `run_s`, the flight time of the alternative increases. On the ground, readings agree with free flight only for a
+/// shorter time. If one axis of the gyro is saturated, the force along the lever arm determines the rate of the
+/// saturated axis. The force along the lever arm is
 /// -|w x t|^2 for any angular acceleration. The remaining two components of the force verify that the body is in
 /// flight.
 ///
@@ -46,13 +47,13 @@ class FlightSignCheck {
     double gyro_range_rad_s = 0.0;          ///< range from the data sheet; 0: unknown
     double reading_s = 0.01;                ///< averaging time of readings
     double force_min_m_s2 = 2.5;            ///< minimum force in free flight due to rotation about the centre of mass
-    double share = 0.25;                    ///< tolerance of the agreement, as a fraction of the force of free flight
+    double share = 0.25;                    ///< tolerance of the agreement, relative to the force of free flight
     double run_s = 0.02;                    ///< minimum duration of agreement
     double alternative_flight_min_s = 0.1;  ///< minimum total flight time of an alternative sensor
     double half_scale_flight_min_s = 0.3;   ///< minimum total flight time of a half-scale gyro
-    /// minimum flight time of an alternative divided by that of the true sensor
+    /// Minimum ratio of the flight times of an alternative and of the true sensor.
     double alternative_ratio_min = 4.0;
-    double thrown_ratio_min = 2.0;  ///< minimum of the same ratio for a body that is not hand-held
+    double thrown_ratio_min = 2.0;  ///< like alternative_ratio_min, for a body that is not hand-held
     double gap_max_s = 0.1;         ///< a longer gap resets the current run
 
     /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
@@ -91,13 +92,13 @@ class FlightSignCheck {
     Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero(), force_m_s2 = Eigen::Vector3d::Zero();
     /// Sign of the rate on each saturated gyro axis; 0 for an unsaturated axis.
     Eigen::Vector3d at_rail = Eigen::Vector3d::Zero();
-    bool known = false;  ///< false if an axis was saturated for a part of the window
+    bool known = false;  ///< false if an axis was saturated during a part of the window
     bool operator==(const Reading&) const = default;
   };
   struct State {
     ImuAverage average;
     std::array<Reading, 2> before{};                        ///< the last two readings, oldest first
-    int readings = 0;                                       ///< consecutive readings, at most two
+    int readings = 0;                                       ///< number of valid entries of `before`
     std::array<double, kAlternatives> run_s{};              ///< current flight duration of each alternative
     std::array<double, kAlternatives> flight_duration_s{};  ///< total flight duration of each alternative
     TimeNs last_flight_end_ns = 0;                          ///< end of the last flight of an alternative

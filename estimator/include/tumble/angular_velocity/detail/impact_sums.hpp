@@ -13,7 +13,7 @@ struct TriadDelay {
 };
 
 /// ImpactSums correlates angular acceleration and force at impacts, for each tested delay between gyro and
-/// accelerometer. The tested delays are up to four samples to either side, in steps of an eighth of a sample. See
+/// accelerometer. The tested delays range from -4 to +4 samples, in steps of an eighth of a sample. See
 /// docs/maths/rate_smoother.md (R45).
 struct ImpactSums {
   static constexpr int kDelayMax_samples = 4, kDelaysPerSample = 8, kDelayMax = kDelayMax_samples * kDelaysPerSample,
@@ -23,12 +23,12 @@ struct ImpactSums {
   /// Number, sum and sum of squares of the angular acceleration x over intervals between adjacent unsaturated gyro
   /// readings.
   double intervals = 0.0, acceleration_sum = 0.0, acceleration_squared = 0.0;
-  /// Sums for each tested delay: sum and sum of squares of the force z, sum of products x z, number of intervals with
-  /// an impact, number of intervals almost without force.
+  /// Sums for each tested delay: sum and sum of squares of the force z, sum of the products x z, number of intervals
+  /// with an impact, and number of intervals almost without force.
   DelayGrid force = DelayGrid::Zero(), force_squared = DelayGrid::Zero(), product = DelayGrid::Zero(),
             impacts = DelayGrid::Zero(), flying = DelayGrid::Zero();
 
-  /// Returns whether the body moves between two gyro readings. ImpactSums ignores intervals without motion.
+  /// Returns true if the body moves between two gyro readings. ImpactSums ignores intervals without motion.
   static bool counts(const Eigen::Vector3d& before_rad_s, const Eigen::Vector3d& after_rad_s);
   /// Adds an interval with its mean angular acceleration [rad/s^2] and its mean force magnitude for each tested delay
   /// [m/s^2]. Cost: O(kDelayCount).

@@ -12,8 +12,8 @@
 #include "tumble/common/imu.hpp"
 
 /// The functions in interpolated_rates.hpp interpolate the readings of a gyro that updates more slowly than the log, so
-/// that the log repeats readings. The interpolation is cubic between the readings around a sample, each at its true
-/// time. See docs/maths/rate_stream.md (R96).
+/// that the log repeats readings. The interpolation is cubic between the readings around a sample, and uses the time at
+/// which the gyro took each reading. See docs/maths/rate_stream.md (R96).
 namespace tumble {
 
 /// InterpolatedRate is a rate between two readings of the gyro, including the gyro's bias.
@@ -29,8 +29,8 @@ std::optional<InterpolatedRate> rate_between_readings(std::span<const RateStream
                                                       double period_s);
 
 /// Returns the interpolated rates of a recording. Cost: O(N), plus find_repeated(). The result is empty if no reading
-/// repeats. The argument `hidden` contains one bit mask of unused axes per sample. The function computes no rate next
-/// to hidden axes or at the ends of the recording.
+/// repeats. The argument `hidden` contains one bit mask of unused axes per sample. The result has no rate next to
+/// samples with unused axes, and at the ends of the recording.
 std::vector<std::optional<InterpolatedRate>> rates_between_readings(std::span<const ImuSample> samples,
                                                                     std::span<const std::uint8_t> hidden);
 struct RepeatedReadings;

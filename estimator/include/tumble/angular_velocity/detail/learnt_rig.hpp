@@ -52,7 +52,8 @@ void start_from(const CalibratedRig& rig, double trust, RateSmoother::Params& pa
 
 /// Sets the priors of the next run from a saved calibration. Lever arm and inertia get four times their saved
 /// covariance, but at most the default prior. The function also applies the saturation limits. The function ignores
-/// saved biases, because biases change at every switch-on. RateStream also uses the saved sensor errors.
+/// saved biases, because biases change at every switch-on. The overload for RateStream also sets the saved sensor
+/// errors.
 void apply_saved_calibration(const CalibratedRig& rig, RateSmoother::Params& params);
 void apply_saved_calibration(const CalibratedRig& rig, RateStream::Params& params);
 
@@ -64,7 +65,7 @@ CalibratedRig prior_rig_calibration(const CalibratedRig* given, const RateModelP
 /// empty if the run estimated neither constants nor saturation limits.
 std::optional<CalibratedRig> learnt(const RateReport& report, const CalibratedRig* given, const RateModelParams& model);
 
-/// Returns whether a RateStream has not estimated the rig constants since its start or its last reset.
+/// Returns true if a RateStream has not estimated the rig constants since its start or its last reset.
 bool is_at_prior(const RateStream& stream, const RateStream::State& state);
 /// Returns the calibration to save after a run of a RateStream. The delay is the only sensor error that RateStream
 /// estimates.
@@ -72,9 +73,9 @@ std::optional<CalibratedRig> learnt(const RateStream& stream, const RateStream::
                                     const CalibratedRig* given, const RateStream::State& state);
 
 /// Returns the distance between two calibrations: the larger of the Mahalanobis distances of lever arm and inertia,
-/// each divided by the square root of its dimension. Two runs on an unchanged rig gave 0.14 to 1.0 in 18 pairs. An
-/// inertia error of 30 % gave at least 2.3. The covariance of `before` is multiplied by four, as in
-/// apply_saved_calibration().
+/// each divided by the square root of its dimension. In 18 pairs of runs on an unchanged rig, the distance was 0.14 to
+/// 1.0. An inertia error of 30 % gave a distance of at least 2.3. The covariance of `before` is multiplied by four, as
+/// in apply_saved_calibration().
 double calibration_distance(const RigCalibration& before, const RigCalibration& now);
 
 }  // namespace tumble

@@ -11,7 +11,7 @@ namespace tumble {
 class MinSaturationLevels {
  public:
   void add(const Eigen::Vector3d& rate_rad_s);
-  /// Returns whether a reading of element `axis` is certainly below the saturation limit for its sign. A margin covers
+  /// Returns true if a reading of element `axis` is certainly below the saturation limit for its sign. A margin covers
   /// the tilt and the noise of saturation planes.
   bool is_below_min_level(const Eigen::Vector3d& rate_rad_s, Eigen::Index axis) const;
   bool operator==(const MinSaturationLevels&) const = default;

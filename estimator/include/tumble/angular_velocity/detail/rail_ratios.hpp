@@ -16,8 +16,7 @@ inline constexpr double kStatedRailMin = 0.85;
 /// (R54), (R75), rate_stream.md (R93).
 inline constexpr double kNearRailRatio = 0.02;
 
-/// Readings whose difference is below the fraction kEqualReadingsRatio of the saturation limit are equal, as in
-/// RailDetector.
+/// Two readings count as equal if their difference is below kEqualReadingsRatio * saturation limit, as in RailDetector.
 inline constexpr double kEqualReadingsRatio = 2e-5;
 
 }  // namespace tumble

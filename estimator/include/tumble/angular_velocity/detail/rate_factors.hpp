@@ -43,14 +43,13 @@ RateFactor flight_factor(const RateKnot& knot, const RigConstants& rig, const Ei
 RateFactor delayed_flight_factor(const RateKnot& knot, const RigConstants& rig, const Eigen::Vector3d& reading_m_s2,
                                  double delay_s, Eigen::Vector3d* jacobian_delay);
 
-/// Residual of delayed_flight_factor() with derivatives with respect to lever arm and accelerometer bias only; all
-/// other derivatives are zero. Use delayed_flight_jacobian_calibration() for a fast evaluation of how well a sample
-/// fits.
+/// Residual of delayed_flight_factor() with derivatives only with respect to lever arm and accelerometer bias. All
+/// other derivatives are zero. The function is a fast test of whether a sample fits the flight model.
 RateFactor delayed_flight_jacobian_calibration(const RateKnot& knot, const RigConstants& rig,
                                                const Eigen::Vector3d& reading_m_s2, double delay_s);
 
-/// Returns the second time derivative of the specific force at the lever arm in free flight [m/s^4]. The averaging
-/// window changes a reading by half of the second derivative times the variance of the window.
+/// Returns the second time derivative of the specific force at the lever arm in free flight [m/s^4]. Averaging changes
+/// a reading by half of this derivative, times the variance of the time within the averaging window.
 Eigen::Vector3d flight_curvature(const RateKnot& knot, const RigConstants& rig);
 
 /// Residual of Euler's equation without torque, with the inertia scaled to trace 3 [rad/s^2]: J alpha + w x J w.

@@ -24,22 +24,23 @@ class RateModel {
 
   /// Computes the weight of a sample between contact (0) and free flight (1) at the current estimate. The argument
   /// `rig_covariance` prevents RateModel from mistaking calibration errors for contact. The argument `threshold_factor`
-  /// >= 1 multiplies the contact threshold while the rates are still inaccurate. The argument `jump` is the smaller of
-  /// the two results of jump() for the neighbouring samples, because flight has at least one smooth side.
+  /// >= 1 multiplies the contact threshold while the rates are still inaccurate. The argument `jump` is the smaller
+  /// result of jump() between the sample and its two neighbours. In flight, the motion is smooth on at least one side
+  /// of a sample.
   void compute_flight_weight(const RateObservation& observation, const RigConstants& rig,
                              const RigConstants::Matrix& rig_covariance, double threshold_factor, double jump,
                              RateEstimate& estimate) const;
 
-  /// Returns how much the motion changes between two samples, compared with the smoothness of flight. The result is a
-  /// squared normalised error with six degrees of freedom.
+  /// Returns the squared normalised error between the motion at two samples and constant angular acceleration, with six
+  /// degrees of freedom. The error is normalised with the white angular jerk of flight.
   double jump(const RateKnot& from, const RateKnot& to, double dt_s) const;
 
   /// Moves the unmeasured rates of a sample in contact to the minimum of the contact force, if the minimum is far below
   /// the current force. Between two impacts, a body may fly for a single sample, which local solver steps do not find.
   void search_flight(const RateObservation& observation, const RigConstants& rig, RateEstimate& estimate) const;
 
-  /// Initialises the lower bounds of a sample's clipped rates near the current estimate, or near the reading if that is
-  /// larger.
+  /// Initialises the lower bounds of a sample's clipped rates near the current estimate, or near the reading if the
+  /// reading is larger.
   void start_bounds(const RateObservation& observation, const RigConstants& rig, RateEstimate& estimate) const;
 
   /// Refines the lower bounds of a sample's clipped rates by expectation propagation (Minka 2001). A Gaussian factor
@@ -50,15 +51,15 @@ class RateModel {
 
   /// Adds the residuals of gyro, lower bounds, flight and Euler's equation of one sample. The argument `rig_spread` is
   /// null, or the covariance of the calibration. If a covariance is passed, the sample has a reduced weight and does
-  /// not update the calibration. Pass a covariance for short flights, which a different calibration could also explain
-  /// as contact.
+  /// not update the calibration. Pass a covariance for short flights, because a different calibration could explain the
+  /// same readings as contact.
   void add_sample(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
                   arrow::Block& block, arrow::Corner& corner, const RigConstants::Matrix* rig_spread = nullptr) const;
 
   /// Adds the derivatives of a sample's gradient with respect to the sensor errors, and the sample's information about
-  /// them. Clipped elements and samples in contact contribute no information about SensorErrors. The argument
-  /// `rig_spread` states whether add_sample() received a covariance; the force of the sample then contributes no
-  /// information.
+  /// the sensor errors. Clipped elements and samples in contact contribute no information about SensorErrors. The
+  /// argument `rig_spread` states whether add_sample() received a covariance; the force of the sample then contributes
+  /// no information.
   void add_errors(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
                   arrow::ErrorMatrix& block, arrow::BorderErrors& border, SensorErrorEvidence& evidence,
                   bool rig_spread = false) const;
@@ -82,13 +83,13 @@ class RateModel {
   Eigen::Matrix<double, 6, 1> unscaled(const arrow::StateVector& step) const;
   /// Converts a difference in physical units to the solver's units.
   arrow::StateVector scaled(const Eigen::Matrix<double, 6, 1>& difference) const;
-  /// Returns the covariance of a rate that is reported to the user. The reported covariance is larger than the
-  /// covariance of the fit in contact, and includes the uncertain time of the reading.
+  /// Returns the covariance of a rate that is reported to the user. In contact, the reported covariance is larger than
+  /// the covariance of the fit. The reported covariance includes the uncertain time of the reading.
   Eigen::Matrix3d reported(const Eigen::Matrix3d& covariance_rad2_s2, const RateObservation& observation,
                            const RateEstimate& estimate) const;
   double gyro_sigma_rad_s() const { return gyro_sigma_rad_s_; }
-  /// Returns the weight of one sample in errors that last `model_error_s`, or 1 if the sample period is at least as
-  /// long.
+  /// Returns period_s / model_error_s, but at most 1. The ratio is the weight of one sample, because samples within
+  /// `model_error_s` have equal model errors.
   double independent_reading_ratio() const { return share_; }
 
  private:
@@ -110,8 +111,8 @@ class RateModel {
   /// delayed_flight_factor().
   RateFactor flight(const RateObservation& observation, const RateKnot& knot, const RigConstants& rig,
                     Eigen::Vector3d* jacobian_delay = nullptr) const;
-  /// Returns the residual of flight() with derivatives with respect to the calibration only. The function
-  /// flight_jacobian_calibration() needs less than half of the computation of flight().
+  /// Returns the residual of flight() with derivatives with respect to the calibration only. The function needs less
+  /// than half of the computation time of flight().
   RateFactor flight_jacobian_calibration(const RateObservation& observation, const RateKnot& knot,
                                          const RigConstants& rig) const;
   double gyro_information(const RateObservation& observation, const RateEstimate& estimate, int axis) const;
@@ -133,14 +134,14 @@ class RateModel {
   double gyro_sigma_rad_s_;
   double accel_noise_m_s2_;
   double accel_sigma_m_s2_;
-  double share_;  ///< weight of one sample in errors that last model_error_s
+  double share_;  ///< result of independent_reading_ratio()
   RigConstants prior_constants_;
   RigConstants::Matrix prior_covariance_;
   RigConstants::Matrix prior_information_;
 };
 
-/// Determines the source of a rate from its covariance and from the standard deviation below which a clipped axis
-/// counts as recovered.
+/// Returns the source of a rate. In contact, a clipped axis counts as recovered if its standard deviation is at most
+/// `recovered_sigma_rad_s`.
 RateSource rate_source(const RateObservation& observation, const RateEstimate& estimate,
                        const Eigen::Matrix3d& covariance_rad2_s2, double recovered_sigma_rad_s);
 

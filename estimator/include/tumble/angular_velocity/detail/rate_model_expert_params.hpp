@@ -9,7 +9,7 @@ namespace tumble {
 
 /// RateReadingParams describes the errors of IMU readings other than noise.
 struct RateReadingParams {
-  /// Scale and misalignment error of the accelerometer, as a fraction of the force.
+  /// Relative scale and misalignment error of the accelerometer.
   double accel_scale_error = 1e-3;
   /// Uncertainty of a reading's time due to the gyro's bandwidth and clock. For example, a first-order low-pass filter
   /// at 415 Hz delays by 0.38 ms. The covariance of the rate includes the time uncertainty multiplied by the angular
@@ -33,7 +33,7 @@ struct RateReadingParams {
 struct RateFlightParams {
   double sigma_m_s2 = 0.02;         ///< error of the specific force besides noise (drag, bias in motion)
   double euler_sigma_rad_s2 = 0.3;  ///< error of the angular acceleration from Euler's equation without torque
-  double jerk_psd_rad2_s5 = 1e4;    ///< density of the white angular jerk
+  double jerk_psd_rad2_s5 = 1e4;    ///< power spectral density of the white angular jerk
   double threshold = 5.0;           ///< a sample with larger residuals, in standard deviations, is contact
 
   template <class Self, class Visitor>
@@ -54,21 +54,18 @@ struct RateFlightParams {
 
 /// RateContactParams contains the parameters of contact, in which an unknown force acts on the body.
 struct RateContactParams {
-  /// Angular acceleration that a contact force causes: rad/s^2 per m/s^2 of specific force that the flight model does
-  /// not explain.
+  /// Angular acceleration that a contact force causes: rad/s^2 per m/s^2 of specific force beyond the flight model.
   double gain_rad_m = 4.0;
   /// Factor on the standard deviation during impacts, because the errors of impacts are not Gaussian.
   double sigma_factor = 1.3;
-  /// Largest angular acceleration across the direction of a contact force, per unit of specific force. The largest
-  /// angular acceleration is mass times the distance of the contact point, divided by a third of the trace of the
-  /// inertia.
+  /// Largest angular acceleration perpendicular to a contact force, per unit of specific force. The value is mass times
+  /// the distance of the contact point, divided by a third of the trace of the inertia.
   double lever_rad_m = 5.0;
-  /// Angular acceleration about the direction of a contact force, as a fraction of the angular acceleration across the
-  /// direction. Several contacts, or a contact that moves within a sample, cause torque about the direction of the
-  /// contact force.
+  /// Ratio of the angular accelerations about a contact force and perpendicular to the force. Several contacts, or a
+  /// contact that moves within a sample, cause torque about the direction of the contact force.
   double twist_ratio = 0.3;
-  /// Standard deviation of the unknown contact force, as a fraction of the force; the mean is zero. A prior that is
-  /// flat in the logarithm of the force has force_share 0.58. If force_share is 0, the prior is disabled.
+  /// Standard deviation of the unknown contact force, relative to the force. The mean of the contact force is zero. A
+  /// prior that is uniform in the logarithm of the force corresponds to 0.58. The value 0 disables the prior.
   double force_share = 1.0;
 
   template <class Self, class Visitor>
@@ -81,7 +78,8 @@ struct RateContactParams {
                           "largest angular acceleration perpendicular to a contact force, per force"});
     visit(p.twist_ratio,
           {"contact_twist_ratio", "1", 0.0, 1.0,
-           "angular acceleration about the contact force, as a share of the angular acceleration perpendicular to it"});
+           "angular acceleration about the axis of the contact force, as a share of the angular acceleration about "
+           "perpendicular axes"});
     visit(p.force_share,
           {"contact_force_sigma_ratio", "1", 0.0, 1e3,
            "standard deviation of the unknown contact force, as a share of the force; 0: no assumption"});
@@ -93,8 +91,8 @@ struct RateModelExpertParams {
   /// Duration for which the model error of a force, a torque or a rate is constant. Averaging samples within this time
   /// reduces their noise, but not their model error.
   double model_error_s = 0.01;
-  /// Standard deviation of the rate from zero at rest, independent for each sample. The standard deviation
-  /// rest_sigma_rad_s covers vibration and false detections of rest.
+  /// Standard deviation of the rate about zero at rest, independent for each sample. The value covers vibration and
+  /// false detections of rest.
   double rest_sigma_rad_s = 0.01;
   SensorErrorPriors error_priors = {};  ///< uncertainty of RateModelParams::errors
   RateReadingParams readings = {};

@@ -23,7 +23,7 @@ struct RateObservation {
   // Masks of axes whose readings have a separate standard deviation, with bit j for axis j. Each axis is in at most one
   // of the three masks subsample_saturated, isolated_high_axes and suspect.
   std::uint8_t subsample_saturated = 0;  ///< saturated during a part of the sample, see SubsampleSaturation
-  std::uint8_t isolated_high_axes = 0;   ///< few high readings on a side without a known saturation limit
+  std::uint8_t isolated_high_axes = 0;   ///< few high readings, whose saturation limit is unknown
   std::uint8_t suspect = 0;              ///< readings that may be at an unknown saturation limit: lower bounds
   Eigen::Vector3d expected_deficit_rad_s =
       Eigen::Vector3d::Zero();  ///< expected saturation deficit, with the reading's sign
@@ -37,7 +37,7 @@ struct RateObservation {
   std::array<AuxiliaryReading, kAuxiliaryImusMax> auxiliary_imus =
       {};  ///< readings in the order of RateModelParams::auxiliary_imus
 
-  /// Returns whether a gyro element clips or is unusable. A clipped element corrupts all axes, so the gyro is then used
+  /// Returns true if a gyro element clips or is unusable. A clipped element corrupts all axes, so the gyro is then used
   /// element by element.
   bool is_element_clipped() const { return (clipping.gyro | clipping.unusable_gyro) != 0; }
 
@@ -45,7 +45,7 @@ struct RateObservation {
   std::uint8_t partly_saturated_axes() const {
     return static_cast<std::uint8_t>(subsample_saturated | isolated_high_axes | suspect);
   }
-  /// Returns the axes whose reading may be below the true rate although no saturation limit was found.
+  /// Returns the axes whose reading may be saturated at a limit that is not yet known.
   std::uint8_t possibly_saturated_axes() const { return static_cast<std::uint8_t>(isolated_high_axes | suspect); }
 
   /// Returns the axes whose rate has no measurement or only a lower bound.
@@ -70,8 +70,8 @@ struct RateEstimate {
   /// Specific force of contact at the centre of mass, which is the part of the force that the flight model does not
   /// explain.
   Eigen::Vector3d contact_force_m_s2 = Eigen::Vector3d::Zero();
-  /// Gaussian factors (sites) of the lower bounds of clipped elements, on the saturation deficit along m_j. A Gaussian
-  /// factor is stored as precision and precision * mean.
+  /// Gaussian factors (sites) that approximate the lower bounds of clipped elements. Each factor acts on the saturation
+  /// deficit along m_j, and is stored as precision and precision * mean.
   Eigen::Vector3d bound_precision = Eigen::Vector3d::Zero();
   Eigen::Vector3d bound_shift = Eigen::Vector3d::Zero();
   bool soft_bounds = false;  ///< false: lower bounds are hard, and act only if violated

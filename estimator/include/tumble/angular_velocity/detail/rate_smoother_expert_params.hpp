@@ -12,8 +12,8 @@ namespace tumble {
 struct RateDescentParams {
   int iterations_max = 15;
   double tolerance_rad_s = 2e-3;          ///< converged if every rate changes by less than this
-  double step_max_rad_s = 10.0;           ///< longest step of a rate in one iteration
-  double initial_threshold_factor = 8.0;  ///< factor on the contact threshold in the first iteration, then halved
+  double step_max_rad_s = 10.0;           ///< largest change of a rate in one iteration
+  double initial_threshold_factor = 8.0;  ///< factor on the contact threshold; halved in each iteration
   /// Number of iterations after convergence in which samples in contact use truncated distributions instead of hard
   /// lower bounds. The additional iterations make the covariance of samples in contact consistent.
   int bound_iterations = 3;
@@ -33,7 +33,7 @@ struct RateDescentParams {
         {"bound_iterations", "1", 0, 1000,
          "number of iterations after convergence that treat the bounds in contact as truncated normal distributions"});
     visit(p.bound_damping, {"bound_damping", "1", 0.01, 1.0,
-                            "share of the change of a bound that each iteration after convergence applies"});
+                            "each iteration after convergence applies this share of the computed change of a bound"});
   }
 };
 

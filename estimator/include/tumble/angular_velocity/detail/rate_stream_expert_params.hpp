@@ -12,16 +12,15 @@ namespace tumble {
 /// The formulas use the number n of flight samples. A sample shorter than `model_error_s` counts as a fraction of a
 /// sample.
 struct RigInflationParams {
-  /// Initial factor on the calibration's covariance: the factor is 1 + covariance / (1 + n / samples). The covariance
-  /// of the gyro's bias is not increased, and the increased covariance never exceeds the prior.
+  /// The calibration's covariance is multiplied by 1 + covariance / (1 + n / samples), up to the prior covariance. The
+  /// covariance of the gyro's bias is unchanged.
   double covariance = 60.0;
   double samples = 30.0;
-  /// Minimum standard deviation of a rate that was recovered in contact, as a fraction of the saturation deficit. The
-  /// fraction is divided by 1 + n / samples. Rates that are recovered in contact depend on the calibration.
+  /// Rates that are recovered in contact depend on the calibration. The standard deviation of such a rate is at least
+  /// contact / (1 + n / samples) times the saturation deficit.
   double contact = 0.5;
   /// Minimum standard deviation of a rate in a run of clipped samples in contact. The slopes of the rate before and
-  /// after the run predict a saturation deficit. The minimum is the fraction `slopes` of this prediction, minus the
-  /// estimated saturation deficit.
+  /// after the run predict a saturation deficit. The minimum is slopes * predicted deficit - estimated deficit.
   double slopes = 1.0;
 
   template <class Self, class Visitor>
@@ -35,8 +34,8 @@ struct RigInflationParams {
                       "uncalibrated rig: standard deviation of a clipped rate in contact, as a share of the saturation "
                       "deficit, divided by 1 + n / rig_inflation_samples"});
     visit(p.slopes, {"contact_slopes", "1", 0.0, 10.0,
-                     "standard deviation of a clipped rate in contact, as a share of the saturation deficit predicted "
-                     "by the slopes at both ends of the clipped run"});
+                     "standard deviation of a clipped rate in contact, as a share of the saturation deficit that the "
+                     "slopes before and after the clipped samples predict"});
   }
 };
 
@@ -46,8 +45,8 @@ struct RateStreamExpertParams {
   /// parameters of the search for the accelerometer's saturation planes
   RailPlaneFinder::Params accel_planes = RailPlaneFinder::Params::for_accelerometer();
   RestDetector::Params rests = {};
-  double initial_threshold_factor = 8.0;  ///< factor on the contact threshold of a new clipped sample, then halved
-  double step_max_rad_s = 10.0;           ///< longest step of a rate at one sample
+  double initial_threshold_factor = 8.0;  ///< factor on a clipped sample's contact threshold; halved in each step
+  double step_max_rad_s = 10.0;           ///< largest change of a sample's rate in one step
   int bound_hard_steps = 3;               ///< number of steps until the lower bounds of a sample in contact become soft
   double bound_damping = 0.5;             ///< weight of a new lower bound in each step
   int flight_run_min = 6;                 ///< minimum number of consecutive flight samples that update the calibration
@@ -73,7 +72,8 @@ struct RateStreamExpertParams {
           {"flight_run_min", "1", 0, 4096, "minimum number of consecutive flight samples that calibrate the rig"});
     visit.group("", p.inflation);
     visit(p.uncalibrated, {"uncalibrated", "1", 0.0, 0.99, "prior probability that a device is not calibrated"});
-    visit(p.bound_damping, {"bound_damping", "1", 0.01, 1.0, "share of the change of a bound that each step applies"});
+    visit(p.bound_damping,
+          {"bound_damping", "1", 0.01, 1.0, "each step applies this share of the computed change of a bound"});
   }
 };
 

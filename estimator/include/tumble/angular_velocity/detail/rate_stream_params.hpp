@@ -16,14 +16,14 @@ namespace tumble {
 struct RateStreamParams {
   /// Parameters of the rate model. Two priors are narrower than the defaults of RateModelParams, because RateStream
   /// reports rates before the data outweigh the priors. The prior accelerometer bias of 2 mg is typical after a factory
-  /// calibration. The prior inertia fits a box: moments of 3 : 2 : 2 are at one standard deviation, a disc is at 1.8,
-  /// and a rod is at 3.6.
+  /// calibration. The prior inertia fits a box. The mean has equal moments. Moments of 3 : 2 : 2 are one standard
+  /// deviation from the mean, a disc is 1.8 and a rod 3.6 standard deviations from the mean.
   RateModelParams model = {.accel_bias_sigma_m_s2 = 0.02, .inertia_sigma = 0.15};
   RailDetector::Params rails = {};
   double period_s = 0.01;                    ///< nominal time between samples
   double lag_s = 0.2;                        ///< length of the window; [2 period_s, lag_max_s()]
   double recovered_sigma_rad_s = 0.5;        ///< see RateSmootherParams
-  double calibration_mahalanobis_max = 1.5;  ///< maximum distance; a larger distance resets the estimated calibration
+  double calibration_mahalanobis_max = 1.5;  ///< maximum distance from the prior; a larger one resets the calibration
   double gap_max_s = 1.0;                    ///< longest time between samples
   double step_s = 0.005;                     ///< minimum time between Gauss-Newton steps; 0: with each sample
 

@@ -34,7 +34,7 @@ struct RateStreamForce {
   bool operator==(const RateStreamForce&) const = default;
 };
 
-/// RateStreamKnot is a sample in the sliding window of RateStream.
+/// RateStreamKnot is one sample in the sliding window of RateStream.
 struct RateStreamKnot {
   RateObservation observation;  ///< with the force at the sample's own time; `read` has the received force
   RateStreamForce read;
@@ -56,7 +56,7 @@ struct RateStreamDelay {
   ImpactSums impacts;
   double applied_delay_s = 0.0;      ///< delay in use; the prior until a delay is found
   double estimated_s = 0.0;          ///< latest estimate from impacts and sensor-error evidence
-  bool found = false;                ///< whether the delay differs from the prior
+  bool found = false;                ///< true if the delay differs from the prior
   TriadDelay guess;                  ///< latest estimate from impacts alone
   std::optional<TimeNs> updated_ns;  ///< time of the last estimate from impacts
   bool operator==(const RateStreamDelay&) const = default;
@@ -70,8 +70,8 @@ struct RateStreamDevice {
     SensorErrorEvidence window_evidence;
     DeviceUncertainty::Work posterior_work;
   };
-  arrow::ErrorMatrix prior = arrow::ErrorMatrix::Zero();     ///< derivative of the oldest sample's gradient
-  arrow::BorderErrors corner = arrow::BorderErrors::Zero();  ///< derivative of the calibration's gradient
+  arrow::ErrorMatrix prior = arrow::ErrorMatrix::Zero();  ///< derivative of the oldest sample's gradient by the errors
+  arrow::BorderErrors corner = arrow::BorderErrors::Zero();  ///< derivative of the calibration's gradient by the errors
   SensorErrorEvidence evidence;
   DeviceUncertainty::Posterior posterior;  ///< latest uncertainty from the evidence
   std::optional<TimeNs> updated_ns;        ///< time of the latest update

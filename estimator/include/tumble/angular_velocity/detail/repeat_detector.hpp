@@ -36,7 +36,7 @@ class RepeatDetector {
   struct Memory {
     Eigen::Vector3d reading = Eigen::Vector3d::Zero();
     double equal_samples = 0.0;           ///< consecutive samples with this reading
-    double moving = 0.0, repeated = 0.0;  ///< samples in motion; repeated samples in motion; both decay slowly
+    double moving = 0.0, repeated = 0.0;  ///< samples in motion, and repeats among them; both decay slowly
     RepeatedReading now;
     bool operator==(const Memory&) const = default;
   };

@@ -58,7 +58,7 @@ class StreamingClippingFinder {
   /// Returns the state before the first sample, with all memory that observe() needs.
   State start() const;
 
-  /// Updates the state with one finite sample. Cost: O(1), sometimes a search. Returns whether the known saturation
+  /// Updates the state with one finite sample. Cost: O(1), sometimes a search. Returns true if the known saturation
   /// limits or planes changed.
   bool observe(const ImuSample& sample, State& state) const;
 
@@ -70,10 +70,10 @@ class StreamingClippingFinder {
 
   const RailDetector& axis_aligned_rails() const { return axis_aligned_rails_; }
 
-  /// Returns whether two states lead to identical results, bit for bit.
+  /// Returns true if two states lead to identical results, bit for bit.
   static bool equal(const State& a, const State& b);
 
-  /// Returns whether a state that was loaded from a file fits into the preallocated memory.
+  /// Returns true if a state that was loaded from a file fits into the preallocated memory.
   bool has_room_for(const State& state) const;
 
  private:

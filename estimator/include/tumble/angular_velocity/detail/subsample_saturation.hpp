@@ -26,12 +26,12 @@ struct SubsampleSaturation {
 SubsampleSaturation subsample_saturation(double reading_rad_s, double neighbour_rad_s, double rail_rad_s,
                                          double noise_rad_s);
 
-/// Returns the smaller neighbouring reading, as evaluated by `read` (neighbours may be null). Returns the saturation
-/// limit if there is no usable neighbour. The function uses a flagged neighbour only if most of the neighbour's window
-/// was unsaturated. The window of a flagged neighbour was mostly unsaturated if its reading differs by twice the
-/// distance of `reading_rad_s` from the saturation limit. A rate of constant slope that passes the saturation limit in
-/// the current window was unsaturated in the window before. Flagged readings that decrease along a tilted plane do not
-/// measure the rate. See rails.md (R70).
+/// Returns the smaller reading of the neighbours `before` and `after`, which may be null. The function `read` converts
+/// the angular velocity of a neighbour to a reading. Returns the saturation limit if there is no usable neighbour. The
+/// function uses a flagged neighbour only if most of the neighbour's window was unsaturated. The window of a flagged
+/// neighbour was mostly unsaturated if its reading differs by twice the distance of `reading_rad_s` from the saturation
+/// limit. A rate of constant slope that passes the saturation limit in the current window was unsaturated in the window
+/// before. Flagged readings that decrease along a tilted plane do not measure the rate. See rails.md (R70).
 template <class Read>
 double unsaturated_neighbour(double reading_rad_s, double rail_rad_s, int axis, const ImuSample* before,
                              const ImuSample* after, const Read& read) {

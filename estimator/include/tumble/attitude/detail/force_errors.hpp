@@ -15,8 +15,8 @@ namespace tumble {
 /// scale and misalignment M_k, and position error dp_k. The measurement model is f_k = c + A p_k + b_k + M_k f_k + A
 /// dp_k, with A = [a]x + [w]x[w]x. The symbols are the common force c, the position p_k of the IMU, the rate w and the
 /// angular acceleration a. The measurement is the difference of each IMU's force from the mean of all IMUs, averaged
-/// over kSpan_s. The model is linear in the forces, so averaging loses only the rotation within kSpan_s. Errors that
-/// all IMUs share do not appear in the differences, and their estimates remain close to zero.
+/// over kSpan_s. The model is linear in the forces, so averaging neglects only the rotation of the body within kSpan_s.
+/// Errors that all IMUs share do not appear in the differences, and their estimates remain close to zero.
 ///
 /// ForceErrors assumes constant errors and a rigid body.
 class ForceErrors {
@@ -31,12 +31,12 @@ class ForceErrors {
   struct Params {
     std::array<Eigen::Vector3d, kUnits> p_C_m{};  ///< positions of the IMUs
     int count = 1;                                ///< bound [1, kUnits]
-    double bias_sigma_m_s2 = 0.05;                ///< prior of the bias; bound [0, 1e3]
-    double scale_sigma = 4e-3;                    ///< prior of each entry of M; bound [0, 1]
-    double position_sigma_m = 1.5e-3;             ///< prior of the position error; bound [0, 10]
+    double bias_sigma_m_s2 = 0.05;                ///< prior standard deviation of the bias; bound [0, 1e3]
+    double scale_sigma = 4e-3;                    ///< prior standard deviation of each entry of M; bound [0, 1]
+    double position_sigma_m = 1.5e-3;             ///< prior standard deviation of the position error; bound [0, 10]
     double noise_m_s2 = 0.06;                ///< noise of one force difference, averaged over kSpan_s; bound (0, 1e3]
-    double acceleration_noise_ratio = 0.02;  ///< additional noise, as a fraction of a x r; bound [0, 1]
-    double gate_sigmas = 5.0;                ///< larger differences, in sigmas, are rejected; bound (0, 1e3]
+    double acceleration_noise_ratio = 0.02;  ///< additional noise / tangential force a x p; bound [0, 1]
+    double gate_sigmas = 5.0;  ///< largest accepted force difference, in standard deviations; bound (0, 1e3]
   };
   struct State {
     Vector x = Vector::Zero();

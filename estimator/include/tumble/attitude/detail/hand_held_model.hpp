@@ -9,7 +9,7 @@
 namespace tumble {
 
 /// The functions in hand_held_model.hpp formulate hand-held motion as a least-squares problem. The unknowns are a chain
-/// of states (nodes) at equal time steps, and constants of the device. Each function adds one residual to the normal
+/// of states (nodes) at equal time steps, the biases and the lever arm. Each function adds one residual to the normal
 /// equations H d = g and returns the cost of the residual.
 namespace hand_held {
 
@@ -42,15 +42,15 @@ struct Constants {
   void move(const System::BorderVector& step);
 };
 
-/// ElementSums contains sums over the readings of one sensing element near a node, at times t from the node. The sums
-/// make the cost of a solver step independent of the IMU's sample rate.
+/// ElementSums contains sums over the readings z of one sensing element near a node. The times in the sums are relative
+/// to the node. The sums make the cost of a solver step independent of the IMU's sample rate.
 struct ElementSums {
   double count = 0.0, time_sum_s = 0.0, time_squared_sum_s2 = 0.0, reading_sum = 0.0,
          reading_time_sum = 0.0;                           ///< count and sums of the unsaturated readings z
   double clipped = 0.0, clipped_time_s = 0.0, rail = 0.0;  ///< count, mean time and mean level of clipped readings
   double sign = 0.0;                                       ///< sign of the saturation limit
   double unusable_count = 0.0, unusable_mean = 0.0;        ///< count and mean of unusable readings
-  double partial_saturation_sigma = 0.0;  ///< standard deviation of unsaturated readings in partly saturated windows
+  double partial_saturation_sigma = 0.0;  ///< standard deviation of readings that may be partly saturated
 };
 
 /// NodeReadings contains all IMU readings near a node.
@@ -68,13 +68,13 @@ struct NodeReadings {
 /// ReadingNoise contains standard deviations of readings and of rest, which determine the weights of the residuals.
 struct ReadingNoise {
   double gyro_rad_s = 0.0;               ///< standard deviation of one gyro reading
-  double window_rate_sigma_rad_s = 0.0;  ///< difference between a window's mean and the rate at its centre
-  double deficit_error_ratio = 0.0;      ///< error of an unclipped element, per saturation deficit of a clipped element
+  double window_rate_sigma_rad_s = 0.0;  ///< standard deviation of (mean rate of a window - rate at its centre)
+  double deficit_error_ratio = 0.0;      ///< error of an unclipped element / saturation deficit of a clipped element
   double rail_rad_s = 0.0;               ///< standard deviation of a saturation limit
-  double bound = 1.0;                    ///< weight of the gyro's lower bounds, as a fraction of full information
-  double force_bound = 1.0;              ///< weight of the accelerometer's lower bounds, as a fraction
+  double bound = 1.0;                    ///< weight of the gyro's lower bounds; 1: full weight
+  double force_bound = 1.0;              ///< weight of the accelerometer's lower bounds; 1: full weight
   double accel_m_s2 = 0.0;               ///< standard deviation of one force reading
-  double force_noise_ratio = 0.0;        ///< additional force noise per m/s^2 of difference from gravity
+  double force_noise_ratio = 0.0;        ///< additional force noise / (magnitude of the force - gravity)
   double rest_rad_s = 0.0;               ///< standard deviation of the rate at rest, per node
   double rest_m_s = 0.0;                 ///< standard deviation of the velocity at rest
   double rest_m_s2 = 0.0;                ///< standard deviation of the acceleration at rest
@@ -102,7 +102,7 @@ class Motion {
  public:
   struct Params {
     double step_s = 0.01;
-    double jerk_rad_s3_sqrts = 0.0;     ///< square root of the density of the angular jerk
+    double jerk_rad_s3_sqrts = 0.0;     ///< square root of the power spectral density of the angular jerk
     double rotation_error_sqrts = 0.0;  ///< random walk of the attitude per rad/s of rotation: scale, misalignment
     double hand_sigma_m_s2 = 0.0, hand_tau_s = 0.0;
     double velocity_m_s = 0.0, velocity_tau_s = 0.0;
@@ -110,14 +110,14 @@ class Motion {
   };
   explicit Motion(const Params& params);
 
-  /// Adds the residual of a step between two nodes. The argument `hand` multiplies the density of the held point's
-  /// acceleration, and `jerk` multiplies the root density of the angular jerk.
+  /// Adds the residual of a step between two nodes. The argument `hand` multiplies the power spectral density of the
+  /// held point's acceleration. The argument `jerk` multiplies the root power spectral density of the angular jerk.
   double add_step(const Node& from, const Node& to, double hand, System::Block& block, System::Block& next,
                   double jerk = 1.0) const;
   /// Adds to one node the prior that velocity and position of the held point are close to zero.
   double add_bounds(const Node& node, System::Block& block) const;
-  /// Adds the prior of the first node. The prior fixes the heading; every other unknown has the stationary variance of
-  /// its process.
+  /// Adds the prior of the first node. The prior fixes the heading. Every other unknown has the stationary variance of
+  /// its stochastic process.
   double add_initial_prior(const Node& node, System::Block& block) const;
 
  private:
@@ -129,8 +129,8 @@ class Motion {
   double phi_variance_;
 };
 
-/// Returns the rotation vector between two nodes from a cubic polynomial of the rates, with the coning term (Magnus,
-/// fourth order).
+/// Returns the rotation vector between two nodes. The rate is interpolated by a cubic polynomial; the coning term is
+/// the fourth-order term of the Magnus expansion.
 Eigen::Vector3d turned(const Node& from, const Node& to, double step_s);
 
 }  // namespace hand_held

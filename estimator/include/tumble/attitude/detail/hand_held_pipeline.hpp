@@ -33,7 +33,7 @@ class HandHeldPipeline {
     HandHeldStream::State stream;
     StreamingClippingFinder::State rails;
     RepeatDetector::State repeat_state;
-    bool levels_changed = false;   ///< whether the last sample changed the known saturation limits
+    bool levels_changed = false;   ///< true if the last sample changed the known saturation limits
     std::vector<ClipSigns> signs;  ///< buffer, not part of the state
   };
 

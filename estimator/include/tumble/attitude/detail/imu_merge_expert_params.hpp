@@ -11,10 +11,9 @@ struct ImuOutlierParams {
   double rate_rad_s = 0.15;  ///< maximum difference from the median
   double rate_share = 0.03;  ///< additional difference, as a fraction of the rate
   double force_m_s2 = 3.0;   ///< maximum difference from the median
-  /// A reading above the fraction subsample_saturation_ratio of the range may have been saturated during a part of its
-  /// sample.
+  /// A reading above subsample_saturation_ratio * range may be saturated during a part of its averaging window.
   double subsample_saturation_ratio = 0.15;
-  double hidden_force_m_s2 = 3.0;  ///< largest force difference that partial saturation explains
+  double hidden_force_m_s2 = 3.0;  ///< largest force error attributed to saturation during a part of the window
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -35,13 +34,13 @@ struct ImuOutlierParams {
 };
 
 /// FrozenImuParams defines when ImuMerge treats an IMU as frozen. A frozen IMU repeats its reading while the readings
-/// of other IMUs change, or repeats its force while gravity rotates. Repetition by sample and hold is shorter than
-/// `after_s`.
+/// of other IMUs change, or repeats its force while gravity rotates. Sample and hold repeats a reading for less than
+/// `after_s`, and does not count as frozen.
 struct FrozenImuParams {
   double after_s = 0.1;
   double rate_rad_s = 0.03;  ///< minimum change of the rates of other IMUs
   double force_m_s2 = 0.3;
-  double turned_rad = 1.0;        ///< minimum rotation of gravity, also if all IMUs repeat readings
+  double turned_rad = 1.0;        ///< minimum rotation of gravity during a repeated force; also used if all IMUs repeat
   double unfreeze_after_s = 0.5;  ///< duration of changing readings after which an IMU is used again
 
   template <class Self, class Visitor>
@@ -61,8 +60,8 @@ struct FrozenImuParams {
   }
 };
 
-/// DisagreeingImuParams defines when ImuMerge permanently excludes an IMU: its mean over half a second differs from the
-/// median of all IMUs for `after_s`.
+/// DisagreeingImuParams defines when ImuMerge permanently excludes an IMU: the IMU's mean over half a second differs
+/// from the median of all IMUs for at least `after_s`.
 struct DisagreeingImuParams {
   double rate_rad_s = 0.1;
   double rate_share = 0.06;  ///< additional difference, as a fraction of the rate

@@ -14,8 +14,8 @@
 /// State of ImuMerge.
 namespace tumble {
 
-/// ImuRepeat describes the repetition of a reading: its duration, the readings of other IMUs at its start, and the
-/// rotation since its start.
+/// ImuRepeat describes a run of equal readings of one IMU: its duration, the readings of other IMUs at its start, and
+/// the rotation since its start.
 struct ImuRepeat {
   Eigen::Vector3d reading = Eigen::Vector3d::Zero(), others = Eigen::Vector3d::Zero();
   Eigen::Vector3d turned_rad = Eigen::Vector3d::Zero();

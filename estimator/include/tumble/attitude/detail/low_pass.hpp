@@ -9,9 +9,9 @@
 namespace tumble {
 
 /// LowPass filters a vector with a second-order Butterworth low-pass filter (bilinear transform, corner frequency
-/// sqrt(2) / (2 pi tau)). Until the time tau has passed, the output is the mean of all inputs, so that no single sample
-/// determines the start. The state of LowPass consists of the output and its slope. At a constant sample period, the
-/// transfer function equals that of a biquad filter. A change of the sample period causes no transient.
+/// sqrt(2) / (2 pi tau)). Until the time tau has passed, the output is the mean of all inputs, so that a single sample
+/// cannot determine the start value. The state of LowPass consists of the output and its slope. At a constant sample
+/// period, the transfer function equals that of a biquad filter. A change of the sample period causes no transient.
 template <int Rows>
 struct LowPass {
   using Vector = Eigen::Matrix<double, Rows, 1>;

@@ -15,22 +15,22 @@ namespace tumble {
 /// accelerometers.
 ///
 /// An extended Kalman filter estimates rate w, angular acceleration a and specific force c at the mean position of the
-/// IMUs, and the error of each lever arm r_k. The measurement model of IMU k is f_k = c + a x r_k + w x (w x r_k). In
-/// body axes, the specific force c rotates as gravity does. The filter runs while a gyro is clipped or reads more than
-/// the fraction kActiveRangeRatio of its range. RateRecovery therefore calibrates the lever arms before a gyro
-/// saturates. RateRecovery treats a reading as clipped if the reading is flagged or beyond the range. ClippingFinder
-/// sets the flags for devices that clip below their range without reporting saturation. Clipped readings of gyro and
+/// IMUs, and the error of each lever arm r_k. The measurement model of IMU k is f_k = c + a x r_k + w x (w x r_k). The
+/// filter predicts that the specific force c is constant in world axes. The filter runs while a gyro is clipped or
+/// reads more than kActiveRangeRatio * range. RateRecovery therefore calibrates the lever arms before a gyro saturates.
+/// RateRecovery treats a reading as clipped if the reading is flagged or beyond the range. ClippingFinder sets the
+/// flags for devices that clip below their range without reporting saturation. Clipped readings of gyro and
 /// accelerometer are lower bounds.
 ///
 /// RateRecovery neglects scale errors, and calibrates the lever arms relative to the gyro's scale. IMUs at one position
-/// provide no information about the rate. An impact increases the uncertainty of the rate, and does not change the
+/// provide no information about the rate. An impact increases the uncertainty of the rate, but does not change the
 /// estimated rate.
 class RateRecovery {
  public:
   static constexpr int kUnits = 4;
   static constexpr int kStates = 9 + 3 * kUnits;
-  /// Duration to which the noise of readings refers. The noise of shorter readings grows with the inverse root of their
-  /// duration, so a higher sample rate adds no information.
+  /// The parameters in ReadingNoise hold for a reading of this duration. Readings of a shorter duration d have noise
+  /// that is larger by the factor sqrt(kReading_s / d), so a higher sample rate adds no information.
   static constexpr double kReading_s = 4e-3;
   static constexpr double kActiveRangeRatio = 0.5;  ///< fraction of the gyro's range above which the filter runs
   using Vector = Eigen::Matrix<double, kStates, 1>;
@@ -48,7 +48,7 @@ class RateRecovery {
     int count = 1;                                  ///< bound [1, kUnits]
     double gyro_range_rad_s = 1e3;                  ///< readings at or above this rate are saturated; bound (0, 1e3]
     double accel_range_m_s2 = 1e5;                  ///< bound (0, 1e5]
-    double lever_arm_sigma_m = 1.5e-3;              ///< prior of the lever arm error; bound (0, 10]
+    double lever_arm_sigma_m = 1.5e-3;              ///< prior standard deviation of the lever arm; bound (0, 10]
     double acceleration_walk_rad_s2_sqrts = 200.0;  ///< random walk of the angular acceleration; bound (0, 1e6]
     double force_walk_m_s2_sqrts = 25.0;            ///< random walk of the common force; bound (0, 1e6]
     double recovered_sigma_rad_s = 1.0;  ///< rates with a larger standard deviation remain clipped; bound (0, 1e3]
@@ -61,7 +61,7 @@ class RateRecovery {
   struct State {
     Vector x = Vector::Zero();  ///< rate, angular acceleration, force, lever arm errors (axes C)
     Covariance P = Covariance::Zero();
-    bool started = false;  ///< whether the filter has been initialised
+    bool started = false;  ///< true if the filter has been initialised
     bool running = false;
     bool operator==(const State&) const = default;
   };

@@ -15,7 +15,7 @@
 /// estimated rates.
 namespace tumble {
 
-/// Estimates the rates of a recording with additional IMUs, see RegimeSmoother. Returns the errors of align() and of
+/// Estimates the rates of a recording with RegimeSmoother and additional IMUs. Returns `ok`, or an error of align() or
 /// RegimeSmoother::estimate().
 Status estimate_rates(std::span<const ImuSample> samples, std::span<const AuxiliaryRecording> auxiliary_imus,
                       const RegimeSmoother::Params& params, std::vector<RateState>& rates,
@@ -28,7 +28,7 @@ struct RecoveredRates {
   std::vector<Eigen::Matrix3d>
       covariances_rad2_s2;          ///< one covariance per sample, in sensor axes; zero for unmodified readings
   std::vector<RateSource> sources;  ///< one per sample; all `measured` if no rate was estimated
-  bool estimated = false;           ///< whether a reading clips and the rates were estimated
+  bool estimated = false;           ///< a reading clips, and RegimeSmoother estimated the rates
   std::size_t replaced = 0;         ///< number of clipped or suspect readings that were replaced
   RegimeSmoother::Report report;    ///< valid if `estimated`
   SaturationLevels rails;
@@ -37,16 +37,16 @@ struct RecoveredRates {
 /// ReplacedReadings selects the gyro readings that recover_rates() replaces.
 enum class ReplacedReadings : std::uint8_t {
   clipped,  ///< readings with a clipped axis
-  /// Readings with a clipped or suspect axis. If the gyro's response is slower than its output rate, recover_rates()
-  /// replaces all readings, because RateSmoother removes the gyro's delay. Smoothers with their own motion limits
-  /// perform better with `clipped`.
+  /// Readings with a clipped or suspect axis. If the gyro updates more slowly than the log, recover_rates() replaces
+  /// all readings, because RateSmoother removes the gyro's delay. Smoothers with their own motion model perform better
+  /// with `clipped`.
   unreliable,
 };
 
 /// Replaces all three axes of readings by estimated rates, because a tilted saturation plane also corrupts the
 /// unclipped axes. The function adds the gyro bias to the replaced readings, so that replaced and original readings
-/// have equal bias. If no reading clips or the estimation fails, all readings are unchanged. An exception are the
-/// readings of a slow gyro with `unreliable`, which are interpolated. Cost: O(N).
+/// have equal bias. If no reading clips or the estimation fails, the function keeps all readings. With `unreliable`,
+/// the function still interpolates the readings of a gyro that updates more slowly than the log. Cost: O(N).
 RecoveredRates recover_rates(std::span<const ImuSample> samples, std::span<const AuxiliaryRecording> auxiliary_imus,
                              const RegimeSmoother::Params& params, ReplacedReadings replaced);
 

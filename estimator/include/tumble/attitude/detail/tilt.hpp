@@ -17,7 +17,7 @@ inline Eigen::Quaterniond levelling(const Eigen::Vector3d& up_W) {
   return Eigen::Quaterniond(w, 0.5 * up_W.y() / w, -0.5 * up_W.x() / w, 0.0).normalized();
 }
 
-/// Returns the rotation about the axis of levelling(up_W) by the fraction `share` in [0, 1] of its angle.
+/// Returns the rotation about the axis of levelling(up_W) by `share` times its angle, with `share` in [0, 1].
 inline Eigen::Quaterniond tilt_correction(const Eigen::Vector3d& up_W, double share) {
   const double across = std::hypot(up_W.x(), up_W.y());
   const double angle = share * std::atan2(across, up_W.z());

@@ -7,18 +7,18 @@
 /// The structs in tumble_attitude_expert_params.hpp are parts of TumbleAttitudeParams::Expert.
 namespace tumble {
 
-/// AttitudeRestParams contains the standard deviations of velocity and rate from zero while the body is at rest.
+/// AttitudeRestParams contains the standard deviations of velocity and rate about zero while the body is at rest.
 struct AttitudeRestParams {
-  double velocity_sigma_m_s = 0.005;   ///< standard deviation of the velocity per node at rest
+  double velocity_sigma_m_s = 0.005;   ///< standard deviation of the velocity at rest, per node
   double rate_sigma_rad_sqrts = 2e-3;  ///< standard deviation of the rate measured at rest, mean over 1 s
-  /// Maximum difference of the mean rate from the bias at rest, in standard deviations of rate and bias. With a known
+  /// Maximum difference between mean rate and bias at rest, in standard deviations of the difference. With a known
   /// bias, a rotation of 0.5 deg/s counts as motion. With an unknown bias, a bias above 1.5 deg/s counts as motion.
   double rate_sigmas = 3.0;
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.velocity_sigma_m_s,
-          {"rest_velocity_sigma_m_s", "m/s", 1e-12, 10.0, "standard deviation of the velocity at rest, per node"});
+    visit(p.velocity_sigma_m_s, {"rest_velocity_sigma_m_s", "m/s", 1e-12, 10.0,
+                                 "standard deviation of the velocity at rest, per filter correction"});
     visit(p.rate_sigma_rad_sqrts, {"rest_rate_sigma_rad_sqrts", "rad/sqrt(s)", 1e-12, 1.0,
                                    "standard deviation of the rate measured at rest, mean over 1 s"});
     visit(p.rate_sigmas, {"rest_rate_sigmas", "1", 1.0, 1e6,
@@ -29,15 +29,15 @@ struct AttitudeRestParams {
 /// AttitudeRollingParams contains the parameters of a rolling sphere: accuracy of the rolling constraint, and detection
 /// of slip.
 struct AttitudeRollingParams {
-  double velocity_sigma_m_s = 0.03;  ///< standard deviation of the rolling velocity per node while gripping
-  double slip_velocity_m_s = 0.12;   ///< velocity error at which slip starts; slip ends at half of this error
-  double slip_quiet_s = 0.2;         ///< minimum duration of a small velocity error that ends slip
+  double velocity_sigma_m_s = 0.03;  ///< standard deviation of the velocity when rolling without slip, per node
+  double slip_velocity_m_s = 0.12;   ///< velocity residual above which slip starts; slip ends below half of this value
+  double slip_quiet_s = 0.2;         ///< duration of small velocity residuals after which slip ends
   double slip_timeout_s = 3.0;       ///< maximum duration of a slip
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.velocity_sigma_m_s, {"rolling_velocity_sigma_m_s", "m/s", 1e-12, 10.0,
-                                 "standard deviation of the rolling velocity while gripping, per node"});
+                                 "standard deviation of the rolling velocity while gripping, per filter correction"});
     visit(p.slip_velocity_m_s,
           {"slip_velocity_m_s", "m/s", 1e-12, 10.0,
            "a slip starts when the velocity residual exceeds this value, and ends below half of this value"});
@@ -48,7 +48,7 @@ struct AttitudeRollingParams {
   }
 };
 
-/// AttitudeGapParams contains the parameters of motion during a gap of the readings.
+/// AttitudeGapParams contains the motion model during a gap of the IMU data.
 struct AttitudeGapParams {
   double duration_min_s = 0.05;  ///< a longer time between two samples is a gap
   /// Random walks of the rate and velocity of tumbling bodies during a gap. On hills, stairs and cliffs, the true
@@ -84,8 +84,8 @@ struct TumbleAttitudeExpertParams {
   double reading_s = 4e-3;
   double gap_max_s = 1.0;
   /// Parameters of the rest detector. The mean rate may differ by 2 deg/s from the bias, and each reading by 2 deg/s
-  /// from the mean rate. The limits of 2 deg/s are wide enough for low-cost sensors, and only affect the bias estimate.
-  /// The mean rate has a time constant of half a second, so TumbleAttitude detects rest after one second.
+  /// from the mean rate. Both limits are wide enough for low-cost sensors, and affect only the bias estimate. The mean
+  /// rate has a time constant of half a second, so TumbleAttitude detects rest after one second.
   RestDetector::Params rest = {.rate_max_rad_s = 3.4907e-2,
                                .rate_spread_rad_s = 3.4907e-2,
                                .force_spread_m_s2 = 0.5,

@@ -10,7 +10,7 @@
 
 namespace tumble {
 
-/// TumbleAttitudeState is the state of TumbleAttitude between two samples.
+/// TumbleAttitudeState is the complete state of TumbleAttitude.
 struct TumbleAttitudeState {
   static constexpr int kStates = 10;
   using Covariance = Eigen::Matrix<double, kStates, kStates>;
@@ -24,7 +24,7 @@ struct TumbleAttitudeState {
   /// heading error.
   Covariance covariance = Covariance::Zero();
   ImuAverage average;  ///< average of the readings that are not yet processed
-  Eigen::Matrix3d recovered_covariance_rad2_s2 = Eigen::Matrix3d::Zero();  ///< mean covariance of the averaged rates
+  Eigen::Matrix3d recovered_covariance_rad2_s2 = Eigen::Matrix3d::Zero();  ///< mean rate covariance in `average`
   Eigen::Quaterniond q_processed_WI = Eigen::Quaterniond::Identity();      ///< attitude at the last processed average
   // Integrals since the last node.
   Eigen::Matrix3d R_WI_s = Eigen::Matrix3d::Zero();

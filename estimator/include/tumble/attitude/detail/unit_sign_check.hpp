@@ -13,10 +13,10 @@ namespace tumble {
 /// run. See imu_merge.md (I9).
 struct UnitSignCheck {
   static constexpr std::size_t kAlternatives =
-      12;  ///< x, y, z flipped; x y, y z, z x swapped; of gyros, then accelerometers
-  static constexpr double kEffectMin_m2_s3 = 0.3;  ///< minimum effect of an alternative, above biases
+      12;  ///< gyros, then accelerometers: x, y or z flipped; xy, yz or zx swapped
+  static constexpr double kEffectMin_m2_s3 = 0.3;  ///< minimum effect on the forces; the effect of biases is smaller
   static constexpr double kExplainedRatioMin =
-      0.5;  ///< 1: the alternative explains all; -1: the unchanged axes explain all
+      0.5;  ///< minimum ratio explained / effect; the ratio is 1 if the alternative is correct, and -1 if not
 
   std::array<double, kAlternatives> explained_m2_s3{}, effect_m2_s3{};
 
@@ -29,7 +29,7 @@ struct UnitSignCheck {
     std::size_t sense = 0;
     double share = 0.0;
   };
-  /// Returns the alternative that explains most of the force differences, if the alternative explains more than
+  /// Returns the alternative that best explains the force differences, or no value if no alternative reaches
   /// kExplainedRatioMin.
   std::optional<Detected> detected() const;
 

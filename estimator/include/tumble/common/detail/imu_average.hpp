@@ -35,7 +35,7 @@ struct ImuAverage {
     force_peak_m_s2 = std::max(force_peak_m_s2, sample.specific_force_m_s2.cwiseAbs().maxCoeff());
   }
 
-  /// Returns whether the average is complete. The length is then closer to `window_s` than with another reading of
+  /// Returns true if the average is complete. The length is then closer to `window_s` than with another reading of
   /// length `dt_s`.
   bool full(double window_s, double dt_s) const { return length_s >= window_s - 0.5 * dt_s; }
 

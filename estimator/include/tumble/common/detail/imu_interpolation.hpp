@@ -10,8 +10,8 @@ namespace tumble {
 
 /// ImuNeighbours contains the two samples next to a given time, and the interpolation weight.
 struct ImuNeighbours {
-  std::size_t before = 0, after = 0;  ///< neighbouring samples; beyond an end, the two samples at that end
-  double share = 0.0;                 ///< interpolation weight; outside of [0, 1] beyond either end
+  std::size_t before = 0, after = 0;  ///< neighbouring samples; outside the recording, the two samples at the end
+  double share = 0.0;                 ///< interpolation weight; outside of [0, 1] outside the recording
   double length_s = 0.0;              ///< time between the two neighbouring samples
   bool between() const { return share >= 0.0 && share <= 1.0; }
 };

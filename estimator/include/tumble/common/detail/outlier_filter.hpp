@@ -11,17 +11,19 @@
 
 namespace tumble {
 
-/// Rejects single wild readings of an IMU, which bus faults cause. A rejected reading counts as missing.
+/// Rejects single outliers among the readings of an IMU. Outliers result from bus faults. A rejected reading counts as
+/// missing.
 ///
-/// A reading is an outlier if it jumps in one direction from two neighbours that agree with each other, and nothing
-/// else explains the jump. A change of the force explains a jump of the gyro, and a change of the rate explains a jump
-/// of the accelerometer. A reading whose time stamp is later than the next time stamp is also an outlier. The equations
-/// of OutlierFilter are outliers.md (O1) to (O6).
+/// A reading is an outlier if it is far above or far below two neighbours that agree with each other, and nothing else
+/// explains the jump. A change of the force explains a jump of the gyro, and a change of the rate explains a jump of
+/// the accelerometer. A reading whose time stamp is later than the next time stamp is also an outlier. The equations of
+/// OutlierFilter are outliers.md (O1) to (O6).
 ///
 /// The filter is causal. OutlierFilter delays an unexplained jump by one sample, until the next reading confirms or
-/// refutes the jump. All other readings pass at once, unchanged. Readings beyond kRateMax_rad_s or kForceMax_m_s2 never
-/// pass. A wild first reading passes, but the next two readings refute it (first_is_outlier()). Cost: O(1) per reading,
-/// no allocation. OutlierFilter does not detect two wild readings in a row, or a wild reading during a hard impact.
+/// refutes the jump. All other readings pass without delay, unchanged. Readings beyond kRateMax_rad_s or kForceMax_m_s2
+/// never pass. If the first reading is an outlier, it passes, but the next two readings refute it (first_is_outlier()).
+/// Cost: O(1) per reading, no allocation. OutlierFilter does not detect two outliers in a row, or an outlier during a
+/// hard impact.
 class OutlierFilter {
  public:
   /// Limits of plausible readings. No gyro measures rates above kRateMax_rad_s (57 000 deg/s), and no accelerometer of
@@ -34,7 +36,7 @@ class OutlierFilter {
   struct Device {
     double gyro_range_rad_s = 0.0;
     double accel_range_m_s2 = 0.0;
-    double period_s = 0.0;   ///< nominal time between samples; a sample after a gap is delayed
+    double period_s = 0.0;   ///< nominal time between samples; a sample after 1.75 periods is delayed
     double gap_max_s = 1.0;  ///< a sample after a longer gap is not delayed
   };
 
@@ -47,20 +49,20 @@ class OutlierFilter {
 
   explicit OutlierFilter(const Device& device) : device_(device) {}
 
-  /// Decides about the delayed sample with the help of `next`, which must be later than all samples that passed.
-  /// Returns the delayed sample if `next` confirms the delayed sample. Returns empty if the delayed sample is rejected
-  /// or no sample was delayed. After the call, no sample is delayed.
+  /// Compares the delayed sample with `next`, which must be later than all samples that passed. Returns the delayed
+  /// sample if `next` confirms it. Returns empty if the delayed sample is rejected, or if no sample was delayed. After
+  /// the call, no sample is delayed.
   std::optional<ImuSample> filter_sample(const ImuSample& next, State& state) const;
 
-  /// Returns whether filter_sample() will confirm the second sample of a run, which was delayed because it contradicts
-  /// the first sample. The first sample is then an outlier, and the run should restart with the second. Call
+  /// The second sample of a run is delayed if it contradicts the first sample. Returns true if filter_sample() will
+  /// confirm the second sample. The first sample is then an outlier, and the run should restart with the second. Call
   /// first_is_outlier() before filter_sample().
   bool first_is_outlier(const ImuSample& next, const State& state) const {
     return state.count == 1 && state.delayed && jumps(*state.delayed, state) && confirms(next, state);
   }
 
-  /// Returns whether a finite sample must not be used now, because it is delayed, or larger than any plausible reading.
-  /// Call filter_sample() before must_delay().
+  /// Returns true if a finite sample must not be used now, because the filter delays it, or because it exceeds all
+  /// plausible readings. Call filter_sample() before must_delay().
   bool must_delay(const ImuSample& sample, State& state) const;
 
   /// Records that a sample was used. Call pass() for each sample that filter_sample() returned or for which

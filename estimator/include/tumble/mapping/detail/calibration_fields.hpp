@@ -3,8 +3,8 @@
 
 #include "tumble/common/parameters.hpp"
 
-/// Descriptions of parameters that state the accuracy of the lidar's mounting and time offset. Several `Params` structs
-/// use the descriptions in calibration_fields.hpp.
+/// Descriptions of the parameters for the accuracy of the lidar's mounting and time offset. Several `Params` structs
+/// have these parameters.
 namespace tumble::calibration_fields {
 
 inline constexpr Field kMountSigma_rad{

@@ -9,17 +9,17 @@
 /// The structs in inertial_params.hpp are parts of OdometryParams::Expert and describe the IMU in motion.
 namespace tumble {
 
-/// InertialNoiseParams contains the errors of inertial integration after kSpan_s, in addition to the uncertainty in
-/// RateState. The standard deviations of inertial integration grow in proportion to time. Choose larger standard
-/// deviations if unsure. Smaller standard deviations constrain the pose more strongly in a world with few features.
+/// InertialNoiseParams contains the standard deviations of the errors of inertial integration over kSpan_s. The errors
+/// come in addition to the uncertainty in RateState, and grow in proportion to time. Choose larger standard deviations
+/// if unsure. Smaller standard deviations constrain the pose more strongly in a world with few features.
 struct InertialNoiseParams {
   static constexpr double kSpan_s = 0.1;  ///< time between two sweeps of most lidars
   double sigma_m = 0.003;
   double sigma_rad = 0.002;
   double sigma_m_s = 0.01;
-  /// Rotation error as a fraction of the rotation angle, due to scale, misalignment, and rate changes within a sample.
+  /// Rotation error relative to the rotation angle, due to scale, misalignment, and rate changes within a sample.
   double rotation_noise_ratio = 0.001;
-  /// Velocity error as a fraction of the integral of the specific force. The velocity error is important at impacts.
+  /// Velocity error relative to the integral of the specific force. The velocity error is important at impacts.
   double force_share = 0.03;
   /// Random walks of velocity and rate over a gap of the IMU, see mapping.md (R43), (R44). For tumbling rigs and gaps
   /// of 0.05 to 0.5 s, the true velocity walks are 2.4 to 4.1 m/s per sqrt(s). If the rate is known at both ends of the
@@ -70,8 +70,10 @@ struct SaturatedImuParams {
   bool estimate_deficit = false;
   double deficit_sigma_min_rad_s = 1.0;
   double deficit_time_s = 0.3;
-  double deficit_carry_max = 3.0;  ///< maximum growth of the saturation deficit across a sweep boundary
-  double knot_sigma_ratio = 0.05;  ///< standard deviation between adjacent knots, as a fraction
+  double deficit_carry_max = 3.0;  ///< maximum growth factor of the saturation deficit at a sweep boundary
+  /// Standard deviation of the change between adjacent knots, relative to the standard deviation of the saturation
+  /// deficit.
+  double knot_sigma_ratio = 0.05;
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {

@@ -13,15 +13,15 @@ namespace tumble {
 /// 11). The function verdict() reports one of two permanent findings. First, the position's standard deviation exceeded
 /// the matching distance of surfaces. A sweep could then match any nearby surface. Second, the registered poses of two
 /// or more sweeps are further from the predicted poses than the covariances allow. A single large correction may come
-/// from saturation that the rates underestimated. An IMU or a lidar that does not meet its data sheet causes several
-/// large corrections.
+/// from saturation, if the rate error is larger than its covariance reports. An IMU or a lidar that does not meet its
+/// data sheet causes several large corrections.
 ///
 /// Before the first sweep with surfaces, there is no map, so tracking cannot fail. Localisation does not detect a map
 /// of wrong scale (see SweepScale), or errors of clocks or mounting that the calibration explains.
 ///
-/// The function current_verdict() judges the pose relative to the map at the newest sweep. Findings of
-/// current_verdict() end when the position relative to the map is certain again, or when the contradictions are older
-/// than kMemory_s.
+/// The function current_verdict() reports findings about the pose of the newest sweep relative to the map. A finding
+/// ends when the position is certain again, or when the sweeps that contradict their predicted poses are older than
+/// kMemory_s.
 class Localisation {
  public:
   static constexpr double kMemory_s = 30.0;
@@ -39,7 +39,7 @@ class Localisation {
   Status verdict() const;
   /// Returns `out_of_range` with the current finding and the violated limit, or `ok` without a finding.
   Status current_verdict() const;
-  /// Returns the sweep since which current_verdict() reports a finding.
+  /// Returns the time of the sweep with which the finding of current_verdict() began.
   std::optional<TimeNs> lost_since_ns() const { return lost_since_ns_ ? lost_since_ns_ : previous_contradicted_ns_; }
 
   /// Calls `visit` for every member of the state (see state_visitor.hpp).
@@ -52,7 +52,7 @@ class Localisation {
   double largest_sigma_m_ = 0.0, largest_innovation_ = 0.0, second_largest_innovation_ = 0.0;
   double sigma_m_ = 0.0;  ///< standard deviation of the newest position, relative to the map
   TimeNs newest_ns_ = 0;
-  std::optional<TimeNs> lost_since_ns_;  ///< first sweep since which the position is uncertain
+  std::optional<TimeNs> lost_since_ns_;  ///< first sweep of the period with uncertain position
   std::optional<TimeNs> last_contradicted_ns_,
       previous_contradicted_ns_;  ///< last two sweeps that contradict their predicted poses
 };

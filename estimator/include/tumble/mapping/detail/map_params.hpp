@@ -8,7 +8,7 @@ namespace tumble {
 
 /// LocalMapParams contains the size and resolution of the local map.
 struct LocalMapParams {
-  static constexpr double kPruneRatio = 0.1;  ///< motion that deletes distant points, as a fraction of radius_m
+  static constexpr double kPruneRatio = 0.1;  ///< distant points are deleted after a motion of kPruneRatio * radius_m
   double voxel_m = 0.5;                       ///< edge of a cell of the map's hash table
   double spacing_m = 0.1;                     ///< edge of the cubes that contain at most one map point
   double radius_m = 100.0;                    ///< points within this distance of the sensor are kept
@@ -33,11 +33,11 @@ struct LocalMapParams {
 /// WorldCovarianceParams contains the uncertainty of the map relative to the world, see docs/maths/mapping.md, section
 /// 8.
 struct WorldCovarianceParams {
-  double tilt_sigma_rad = 0.002;  ///< tilt error at the start: accelerometer bias of 2 mg
-  /// Measured drift per sweep where surfaces do not constrain a direction, as a fraction of the standard deviation in
-  /// the weakest direction.
+  double tilt_sigma_rad = 0.002;  ///< standard deviation of the tilt at the start: accelerometer bias of 2 mg
+  /// Drift per sweep, relative to the standard deviation of the pose in the least constrained direction. The ratio was
+  /// measured where surfaces do not constrain a direction.
   double drift_ratio = 0.1;
-  double drift_sigma_max_m = 3.0;  ///< upper bound of the standard deviation for computing the drift
+  double drift_sigma_max_m = 3.0;  ///< upper bound of the standard deviation that drift_ratio multiplies
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {

@@ -23,8 +23,8 @@ struct VelocityReading {
   double sigma_m_s = 0.0;                                ///< standard deviation of each axis
 };
 
-/// MotionReading is a measured motion of the IMU between two times, also known as the initial guess of a registration.
-/// For poses in a drifting frame O, the motion is T_OI(from)^-1 T_OI(to).
+/// MotionReading is a measured motion of the IMU between two times. Many registration methods call it the initial
+/// guess. For poses in a drifting frame O, the motion is T_OI(from)^-1 T_OI(to).
 struct MotionReading {
   TimeNs from_ns = 0;
   TimeNs to_ns = 0;

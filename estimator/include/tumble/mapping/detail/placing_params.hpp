@@ -15,16 +15,15 @@ struct MatchingParams {
   double distance_m = 1.0;                ///< maximum distance of matched map points
   std::size_t matches_min = 100;          ///< minimum number of matches; sweeps with fewer are rejected
   std::size_t agreeing_matches_min = 30;  ///< minimum number of matches if the result agrees with the prior
-  /// Maximum number of iterations of a registration. At most eight iterations use all points. After eight iterations,
-  /// the registration continues with a thousand points until convergence.
+  /// Maximum number of iterations of a registration. The first eight iterations use all points, and further iterations
+  /// use a thousand points.
   int iterations_max = 30;
   double correction_max_m = 15.0;   ///< a larger correction of the prior is rejected
   double correction_max_rad = 1.1;  ///< a larger correction of the prior is rejected
-  /// Growth of a point's standard deviation over the sweep, which reduces the point's weight (the published time
-  /// weighting).
+  /// Growth rate of a point's standard deviation since the start of the sweep. Late points therefore have less weight.
   double skew_sigma_m_s = 0.25;
-  /// A sweep is `degenerate` if its surfaces alone determine the pose less accurately in some direction. Attitude is
-  /// converted to displacement by the root-mean-square lever arm.
+  /// A sweep is `degenerate` if the standard deviation of the pose from its surfaces alone exceeds this value in some
+  /// direction. Attitude is converted to displacement by the root-mean-square lever arm.
   double degenerate_sigma_m = 0.15;
 
   template <class Self, class Visitor>
@@ -35,7 +34,8 @@ struct MatchingParams {
     visit(p.matches_min, {"matches_min", "1", 0, 1e9, "minimum number of matches for an accepted sweep"});
     visit(p.agreeing_matches_min,
           {"matches_agreeing_min", "1", 1, 1e9,
-           "with fewer matches: minimum number of matches for an accepted sweep that agrees with the prior"});
+           "if a sweep has fewer matches: minimum number of matches with which a sweep that agrees with the prior is "
+           "accepted"});
     visit(p.iterations_max,
           {"iterations_max", "1", 1, 200,
            "maximum number of iterations of a registration; at most eight iterations use all points"});
@@ -48,7 +48,8 @@ struct MatchingParams {
            "growth of a point's standard deviation with the time since the start of the sweep; 0: no growth"});
     visit(p.degenerate_sigma_m,
           {"degenerate_sigma_m", "m", 1e-6, 1e3,
-           "a sweep counts as degenerate if the surfaces alone determine its pose with a larger standard deviation"});
+           "a sweep counts as degenerate if the surfaces alone determine its pose with a standard deviation above this "
+           "value"});
   }
 };
 
@@ -56,7 +57,7 @@ struct MatchingParams {
 /// iterations with a subsample, and a coarse stage for starting poses far from the prior.
 struct RegistrationStagesParams {
   int full_iterations = 8;  ///< number of iterations with all points, before iterations with a subsample
-  /// number of points of the subsample, which decides whether a starting pose converges
+  /// Number of points of the subsample. The iterations with the subsample decide whether a starting pose converges.
   std::size_t subsample_points = 1000;
   int coarse_iterations = 15;           ///< number of iterations for a starting pose far from the prior
   std::size_t coarse_points = 300;      ///< number of points in the coarse stage
@@ -90,10 +91,10 @@ struct RegistrationStagesParams {
 
 /// TrackingParams contains the parameters for sweeps without a registration, and for tracking failure.
 struct TrackingParams {
-  /// Largest standard deviations of the inertial prediction at which a sweep with too few matches still extends the
-  /// map, as `degenerate`. A lidar at rest scans only rings, which give no planes until the lidar rotates.
-  /// LocalMapParams::sigma_max_m excludes points that are too uncertain because of their range and the uncertain
-  /// attitude.
+  /// A sweep with too few matches still extends the map, as `degenerate`, up to these standard deviations of its
+  /// inertial prediction. Such sweeps occur because a lidar at rest scans only rings, which give no planes until the
+  /// lidar rotates. LocalMapParams::sigma_max_m excludes points that are too uncertain because of their range and the
+  /// uncertain attitude.
   double extend_sigma_max_m = 0.1;
   double extend_sigma_max_rad = 0.1;
   /// Maximum number of consecutive sweeps with points but without registration. After lost_sweeps_max sweeps,
@@ -127,9 +128,9 @@ struct RelocalisationParams {
   int deficit_tries_max = 5;       ///< number of larger saturation deficits tried per sweep, on all axes together
   double deficit_try_rad_s = 3.0;  ///< smallest tried saturation deficit; two, three and five times this value follow
   int starts_per_sweep = 3;        ///< number of starting poses after tracking failure, including the prior
-  double shift_m = 1.0;            ///< initial distance of the other starting poses from the prior
-  double rotation_rad = 0.3;       ///< initial rotation of the other starting poses from the prior
-  int rounds = 3;                  ///< number of rounds; each round adds the initial distances
+  double shift_m = 1.0;            ///< distance of the other starting poses from the prior, first round
+  double rotation_rad = 0.3;       ///< rotation of the other starting poses from the prior, first round
+  int rounds = 3;                  ///< number of rounds; each round adds shift_m and rotation_rad
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {

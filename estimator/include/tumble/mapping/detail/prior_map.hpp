@@ -27,11 +27,11 @@ struct PriorMap {
 /// Checks map points. Returns `non_finite`, or `out_of_range` for a negative standard deviation, an invalid normal, or
 /// a position beyond 50 km. A valid normal is zero or has unit length.
 Status check_map_points(std::span<const MapPoint> points);
-/// Checks the points and the pose of a prior map. Returns the errors of check_map_points(), or `too_few` if fewer than
-/// 100 points have a normal.
+/// Checks the points and the pose of a prior map. Returns `ok`, an error of check_map_points(), or `too_few` if fewer
+/// than 100 points have a normal.
 Status check_prior_map(const PriorMap& map);
 
-/// Returns map points with normals for positions, for example of a PCD or PLY file. The plane fit is that of
+/// Returns map points with normals for positions, for example of a PCD or PLY file. The function fits planes like
 /// LidarInertialOdometry::map(). The function keeps at most one point per cube of 0.1 m. The sign of a normal is
 /// arbitrary, and `sigma_m` is the standard deviation of each position. The function drops positions that are not
 /// finite. Cost: O(points).

@@ -27,12 +27,13 @@ struct RestBoundsParams {
   }
 };
 
-/// OdometryStartParams contains the accuracy of the state at the start, and limits the corrections by the first sweeps.
+/// OdometryStartParams contains the accuracy of the state at the start, which limits the corrections by the first
+/// sweeps.
 struct OdometryStartParams {
   /// Standard deviation of the initial tilt for the registration: five times tilt_sigma_rad of WorldCovarianceParams,
   /// to allow for a start in motion.
   double level_sigma_rad = 0.01;
-  double speed_sigma_m_s = 0.05;  ///< residual speed of a robot that seems to be at rest
+  double speed_sigma_m_s = 0.05;  ///< standard deviation of the speed of a robot that seems to be at rest
   double bias_rest_s = 0.1;       ///< minimum duration of a rest that determines the gyro's bias
 
   template <class Self, class Visitor>
@@ -50,10 +51,10 @@ struct StandstillParams {
   double start_sigma_m_s = 0.01;  ///< standard deviation of the velocity during the initial rest
   double sigma_m_s = 0.05;        ///< standard deviation of the velocity while the IMU measures only gravity
   /// Maximum estimated speed of a robot that is treated as stationary while the IMU measures only gravity and no
-  /// surface constrains the pose. The limit prevents slow drift in a world without features.
+  /// surface constrains the pose. The zero velocity prevents slow drift in a world without features.
   double creep_max_m_s = 0.5;
-  int sweeps_min = 3;         ///< minimum number of consecutive sweeps for using creep_max_m_s
-  double noise_share = 0.02;  ///< noise at rest, as a fraction of the inertial prediction's noise in motion
+  int sweeps_min = 3;         ///< minimum number of consecutive sweeps at rest before creep_max_m_s applies
+  double noise_share = 0.02;  ///< ratio of the inertial prediction's noise at rest to its noise in motion
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {

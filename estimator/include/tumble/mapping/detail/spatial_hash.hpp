@@ -31,10 +31,10 @@ class SpatialHash {
     }
   }
 
-  /// Inserts a key with a value unless the key exists. Cost: amortised O(1). Returns the stored value.
+  /// Inserts a key with a value if the key is new. Cost: amortised O(1). Returns the stored value.
   std::uint32_t insert(std::uint64_t key, std::uint32_t value);
 
-  /// Inserts a key without a value. Cost: amortised O(1). Returns whether the key was new.
+  /// Inserts a key without a value. Cost: amortised O(1). Returns true if the key was new.
   bool add(std::uint64_t key);
 
   /// Removes all keys and keeps the memory.

@@ -19,11 +19,12 @@ struct FurtherLidar {
   Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< pose of the lidar in IMU axes
   LidarSheet sheet;
   Eigen::AlignedBox3d own_body_L;  ///< see TumblingParams::own_body_L, in axes of this lidar
-  double time_offset_s = 0.0;      ///< this lidar's stamps plus the offset are in the clock of the first lidar
+  double time_offset_s = 0.0;      ///< clock of the first lidar minus clock of this lidar
 };
 
-/// Adds the points of further lidars to the sweeps of the first lidar. Each point joins the sweep that contains the
-/// point's time, in axes of the first lidar. A copy of a FurtherLidars contains the complete state.
+/// Adds the points of further lidars to the sweeps of the first lidar. The class transforms each point to axes of the
+/// first lidar, and adds it to the sweep that contains the point's time. A copy of a FurtherLidars contains the
+/// complete state.
 class FurtherLidars {
  public:
   FurtherLidars() = default;
@@ -38,7 +39,7 @@ class FurtherLidars {
   /// Adds the stored points whose times are within a sweep to the sweep, and drops earlier points. Cost: O(stored
   /// points).
   void merge_into(WaitingSweep& sweep);
-  /// Returns the number of points that arrived late, or when the first lidar had no sweep.
+  /// Returns the number of unused points: the points arrived late, or the first lidar had no sweep at their time.
   std::size_t unused_points() const { return unused_points_; }
 
   /// Calls `visit` for every member of the state (see state_visitor.hpp).

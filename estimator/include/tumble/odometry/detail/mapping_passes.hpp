@@ -24,7 +24,7 @@ SaturationLevels flag_saturated_forces(const RailDetector::Params& stated, std::
 
 /// MappingInput contains the data of a recording, in time order.
 struct MappingInput {
-  std::span<const ImuSample> samples;  ///< see flag_saturated_forces()
+  std::span<const ImuSample> samples;  ///< samples after flag_saturated_forces()
   std::span<const RateState> rates;    ///< one per sample
   std::size_t sweeps = 0;
   std::function<WaitingSweep(std::size_t)> sweep;  ///< function that returns the sweep with the given index
@@ -56,7 +56,8 @@ struct MappedRecording {
   double calibration_deviations = 0.0;
   bool calibration_converged = false;
 
-  /// Returns whether the estimated calibration contradicts its stated uncertainty.
+  /// Returns true if the estimated calibration differs from the stated calibration by more than the stated uncertainty
+  /// allows.
   bool calibration_is_off() const;
   /// Adds findings about the scale of the lidar's ranges, the vertical, tracking, and the calibration of the lidar.
   void add_findings(const SweepScale& scale, SensorHealth& health) const;

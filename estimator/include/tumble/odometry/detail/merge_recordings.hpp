@@ -46,12 +46,12 @@ struct MergedRecordings {
 /// Returns the name of a unit in findings: "imu_1" for index 0, or "imu" if there is only one unit.
 std::string unit_name(std::size_t unit, std::size_t units);
 
-/// Merges the recordings of up to ImuMerge::kImus units on one body with knowledge of the whole recording.
-/// ClippingFinder flags the clipped readings, UnitAlignment resamples the units to common times, and ImuMerge merges
-/// the units. The function excludes a unit while an axis is frozen or readings are missing. If ImuMerge finds a frozen
-/// or contradicting unit, a second pass excludes the unit from the start of the fault. The function ignores units
-/// without samples. `params` states ranges and gaps; the function sets the number, mountings and sensing elements of
-/// the units.
+/// Merges the recordings of up to ImuMerge::kImus units on one body, with the saturation limits and faults of the whole
+/// recording. ClippingFinder flags the clipped readings, UnitAlignment resamples the units to common times, and
+/// ImuMerge merges the units. The function excludes a unit while an axis is frozen or readings are missing. If ImuMerge
+/// finds a frozen or contradicting unit, a second pass excludes the unit from the start of the fault. The function
+/// ignores units without samples. `params` states ranges and gaps; the function sets the number, mountings and sensing
+/// elements of the units.
 ///
 /// Returns `empty` if no IMU has a sample, or an error of ImuMerge. Returns `out_of_range` with the axis if frozen axes
 /// leave no IMU; `out.faults` then lists the excluded IMUs. Cost: O(N).

@@ -42,12 +42,11 @@ class OdometryPass {
   /// Sets the prior map; see LidarInertialOdometry::use_map().
   Status use_map(PriorMap map) { return mapper_.use_map(std::move(map)); }
   void use_map_of(const OdometryPass& other) { mapper_.use_map_of(other.mapper_); }
-  /// Returns whether rates are available up to the time `end_ns` of the lidar's clock.
+  /// Returns true if rates are available up to the time `end_ns` of the lidar's clock.
   bool covers(TimeNs end_ns) const;
   /// Returns the time, in the lidar's clock, up to which rates are available; empty before the first rate.
   std::optional<TimeNs> covered_ns() const;
-  /// Returns the time, in the IMU's clock, of the first sample that covers the lidar time `end_ns` and whose rate is
-  /// not yet available.
+  /// Returns the time stamp of the first sample at or after the lidar time `end_ns` whose rate is not yet available.
   std::optional<TimeNs> covering_ns(TimeNs end_ns) const;
   /// Registers a sweep. The argument `reading` is the odometer reading within the sweep, if any.
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points,
@@ -61,7 +60,7 @@ class OdometryPass {
   void flush_until(TimeNs time_ns);
   /// Restarts the rate estimation with other parameters; the mapper continues.
   void start_rate_estimation(const RegimeStream::Params& rate);
-  /// Replaces the map and the state that depends on it by those of `other`, including the sample buffers. The rate
+  /// Replaces the map, the state that depends on the map, and the sample buffers by those of `other`. The rate
   /// estimation of this OdometryPass continues after the last sample of `other`. The argument `other` must not be used
   /// afterwards.
   void adopt_map(OdometryPass&& other);

@@ -69,7 +69,7 @@ class PositionAlignment {
   std::deque<PositionReading> waiting_;  ///< in the order of their times
   std::deque<Pair> pairs_;
   std::optional<PositionFrame> frame_;
-  Eigen::Vector3d last_W_m_ = Eigen::Vector3d::Zero();  ///< IMU at the end of the last sweep
+  Eigen::Vector3d last_W_m_ = Eigen::Vector3d::Zero();  ///< position of the IMU at the end of the last sweep
   double path_m_ = 0.0, pose_variance_m2_ = 0.0;        ///< length of the path; variance of the last pose, all axes
   bool in_prior_map_ = false;
 };

@@ -27,8 +27,9 @@ namespace tumble {
 /// regular second pass still follows after `after_s`. SecondPass does not change earlier poses: the reported pose jumps
 /// by the error of the first pass.
 ///
-/// SecondPass stores samples and sweeps of `rest_s` and of at most `abandon_after_s` of motion, and a second map of the
-/// same motion. A jolt that ends the rest long before the tumble starts the second pass too early.
+/// SecondPass stores samples and sweeps of `rest_s` at rest and of at most `abandon_after_s` of motion. The second pass
+/// also needs memory for a second map. If a jolt ends the rest long before the tumble, the second pass starts too
+/// early.
 class SecondPass {
  public:
   struct Params {
@@ -84,7 +85,7 @@ class SecondPass {
   void abandon();
 
   bool is_running() const { return pass_.has_value(); }
-  /// Returns whether the first pass received the map of the second pass.
+  /// Returns true if the first pass received the map of the second pass.
   bool applied() const { return applied_; }
 
   /// Calls `visit` for every member of the state (see state_visitor.hpp).
@@ -130,7 +131,7 @@ class SecondPass {
   std::size_t rejected_by_first_ = 0, rejected_ = 0;
   bool last_sweep_rejected_ = false;  ///< the second pass rejected its last sweep
   bool started_by_tracking_failure_ = false,
-       early_pass_tried_ = false;  ///< a pass was started because of tracking failure; a pass of this kind was tried
+       early_pass_tried_ = false;  ///< tracking failure started the current pass; such a pass ended before
 };
 
 }  // namespace tumble

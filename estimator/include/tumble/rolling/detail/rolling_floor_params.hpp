@@ -10,18 +10,20 @@ namespace tumble {
 /// RollingContactParams contains the accuracy of the rolling constraint and the properties of floors.
 struct RollingContactParams {
   double grip_sigma_m_s = 3e-3;      ///< standard deviation of the contact velocity while gripping
-  double grip_sigma_ratio = 1.5e-3;  ///< additional standard deviation, as a fraction of the rolling speed
+  double grip_sigma_ratio = 1.5e-3;  ///< additional standard deviation, relative to the rolling speed
   double vertical_sigma_m_s = 8e-3;
-  double rough_share = 0.055;               ///< additional standard deviation on a rough floor, as a fraction
+  /// Standard deviation of the vertical velocity on a rough floor, relative to the rolling speed.
+  double rough_share = 0.055;
   double rough_radius_walk_m_sqrts = 1e-4;  ///< random walk of the rolling radius on a rough floor
-  double slope_sigma = 0.15;                ///< standard deviation of the slope's sines when a slope begins
+  double slope_sigma = 0.15;                ///< standard deviation of both components of the slope when a slope begins
   double slope_walk_sqrts = 0.02;
-  double impact_sigma_ratio = 0.06;  ///< error of timing and direction of an impact, as a fraction of its size
-  /// Mean velocity change of an impact per node while rolling. A sphere that stays on the floor has no strong impacts.
+  /// Velocity error due to the uncertain timing and direction of an impact, relative to the impact's velocity change.
+  double impact_sigma_ratio = 0.06;
+  /// Mean velocity change per node by impacts that the model does not explain, while the sphere stays on the floor.
   double unexplained_impact_m_s = 0.03;
   double rest_velocity_sigma_m_s = 2e-3;
   double rest_rate_sigma_rad_s = 3e-3;  ///< standard deviation of a node's mean rate at rest
-  double speed_sigma_m_s = 1.0;         ///< standard deviation of the mean velocity over 1 s, while unknown
+  double speed_sigma_m_s = 1.0;         ///< standard deviation of the mean velocity over 1 s without a measurement
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -43,19 +45,20 @@ struct RollingContactParams {
           {"impact_sigma_ratio", "1", 0.0, 1e3,
            "standard deviation of an impact's timing and direction, as a share of the impact's velocity change"});
     visit(p.unexplained_impact_m_s, {"unexplained_impact_m_s", "m/s", 1e-12, 1e3,
-                                     "mean velocity change per node that impacts cause and the model does not explain, "
+                                     "mean velocity change by unexplained impacts between two measurement updates, "
                                      "while the sphere stays on the floor"});
-    visit(p.rest_velocity_sigma_m_s,
-          {"rest_velocity_sigma_m_s", "m/s", 1e-12, 1e3, "standard deviation of a node's mean velocity at rest"});
-    visit(p.rest_rate_sigma_rad_s,
-          {"rest_rate_sigma_rad_s", "rad/s", 1e-12, 1e3, "standard deviation of a node's mean rate at rest"});
+    visit(p.rest_velocity_sigma_m_s, {"rest_velocity_sigma_m_s", "m/s", 1e-12, 1e3,
+                                      "standard deviation of the mean velocity between two measurement updates, at "
+                                      "rest"});
+    visit(p.rest_rate_sigma_rad_s, {"rest_rate_sigma_rad_s", "rad/s", 1e-12, 1e3,
+                                    "standard deviation of the mean rate between two measurement updates, at rest"});
     visit(p.speed_sigma_m_s,
           {"speed_sigma_m_s", "m/s", 1e-12, 1e3,
            "standard deviation of the mean velocity over 1 s about zero, if nothing else measures the velocity"});
   }
 };
 
-/// RollingModeParams contains the rates of changes between contact modes, and rules for events (slip or bump).
+/// RollingModeParams contains the rates of changes between contact modes, and the parameters of events (slip or bump).
 struct RollingModeParams {
   double slip_begins_per_s = 0.5, slip_ends_per_s = 2.0;
   double bump_begins_per_s = 0.3, bump_ends_per_s = 5.0;
@@ -63,8 +66,8 @@ struct RollingModeParams {
   double incline_begins_per_s = 0.001, incline_ends_per_s = 0.1;  ///< rates of change from and to the level floor
   double rough_begins_per_s = 0.02, rough_ends_per_s = 0.1;
   double event_shortest_s = 0.06;  ///< minimum duration of slip or bump
-  /// The position is uncertain after an event that increases the horizontal standard deviation by more than
-  /// event_sigma_growth_m.
+  /// An event that increases the horizontal standard deviation of the position by more than this value sets
+  /// RollingEstimate::uncertain.
   double event_sigma_growth_m = 0.03;
 
   template <class Self, class Visitor>

@@ -71,11 +71,11 @@ struct RollingImuNoiseParams {
 /// RollingRailParams contains the standard deviations of the saturation deficit for saturated readings.
 struct RollingRailParams {
   double clipped_rate_sigma_rad_s = 5.0;
-  /// Standard deviation of unflagged rates beyond the range, which ImuMerge recovered. If recovered_rate_sigma_rad_s is
-  /// 0, ImuMerge does not recover rates.
+  /// Standard deviation of rates that ImuMerge recovered. A rate counts as recovered if it is beyond the range and has
+  /// no clip flag. The value 0 means that ImuMerge recovers no rates.
   double recovered_rate_sigma_rad_s = 0.0;
   double clipped_force_sigma_m_s2 = 4.0;
-  /// Standard deviation of the force that saturation shorter than a sample removes, as a fraction of the force. A short
+  /// Standard deviation of the force deficit due to saturation shorter than a sample, relative to the force. A short
   /// impact may saturate the accelerometer within a sample although the mean stays below the range. The full standard
   /// deviation applies above 0.6 of the range; below 0.3 of the range, the standard deviation is zero.
   double subsample_saturation_ratio = 0.25;
