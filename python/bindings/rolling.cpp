@@ -246,17 +246,20 @@ void bind_rolling_odometry(nb::module_& m) {
               for (; k < all.front().size(); ++k) {
                 for (std::size_t unit = 0; unit < units; ++unit) now[unit] = all[unit][k];
                 status = rolling.odometry.add_imus(now);
-                if (!status.ok()) break;
-                last.sample_ns = now.front().time_ns;
+                if (!may_continue(status)) break;
+                if (status.ok()) last.sample_ns = now.front().time_ns;
               }
               return last.sample_ns;
             });
-            if (!status.ok()) require(status, k, nb::none(), {all.front()[k].time_ns, last_ns});
+            if (k < all.front().size()) require(status, k, nb::none(), {all.front()[k].time_ns, last_ns});
           },
           nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"),
           "Adds the readings of all units at one time or at N times: arrays for one unit, lists with one array per "
           "unit for\n"
-          "several. NaN marks a missing reading of a unit.")
+          "several. NaN marks a missing reading of a unit. Leaves out the first time after a gap of more than a "
+          "second, "
+          "and\n"
+          "continues with the next time.")
       .def(
           "newest",
           [](Object& self) {

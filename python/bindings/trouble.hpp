@@ -33,6 +33,12 @@ struct ExactTimes {
 void require(const Status& status, std::optional<std::size_t> index = std::nullopt, nb::object so_far = nb::none(),
              const ExactTimes& times = {});
 
+/// Returns whether an odometry class can process the next sample although it rejected this sample: the class bridges a
+/// gap.
+inline bool may_continue(const Status& status) {
+  return status.ok() || status.error_code == ErrorCode::gap;
+}
+
 /// Raises TumbleError for a recording that the library rejected as a whole. The error contains the index of the
 /// rejected sample.
 void require(const Status& status, std::span<const ImuSample> samples);

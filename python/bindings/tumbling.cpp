@@ -87,10 +87,14 @@ void add_tumbling_imu(BoundTumblingOdometry& self, const ArrayLike& time_ns, con
   Status status;
   std::size_t k = 0;
   const std::optional<TimeNs> last_ns = self.run_timed([&](TumblingOdometry& odometry, LastTimes& last) {
-    for (; k < samples.size() && (status = odometry.add_imu(samples[k])).ok(); ++k) last.sample_ns = samples[k].time_ns;
+    for (; k < samples.size(); ++k) {
+      status = odometry.add_imu(samples[k]);
+      if (!may_continue(status)) break;
+      if (status.ok()) last.sample_ns = samples[k].time_ns;
+    }
     return last.sample_ns;
   });
-  if (!status.ok()) require(status, k, nb::none(), {samples[k].time_ns, last_ns});
+  if (k < samples.size()) require(status, k, nb::none(), {samples[k].time_ns, last_ns});
 }
 
 void add_tumbling_sweep(BoundTumblingOdometry& self, const WholeNumber& start_ns, const WholeNumber& end_ns,
@@ -288,7 +292,10 @@ void bind_tumbling(nb::module_& m) {
           nb::arg("options"), takes_options())
       .def("add_imu", &add_tumbling_imu, nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"),
            nb::arg("clip_flags") = nb::none(),
-           "Adds one sample or many, in order of time. Registers the sweeps whose rates became available.")
+           "Adds one sample or many, in order of time. Registers the sweeps whose rates became available. Leaves out "
+           "the "
+           "first\n"
+           "sample after a gap of more than a second, and continues with the next sample; `gaps` counts the gaps.")
       .def(
           "add_sweep", &add_tumbling_sweep, nb::arg("start_ns"), nb::arg("end_ns"), nb::arg("position"),
           nb::arg("offset_ns"), nb::arg("ring") = nb::none(), nb::arg("intensity") = nb::none(), nb::arg("lidar") = 0,

@@ -125,10 +125,10 @@ Status check_range(const sim::ImuRecord& record, const Eigen::Vector3d& gyro_rad
     return {ErrorCode::out_of_range, field, reading.cwiseAbs().maxCoeff(), bound};
   };
   const Status gyro = beyond(gyro_rad_s, record.stated_gyro_range_rad_s,
-                             "angular_velocity_rad_s (the rate must be within twice the stated range)");
+                             "angular_velocity_rad_s (the rate must be within twice the stated range; check the unit)");
   if (!gyro.ok()) return gyro;
   return beyond(accel_m_s2, record.stated_accel_range_m_s2,
-                "specific_force_m_s2 (the force must be within twice the stated range)");
+                "specific_force_m_s2 (the force must be within twice the stated range; check the unit)");
 }
 
 std::vector<bool> find_inliers(const sim::ImuRecord& record) {

@@ -185,6 +185,7 @@ OutputFolder::OutputFolder(const fs::path& folder) : folder_(folder) {
   made_ = fs::create_directories(folder, error);
   if (!error && !fs::is_directory(folder)) error = std::make_error_code(std::errc::not_a_directory);
   if (error) fail(folder, error.message());
+  remove_abandoned(folder);
   const bool empty = fs::is_empty(folder, error);
   if (error) fail(folder, error.message());
   if (!empty) {

@@ -49,6 +49,10 @@ void require_applies(const Method& method, const Scenario& scenario);
 /// the method is the first score.
 Estimate run_method(const Method& method, const SimulatedDraw& draw, Outcome& outcome);
 
+/// Sets status and message of the outcome without comparison with the truth. The status is failed after an error,
+/// diverged if the health of one of our methods reports a fault that invalidates the estimate, and otherwise ok.
+void judge_without_truth(const MethodInfo& info, const Estimate& estimate, Outcome& outcome);
+
 /// Adds status and scores of a completed estimate to the outcome. `surface` may be null.
 void assess(const Method& method, const SimulatedDraw& draw, const sim::Surface* surface, const Estimate& estimate,
             Outcome& outcome);

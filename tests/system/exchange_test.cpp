@@ -319,8 +319,8 @@ TEST(Exchange, HostileSweepsAreOneLine) {
   fs::create_directories(folder / "cut");
   std::ofstream(folder / "cut" / "1.ply") << "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\n"
                                              "property float x\nproperty float y\nproperty float z\nend_header\n";
-  for (const auto& [path, complaint] : {std::pair{"empty", "contains no .ply, .pcd, .vtk, .bin, .bag or .csv file"},
-                                        {"cut", "1.ply:7: the file states 4000000000 points"}}) {
+  for (const auto& [path, complaint] :
+       {std::pair{"empty", "contains no .ply, .pcd, .vtk"}, {"cut", "1.ply:7: the file states 4000000000 points"}}) {
     const Ended ended = run_program({"import", (folder / path).string(), "-o", (folder / "x.h5").string()});
     EXPECT_EQ(ended.status, 2);
     EXPECT_EQ(line_count(ended.err), 1u) << ended.err;

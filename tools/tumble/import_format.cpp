@@ -8,6 +8,7 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/lower_extension.hpp"
+#include "scenarios/recordings/tables/csv_text.hpp"
 #include "scenarios/recordings/trajectories/reference.hpp"
 #include "scenarios/regular_file.hpp"
 #include "tools/tumble/arguments.hpp"
@@ -24,15 +25,15 @@ const std::vector<std::string> kFormats = {"csv", "kitti",   "mcap",    "pcd", "
 
 /// Detects the format of the files in a folder. Several ROS 1 bags are parts of one recording.
 std::string format_of_folder(const std::filesystem::path& folder) {
-  const std::map<std::string, std::string> known = {
-      {".ply", "ply"}, {".pcd", "pcd"}, {".bin", "kitti"}, {".vtk", "vtk"}, {".bag", "rosbag1"}};
+  const std::map<std::string, std::string> known = {{".ply", "ply"},    {".pcd", "pcd"},     {".bin", "kitti"},
+                                                    {".vtk", "vtk"},    {".bag", "rosbag1"}, {".mcap", "rosbag2"},
+                                                    {".db3", "rosbag2"}};
   if (std::filesystem::exists(folder / "metadata.yaml")) return "rosbag2";
-  std::string found, ros2_file;
+  std::string found;
   bool tables = false;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     const std::string ending = scenarios::lower_extension(entry.path());
     tables = tables || ending == ".csv";
-    if (ending == ".mcap" || ending == ".db3") ros2_file = entry.path().filename().string();
     const auto format = known.find(ending);
     if (format == known.end() || format->second == found) continue;
     if (!found.empty()) {
@@ -44,13 +45,8 @@ std::string format_of_folder(const std::filesystem::path& folder) {
   }
   if (found.empty() && tables) return "csv";
   if (found.empty())
-    throw BadInput(fmt::format(
-        "{}: this folder contains no .ply, .pcd, .vtk, .bin, .bag or .csv file and no metadata.yaml of a ROS 2 bag{}",
-        folder.string(),
-        (ros2_file.empty() ? ""
-                           : "; create metadata.yaml with 'ros2 bag reindex', or import one file at a time, "
-                             "for example " +
-                                 ros2_file)));
+    throw BadInput(fmt::format("{}: this folder contains no .ply, .pcd, .vtk, .bin, .bag, .mcap, .db3 or .csv file",
+                               folder.string()));
   return found;
 }
 
@@ -89,11 +85,13 @@ std::string format_of_content(const std::filesystem::path& file) {
   return start.starts_with("\x89HDF\r\n") ? "recording" : "";
 }
 
-/// Detects the format of a text file without extension: a table with commas, or poses.
+/// Detects the format of a text file: a table with commas, or poses. The first line that is no comment decides.
 std::string format_of_text(const std::filesystem::path& file) {
   std::ifstream stream(file);
   std::string line;
-  std::getline(stream, line);
+  while (std::getline(stream, line) &&
+         (line.find_first_not_of(" \t\r") == std::string::npos || scenarios::is_comment(line)))
+    continue;
   return line.find_first_of(",;\t") == std::string::npos ? scenarios::pose_format(file) : format_of_csv(file);
 }
 
@@ -116,9 +114,9 @@ std::string format_of(const ImportOptions& options) {
   if (ending == ".bag") return "rosbag1";
   if (ending == ".db3" || ending == ".zstd") return "rosbag2";
   if (ending == ".mcap") return "mcap";
-  if (ending == ".hdf5" || ending == ".h5") return "recording";
+  if (ending == ".hdf5" || ending == ".h5") return "broad";
+  if (exists && (ending.empty() || ending == ".txt")) return format_of_text(options.path);
   if (ending == ".tum" || ending == ".txt" || ending == ".kitti") return scenarios::pose_format(options.path);
-  if (ending.empty() && exists) return format_of_text(options.path);
   throw BadInput(fmt::format(
       "{}: the file name does not reveal the format; give --format (csv, kitti, mcap, rosbag1, rosbag2 or tum)",
       options.path.string()));

@@ -17,6 +17,7 @@
 #include "scenarios/methods/prior_map_file.hpp"
 #include "scenarios/methods/robot_presets.hpp"
 #include "scenarios/recordings/replace_file.hpp"
+#include "scenarios/sweep/evaluate.hpp"
 #include "tools/replay/page.hpp"
 #include "tools/replay/replay.hpp"
 #include "tools/tumble/chosen_method.hpp"
@@ -117,15 +118,17 @@ double imu_duration_s(const sim::ImuRecord& imu) {
   return imu.time_ns.empty() ? 0.0 : 1e-9 * static_cast<double>(imu.time_ns.back() - imu.time_ns.front());
 }
 
-std::string health_text(const Estimate& estimate) {
-  if (!estimate.status.ok()) return "failed";
+std::string health_text(const Estimate& estimate, scenarios::OutcomeStatus status) {
+  if (status == scenarios::OutcomeStatus::failed) return "failed";
   std::string text;
   for (const HealthFinding& finding : estimate.faults.findings)
     text += (text.empty() ? "" : ", ") + std::string(to_string(finding.kind));
+  if (status == scenarios::OutcomeStatus::diverged) return "diverged: " + text;
   return text.empty() ? "ok" : text;
 }
 
-nlohmann::json summary_of(const sim::Sensors& sensors, const Estimate& estimate, double run_s) {
+nlohmann::json summary_of(const sim::Sensors& sensors, const Estimate& estimate, scenarios::OutcomeStatus status,
+                          double run_s) {
   const std::size_t sweeps = sensors.lidars.front().sweep_start_ns.size();
   const scenarios::Saturation saturation = scenarios::saturation_of(sensors.imus.front());
   const auto registered =
@@ -135,7 +138,7 @@ nlohmann::json summary_of(const sim::Sensors& sensors, const Estimate& estimate,
           {"sweeps_registered", registered},
           {"sweeps", sweeps},
           {"clipped_share", saturation.gyro_share},
-          {"health", health_text(estimate)},
+          {"health", health_text(estimate, status)},
           {"sweeps_per_s", run_s > 0.0 ? static_cast<double>(sweeps) / run_s : 0.0}};
 }
 
@@ -195,11 +198,13 @@ int run_odometry(const Session& session, const OdometryOptions& options) {
 
   print_notes(session, recording, estimate);
   if (!options.prior_map.map.empty()) session.note(localisation_text(options.prior_map, estimate));
-  const nlohmann::json summary = summary_of(sensors, estimate, run_s);
+  scenarios::Outcome outcome;
+  judge_without_truth(info, estimate, outcome);
+  const nlohmann::json summary = summary_of(sensors, estimate, outcome.status, run_s);
   session.print({summary_table(summary)}, {{"folder", options.folder.string()},
                                            {"method", full_name(info)},
-                                           {"status", estimate.status.ok() ? "ok" : "failed"},
-                                           {"message", estimate.status.message()},
+                                           {"status", to_string(outcome.status)},
+                                           {"message", outcome.message.empty() ? "ok" : outcome.message},
                                            {"found", found_document(found)},
                                            {"summary", summary},
                                            {"health", estimate.health}});

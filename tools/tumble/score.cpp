@@ -16,6 +16,7 @@
 #include "scenarios/recordings/recording_file.hpp"
 #include "scenarios/scoring/score.hpp"
 #include "scenarios/scoring/truth_track.hpp"
+#include "scenarios/sweep/evaluate.hpp"
 #include "tools/tables/table.hpp"
 #include "tools/tumble/arguments.hpp"
 #include "tools/tumble/given_estimate.hpp"
@@ -239,16 +240,26 @@ std::unique_ptr<const sim::Surface> surface_of(const Session& session, const Sco
   return std::make_unique<const sim::Surface>(built_from(claim.info, options.recording.string(), session.data()));
 }
 
+/// Returns the method of this build that computed the estimate, or only kind and name of another method.
+scenarios::MethodInfo info_of(const Claim& claim) {
+  for (const scenarios::Method& method : scenarios::methods())
+    if (method.info.kind == claim.kind && method.info.name == claim.method) return method.info;
+  scenarios::MethodInfo other;
+  other.name = claim.method;
+  other.kind = claim.kind;
+  return other;
+}
+
 scenarios::Outcome outcome_of(const Claim& claim, const scenarios::ScoredEstimate& scored) {
-  const bool ok = claim.estimate.status.ok();
   scenarios::Outcome outcome;
   outcome.kind = claim.kind;
   outcome.method = claim.method;
   outcome.scenario = claim.info.scenario;
   outcome.seed = claim.info.seed;
-  outcome.status = ok ? scenarios::verdict(claim.kind, scored) : scenarios::OutcomeStatus::failed;
-  outcome.message = ok ? "" : claim.estimate.status.message();
   outcome.scores = scenarios::score(claim.kind, scored);
+  scenarios::judge_without_truth(info_of(claim), claim.estimate, outcome);
+  const scenarios::OutcomeStatus by_truth = scenarios::verdict(claim.kind, scored);
+  if (outcome.status == scenarios::OutcomeStatus::ok) outcome.status = by_truth;
   return outcome;
 }
 

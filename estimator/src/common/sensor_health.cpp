@@ -27,7 +27,12 @@ constexpr std::array kMeanings = {
     Meaning{"unit_frozen", false, "the IMU repeats one reading, and its readings are left out; check the sensor"},
     Meaning{"unit_silent", false, "the IMU delivers no readings"},
     Meaning{"unit_disagrees", false, "the IMU disagrees with the other IMUs, and its readings are left out"},
-    Meaning{"force_at_rest", true, "the accelerometer contradicts gravity; do not use the estimate"},
+    Meaning{"rate_unit", false, "the gyro's readings seem to be in another unit than rad/s; check the unit"},
+    Meaning{"force_unit", false, "the accelerometer's readings seem to be in another unit than m/s^2; check the unit"},
+    Meaning{
+        "force_at_rest", true,
+        "the force at rest differs from gravity, probably because of a wrong unit or scale of the accelerometer; do "
+        "not use the estimate"},
     Meaning{"axes_or_signs", true, "axes of the IMU seem to be exchanged or inverted; do not use the estimate"},
     Meaning{
         "flight_forces", true,

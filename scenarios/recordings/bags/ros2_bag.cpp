@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <SQLiteCpp/SQLiteCpp.h>
-#include <unistd.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
@@ -40,10 +39,9 @@ class Ros2BagWriter : public BagWriter {
     const std::string name = std::filesystem::weakly_canonical(folder).filename().string();
     file_ = folder / ((name.empty() ? "recording" : name) + "_0.db3");
     summary_ = {"sqlite3", file_.filename().string()};
-    part_ = file_.string() + "." + std::to_string(getpid()) + ".part";
+    part_.emplace(file_);
     guarded([&] {
-      std::filesystem::remove(part_);
-      database_ = std::make_unique<SQLite::Database>(part_.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+      database_ = std::make_unique<SQLite::Database>(part_->unfinished().string(), SQLite::OPEN_READWRITE);
       database_->exec("PRAGMA journal_mode=OFF; PRAGMA synchronous=OFF");
       database_->exec(
           "CREATE TABLE schema(schema_version INTEGER PRIMARY KEY, ros_distro TEXT NOT NULL);"
@@ -63,8 +61,6 @@ class Ros2BagWriter : public BagWriter {
   ~Ros2BagWriter() override {
     insert_.reset();
     database_.reset();
-    std::error_code ignored;
-    std::filesystem::remove(part_, ignored);
   }
   bool begin_with(const std::vector<BagTopic>& topics) override {
     guarded([&] {
@@ -80,8 +76,8 @@ class Ros2BagWriter : public BagWriter {
       insert_.reset();
       database_->exec("COMMIT");
       database_.reset();
-      std::filesystem::rename(part_, file_);
     });
+    part_->move_into_place();
     replace_file(folder_ / "metadata.yaml", ros2_metadata(summary_));
     output_->keep();
   }
@@ -139,8 +135,9 @@ class Ros2BagWriter : public BagWriter {
     });
   }
 
-  path folder_, file_, part_;
+  path folder_, file_;
   std::optional<OutputFolder> output_;
+  std::optional<OutputFile> part_;  ///< destroyed before the folder
   std::unique_ptr<SQLite::Database> database_;
   std::unique_ptr<SQLite::Statement> insert_;
   Ros2Summary summary_;
@@ -190,6 +187,24 @@ void add_unlisted(const path& folder, StoredBag& bag) {
   bag.files.insert(bag.files.end(), found.begin(), found.end());
 }
 
+/// Returns the files of a bag whose folder has no metadata.yaml, if the names of the files differ only by a number.
+StoredBag parts_in(const path& folder) {
+  std::set<path> parts;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    const std::string ending = lower_extension(entry.path());
+    if (ending == ".mcap" || ending == ".db3") parts.insert(entry.path());
+  }
+  if (parts.empty()) fail_at(folder, "the folder has no metadata.yaml, so it is not a ROS 2 bag");
+  StoredBag out{.kind = lower_extension(*parts.begin()) == ".mcap" ? "mcap" : "sqlite3", .files = {*parts.begin()}};
+  add_unlisted(folder, out);
+  if (out.files.size() < parts.size())
+    fail_at(folder,
+            "the folder has no metadata.yaml, and the names of its bags differ by more than a number; create "
+            "metadata.yaml with 'ros2 bag reindex', or import one bag at a time");
+  out.note = "caution: the folder has no metadata.yaml; the import reads its bags as parts of one recording";
+  return out;
+}
+
 StoredBag storage_of(const path& bag) {
   if (!std::filesystem::is_directory(bag)) {
     const bool packed = lower_extension(bag) == ".zstd";
@@ -198,8 +213,7 @@ StoredBag storage_of(const path& bag) {
         .kind = lower_extension(name) == ".mcap" ? "mcap" : "sqlite3", .files = {bag}, .packed = packed ? "file" : ""};
   }
   const path metadata = bag / "metadata.yaml";
-  if (!std::filesystem::is_regular_file(metadata))
-    fail_at(bag, "the folder has no metadata.yaml, so it is not a ROS 2 bag");
+  if (!std::filesystem::is_regular_file(metadata)) return parts_in(bag);
   StoredBag out;
   try {
     const YAML::Node root = YAML::LoadFile(metadata.string())["rosbag2_bagfile_information"];
@@ -210,6 +224,10 @@ StoredBag storage_of(const path& bag) {
     for (const YAML::Node& each : root["relative_file_paths"]) {
       const path name = path(each.as<std::string>()).filename();  // only files within the folder are read
       out.files.push_back(bag / name);
+      if (!std::filesystem::exists(out.files.back()))
+        fail_at(out.files.back(),
+                "no such file, although metadata.yaml lists it; copy the file into the "
+                "folder, or remove its line from metadata.yaml");
     }
   } catch (const YAML::Exception& error) {
     std::string what = error.what();

@@ -146,8 +146,9 @@ PointTimeRule find_point_times(const std::vector<Cloud>& first, std::int64_t per
     largest = std::max({largest, std::abs(begin), std::abs(end)});
   }
   if (rule.field.empty() || spans.empty()) return {};
-  const bool stamped = period_ns > 0 && !reading.assumed;
-  if (stamped && std::ranges::max(spans) == 0.0 && upper_median(points) >= kPointsThatSpan) {
+  // times since 1970 replace assumed time stamps, even if all points of a sweep have the same time
+  const bool stamped = period_ns > 0 && !(reading.assumed && largest >= kEpochMin_s);
+  if (stamped && std::ranges::max(spans) == 0.0 && upper_median(points) > 1.0) {
     rule.field.clear();
     rule.constant = true;
     return rule;

@@ -186,7 +186,10 @@ void SweepBuilder::read(Waiting& sweep) {
 std::vector<std::int64_t> SweepBuilder::point_times(const Waiting& sweep, std::vector<std::size_t>& kept) {
   if (rule_->field.empty() || kept.empty()) {
     if (!sweep.stamp_ns)
-      throw BadInput(fmt::format("{}: neither the sweep nor its points have a time stamp", sweep.where));
+      throw BadInput(fmt::format(
+          "{}: neither the sweep nor its points have a time stamp; state the times of the sweeps (--times), or the "
+          "duration of one sweep (--sweep-period)",
+          sweep.where));
     return std::vector<std::int64_t>(kept.size(), *sweep.stamp_ns);
   }
   const std::vector<double>* numbers = sweep.cloud.find(rule_->field);
@@ -321,9 +324,8 @@ void SweepBuilder::note_dropped_points(std::vector<std::string>& notes) const {
   for (const auto& [name, sweeps] : ignored_) names += " " + name;
   if (left_out_.count() > 0) notes.push_back(left_out_.note(record_.sweep_start_ns.size() + skipped_));
   if (mistimed_ > 0)
-    notes.push_back(
-        fmt::format("caution: {} points are left out, because their times are outside their sweep (first: {})",
-                    mistimed_, first_mistimed_));
+    notes.push_back(fmt::format("caution: {} {} left out because of times outside their sweep (first: {})", mistimed_,
+                                mistimed_ == 1 ? "point is" : "points are", first_mistimed_));
   if (other_clock_)
     notes.push_back(
         "caution: the point times and the time stamps of the sweeps come from different clocks. The import assumes "

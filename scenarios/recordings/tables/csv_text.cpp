@@ -66,11 +66,7 @@ CsvText::CsvText(const std::filesystem::path& path, char separator) : name_(path
   if (stream.bad()) throw BadInput(name_ + ": cannot be read");
   if (text_.empty()) throw BadInput(name_ + ": the file is empty");
   require_lines(name_, text_);
-  if (text_.back() != '\n') {
-    const auto lines = std::count(text_.begin(), text_.end(), '\n') + 1;
-    throw BadInput(
-        fmt::format("{}:{}: the last line has no line end; the file may be truncated within a number", name_, lines));
-  }
+  unended_ = text_.back() != '\n';
   if (text_.starts_with("\xEF\xBB\xBF")) at_.at = 3;  // byte order mark
   text_.erase(text_.find_last_not_of(" \t\r\n") + 1);
   text_ += '\n';
@@ -87,6 +83,8 @@ bool CsvText::next(CsvLine& line) {
   at_ = {end + 1, at_.lines + 1};
   line.where = name_ + ":" + std::to_string(at_.lines);
   line.fields.clear();
+  if (unended_ && end + 1 == text_.size())
+    fail(line, "the last line has no line end; the file may be truncated within a number");
   const bool blanks = separator_ == ' ';  // consecutive blanks are one separator
   if (blanks) text = trimmed(text);
   for (std::size_t cut = text.find(separator_); cut != std::string_view::npos; cut = text.find(separator_)) {

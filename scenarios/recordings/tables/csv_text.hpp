@@ -23,10 +23,10 @@ class CsvText {
   /// Opens a file. The separator is the comma, semicolon or tab, whichever is most frequent in the first line that is
   /// no comment. If this line has no comma, semicolon or tab, blanks are the separator.
   explicit CsvText(const std::filesystem::path& path);
-  /// Opens a file. Throws BadInput if the file is missing or empty, or if the last line has no newline and may be
-  /// truncated.
+  /// Opens a file. Throws BadInput if the file is missing or empty.
   CsvText(const std::filesystem::path& path, char separator);
-  /// Reads the next line. Returns false at the end of the file.
+  /// Reads the next line. Returns false at the end of the file. Throws BadInput for a last line without newline, which
+  /// may be truncated; the caller can then continue.
   bool next(CsvLine& line);
   /// Place is a position between two lines, to which `back_to` moves the reader.
   struct Place {
@@ -40,6 +40,7 @@ class CsvText {
  private:
   std::string name_, text_;
   char separator_;
+  bool unended_ = false;  ///< the last line has no newline
   Place at_;
 };
 

@@ -59,7 +59,7 @@ std::string keep_one_imu(LoggedTable& table, std::size_t id) {
   std::map<std::string, std::size_t> rows;
   std::string first;
   CsvLine line;
-  while (rows.size() <= kImusMax && table.next(line)) {
+  while (rows.size() <= kImusMax && table.next_sound(line)) {
     if (rows.empty()) first = line.fields[id];
     ++rows[std::string(line.fields[id])];
   }

@@ -161,8 +161,9 @@ std::int64_t whole_number(const CsvLine& line, std::size_t column, std::int64_t 
 }
 
 std::int64_t decimal_ns(const CsvLine& line, std::size_t column, int decimals) {
-  if (const auto ns = parse_time_ns(line.fields[column], decimals)) return *ns;
-  fail(line, fmt::format("column {} must be a time up to the year 2255; it is '{}'", column, line.fields[column]));
+  const std::string_view text = line.fields[column];
+  if (const auto ns = is_number(text) ? parse_time_ns(text, decimals) : parse_stamp_ns(text)) return *ns;
+  fail(line, fmt::format("column {} must be a time up to the year 2255; it is '{}'", column, text));
 }
 
 /// Returns true if the time stamp has separate columns for seconds and nanoseconds.
@@ -214,13 +215,11 @@ int decimals_by_step(LoggedTable& table, std::size_t stamp, const std::string& f
   std::vector<double> steps;
   CsvLine line;
   table.restart();
-  for (double last = 0.0; steps.size() <= kLooked && table.next(line);) {
-    const double now = number(line, stamp);
-    steps.push_back(now - last);
-    last = now;
+  for (double now = 0.0, last = 0.0; steps.size() <= kLooked && table.next_sound(line); last = now) {
+    if (parse_number(line.fields[stamp], now)) steps.push_back(now - last);
   }
   table.restart();
-  if (steps.size() < 2) return 9;  // too few samples, which is reported later
+  if (steps.size() < 2) return 9;  // dates, or too few samples, which are reported later
   steps.erase(steps.begin());      // the first entry is a stamp, not a step
   const double step = upper_median(steps);
   for (const int decimals : {9, 6, 3, 0}) {

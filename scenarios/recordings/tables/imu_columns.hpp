@@ -38,8 +38,8 @@ struct ImuColumns {
 /// with file and line for unknown, repeated or missing columns.
 ImuColumns imu_columns(const LoggedTable& table);
 
-/// Parses the time stamp of a line, in nanoseconds. If the time stamp is invalid, throws BadInput with file, line and
-/// column.
+/// Parses the time stamp of a line, in nanoseconds: a number or a date in UTC (number_text.hpp). Throws BadInput with
+/// file, line and column if the time stamp is invalid.
 std::int64_t stamp_ns(const CsvLine& line, const ImuColumns& columns);
 
 /// Infers the unit of the time stamps from up to a thousand steps at the start of the table, and returns it as a number

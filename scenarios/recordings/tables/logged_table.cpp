@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "scenarios/errors.hpp"
+
 namespace tumble::scenarios {
 
 namespace {
@@ -86,7 +88,7 @@ void LoggedTable::add_units(const CsvLine& units) {
 bool LoggedTable::next(CsvLine& line) {
   const std::size_t columns = header_.fields.size();
   while (text_.next(line)) {
-    if (is_comment(line.fields.front())) continue;
+    if (is_blank(line) || is_comment(line.fields.front())) continue;
     if (line.fields.size() == columns + 1 && line.fields.back().empty()) line.fields.pop_back();
     if (line.fields.size() != columns)
       fail(line, fmt::format("this line has {} columns, but the first line has {}; the numbers must be equal",
@@ -94,6 +96,16 @@ bool LoggedTable::next(CsvLine& line) {
     if (!kept_ || line.fields[kept_->column] == kept_->value) return true;
   }
   return false;
+}
+
+bool LoggedTable::next_sound(CsvLine& line) {
+  for (;;) {
+    try {
+      return next(line);
+    } catch (const BadInput&) {
+      continue;
+    }
+  }
 }
 
 }  // namespace tumble::scenarios

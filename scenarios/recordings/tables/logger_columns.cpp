@@ -24,7 +24,7 @@ struct Name {
 template <class Value>
 using UnitNames = std::vector<std::pair<std::string_view, Value>>;
 
-const std::vector<std::string_view> kTimes = {"t",     "time", "timestamp", "timestamps",
+const std::vector<std::string_view> kTimes = {"t",     "time", "timestamp", "timestamps",    "sampletime",
                                               "stamp", "ts",   "elapsed",   "secondselapsed"};
 constexpr const char* kExample = "time=NAME,gyro=X,Y,Z,accel=X,Y,Z";
 
@@ -39,8 +39,10 @@ const std::vector<std::string_view> kForces = {
 /// Names of the column with the number of the IMU.
 const std::vector<std::string_view> kIds = {"i", "id", "instance", "imuid", "sensorid"};
 
-const UnitNames<int> kTimeUnits = {{"s", 9},  {"sec", 9},  {"secs", 9}, {"seconds", 9}, {"ms", 6},         {"msec", 6},
-                                   {"us", 3}, {"usec", 3}, {"ns", 0},   {"nsec", 0},    {"nanoseconds", 0}};
+/// Xsens' SampleTimeFine counts units of 0.1 ms.
+const UnitNames<int> kTimeUnits = {{"s", 9},    {"sec", 9},  {"secs", 9}, {"seconds", 9},
+                                   {"ms", 6},   {"msec", 6}, {"fine", 5}, {"us", 3},
+                                   {"usec", 3}, {"ns", 0},   {"nsec", 0}, {"nanoseconds", 0}};
 const UnitNames<GyroUnit> kRateUnits = {
     {"rads", GyroUnit::rad_s},   {"radps", GyroUnit::rad_s}, {"rads1", GyroUnit::rad_s},
     {"radsec", GyroUnit::rad_s}, {"degs", GyroUnit::deg_s},  {"dps", GyroUnit::deg_s},
@@ -93,11 +95,13 @@ Name split_suffix(std::string_view field, const UnitNames<Value>& units, const I
   }
   Name name = split_brackets(field);
   if (is_quantity(name.quantity)) return name;
-  constexpr std::size_t kUnit = 2;
-  const std::string_view whole = name.quantity;
-  if (whole.size() > kUnit && value_of(units, whole.substr(whole.size() - kUnit)) &&
-      is_quantity(whole.substr(0, whole.size() - kUnit)))
-    return {std::string(whole.substr(0, whole.size() - kUnit)), std::string(whole.substr(whole.size() - kUnit))};
+  constexpr std::size_t kShortest = 2;  // one letter may belong to the quantity: "stamps"
+  for (const auto& [unit, value] : units) {
+    const std::string_view whole = name.quantity;
+    if (unit.size() < kShortest || !whole.ends_with(unit)) continue;
+    const std::string_view quantity = whole.substr(0, whole.size() - unit.size());
+    if (is_quantity(quantity)) return {std::string(quantity), std::string(unit)};
+  }
   return name;
 }
 

@@ -9,8 +9,8 @@
 namespace tumble::scenarios {
 
 /// Finds the IMU columns of a table by common names, in any order. Case, blanks, points and underscores are ignored.
-/// - Time: t, time, timestamp, stamp, ts or TimeUS. A column T (temperature) or seconds_elapsed is the time only if
-///   there is no other time column.
+/// - Time: t, time, timestamp, stamp, ts, TimeUS or SampleTimeFine. A column T (temperature) or seconds_elapsed is the
+///   time only if there is no other time column.
 /// - Rates: gx, gyro_x, gyr_x, wx, omega_x, angular_velocity_x, w_RS_S_x, gyro_rad[0] and similar.
 /// - Specific force: ax, acc_x, accel_x, fx, linear_acceleration_x, a_RS_S_x, accelerometer_m_s2[0] and similar.
 /// - Number of the IMU, if the rows of several IMUs alternate: I, id or instance.

@@ -189,8 +189,7 @@ std::vector<ReferencePose> read_pose_table(const std::filesystem::path& file, bo
       pose.p_WA_m[i] = number_of(line, columns.position[static_cast<std::size_t>(i)]);
     for (Eigen::Index i = 0; i < 4; ++i)
       pose.q_WA.coeffs()[i] = number_of(line, columns.quaternion[static_cast<std::size_t>(i)]);
-    // `export` writes unknown poses of a reference as NaN.
-    if (pose.p_WA_m.array().isNaN().all() && pose.q_WA.coeffs().array().isNaN().all()) continue;
+    if (is_unknown(pose)) continue;
     const std::string problem = problem_of(pose, sorted || poses.empty() ? nullptr : &poses.back());
     if (!problem.empty()) fail(line, problem);
     poses.push_back(pose);

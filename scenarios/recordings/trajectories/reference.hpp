@@ -23,6 +23,10 @@ struct ReferencePose {
 /// Largest accepted difference of a reference quaternion's norm from 1.
 inline constexpr double kReferenceNormTolerance = 1e-2;
 
+/// Returns whether all numbers of a pose are NaN: optical systems and the command `export` write unknown poses so.
+/// Readers skip unknown poses.
+bool is_unknown(const ReferencePose& pose);
+
 /// Explains why a pose is invalid; empty if it is valid. A pose is invalid if it has non-finite numbers, or a
 /// quaternion norm that differs from 1 by more than 1 %. A pose is also invalid if its stamp is not later than the
 /// stamp of `before`. A valid quaternion is normalised.

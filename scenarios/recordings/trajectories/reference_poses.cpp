@@ -56,6 +56,10 @@ Eigen::Matrix<double, 3, 4> kitti_matrix(const Table& table, const Table::Row& r
 
 }  // namespace
 
+bool is_unknown(const ReferencePose& pose) {
+  return pose.p_WA_m.array().isNaN().all() && pose.q_WA.coeffs().array().isNaN().all();
+}
+
 std::string problem_of(ReferencePose& pose, const ReferencePose* before) {
   if (!pose.p_WA_m.allFinite() || !pose.q_WA.coeffs().allFinite()) return "the pose is not finite";
   constexpr double kFurthest_m = 1e9;  // above any Earth-centred coordinate
@@ -109,6 +113,7 @@ std::vector<ReferencePose> read_tum_poses(const std::filesystem::path& file, boo
   std::vector<ReferencePose> poses;
   for (const Table::Row& row : table.rows) {
     ReferencePose pose = tum_pose(table, row);
+    if (is_unknown(pose)) continue;
     const std::string problem = problem_of(pose, sorted || poses.empty() ? nullptr : &poses.back());
     if (!problem.empty()) fail(table, row, problem);
     poses.push_back(pose);

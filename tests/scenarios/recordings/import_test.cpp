@@ -281,7 +281,7 @@ TEST_F(ImportCsv, BadInputHasFileAndLine) {
               HasSubstr("csv:4: a reading has the magnitude 1e+07 rad/s or m/s^2; it must be at most 1e+06"));
   EXPECT_THAT(complaint_of(good + line("1e30,0")), HasSubstr("csv:4: column 0 must be a whole number"));
   EXPECT_EQ(complaint_of(good + "\n \r\n"), "") << "nothing follows";
-  EXPECT_THAT(complaint_of(good + "\n" + line("1,20000000")), HasSubstr("csv:4: this line has 1 columns"));
+  EXPECT_EQ(complaint_of(good + "\n" + line("1,20000000")), "") << "an empty line is no sample";
   EXPECT_THAT(complaint_of(good + line("1,20000000").substr(0, 60) + "\n"), HasSubstr("csv:4: this line has"));
   EXPECT_THAT(complaint_of("a,b\n1,2\n"), HasSubstr("csv:1: the header contains no known column name"));
   EXPECT_THAT(complaint_of("1,2\n"), HasSubstr("csv:1: the file has 2 columns and no header; a file without header"));
