@@ -234,6 +234,8 @@ void bind_findings(nb::module_& m) {
       .def_ro("quantity", &HealthFinding::quantity, "the tested quantity, with its unit")
       .def_ro("value", &HealthFinding::value, "value of the quantity")
       .def_ro("bound", &HealthFinding::bound, "violated limit")
+      .def_prop_ro("confidence", &HealthFinding::confidence,
+                   "from 0 (value at the bound) to 1 (value far beyond); a margin, not a probability")
       .def_ro("since_ns", &HealthFinding::since_ns, "start of the fault, or None if unknown")
       .def_prop_ro("invalidates_estimate", &HealthFinding::invalidates_estimate,
                    "True if the estimate should not be used")

@@ -86,6 +86,7 @@ nlohmann::json json_of(const HealthFinding& finding) {
           {"quantity", finding.quantity},
           {"value", finding.value},
           {"bound", finding.bound},
+          {"confidence", finding.confidence()},
           {"since_ns", finding.since_ns ? nlohmann::json(*finding.since_ns) : nlohmann::json()},
           {"ended", finding.ended},
           {"text", to_text(finding)}};

@@ -68,6 +68,13 @@ const char* to_string(Kind kind) {
   return meaning(kind).name;
 }
 
+double HealthFinding::confidence() const {
+  const double normal = kind == Kind::lidar_scale ? 1.0 : 0.0;  // value without a fault
+  const double distance = std::abs(value - normal), limit = std::abs(bound - normal);
+  const double larger = std::max(distance, limit);
+  return larger > 0.0 && std::isfinite(larger) ? 1.0 - std::min(distance, limit) / larger : 1.0;
+}
+
 /// Estimates after the end of an attitude, vertical or localisation failure are correct. The covariance or the frame of
 /// an estimate marks estimates during the failure. A tracking failure makes all later poses wrong.
 bool HealthFinding::invalidates_estimate() const {

@@ -45,6 +45,9 @@ struct HealthFinding {
   /// True if the fault is over. health() of a live run only reports findings that have not ended.
   bool ended = false;
 
+  /// Returns how far the value is beyond its bound: 0 for a value at the bound, towards 1 for a value far beyond the
+  /// bound. The result is a margin, not a probability.
+  double confidence() const;
   Status status() const { return {ErrorCode::out_of_range, quantity, value, bound}; }
   /// Returns whether the finding makes the estimate unusable: readings contradict each other, or pose or map are wrong.
   bool invalidates_estimate() const;
