@@ -32,6 +32,7 @@ std::vector<Method> all_methods() {
       attitude_vqf(),
       attitude_tumble(),
       attitude_tumble_lag(),
+      attitude_tumble_batch(),
       position_rolling(),  // Without a baseline, the first method of a kind is the reference.
       position_autogain_fusion(),
       position_tumble(),

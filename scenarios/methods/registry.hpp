@@ -38,6 +38,7 @@ Method attitude_autogain();
 Method attitude_vqf();
 Method attitude_tumble();
 Method attitude_tumble_lag();
+Method attitude_tumble_batch();
 Method position_rolling();
 Method position_autogain_fusion();
 Method position_tumble();

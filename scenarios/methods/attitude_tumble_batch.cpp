@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cstddef>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "scenarios/methods/attitude_tumble.hpp"
+#include "scenarios/methods/bridge.hpp"
+#include "scenarios/methods/imu_check.hpp"
+#include "scenarios/methods/method.hpp"
+#include "scenarios/methods/rate_baseline.hpp"
+#include "scenarios/methods/recovered_rates.hpp"
+#include "scenarios/methods/registry.hpp"
+#include "scenarios/methods/report_rails.hpp"
+#include "scenarios/methods/report_rates.hpp"
+#include "scenarios/methods/sample_times.hpp"
+#include "scenarios/methods/settings.hpp"
+#include "tumble/angular_velocity/clipping_finder.hpp"
+#include "tumble/attitude/clipped_readings.hpp"
+#include "tumble/attitude/hand_held_smoother.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+void report_carried(const HandHeldSmoother::Report& report, std::map<std::string, double>& health) {
+  health["iterations"] = report.iterations;
+  health["converged"] = report.converged ? 1.0 : 0.0;
+  health["hand_mahalanobis"] = report.hand_acceleration_ratio;
+  health["revolutions_asked"] = report.revolutions_tested;
+  health["revolutions_taken"] = report.revolutions_corrected;
+  health["revolutions_open"] = report.revolutions_ambiguous;
+  health["revolutions_failed"] = report.revolutions_failed;
+}
+
+/// Returns the settings of the method, with the library's defaults.
+const Settings<HandHeldSmoother::Params>& carried_settings() {
+  static const Settings<HandHeldSmoother::Params> all(HandHeldSmoother::Params{}, {.stated = {"gravity_m_s2"}});
+  return all;
+}
+
+/// Finds the saturated sensing elements in each sample, from the readings and the measurement ranges of the IMU. Adds
+/// the detected saturation limits to `health` (report_rails.hpp).
+ClippedReadings find_clipped(const sim::ImuRecord& record, std::span<const ImuSample> samples,
+                             std::map<std::string, double>& health) {
+  ClippingFinder::Params params;
+  params.axis_aligned_rails = stated_rails(record);
+  const ClippingFinder::Found found = ClippingFinder(params).find(samples);
+  report_rails(found.rails, health);
+  return to_clipped_readings(samples, found);
+}
+
+/// The values in `parameters` override the values of the recording.
+HandHeldSmoother::Params carried_params(const sim::Sensors& sensors, const sim::Values& parameters) {
+  HandHeldSmoother::Params params;
+  params.gravity_m_s2 = sensors.gravity_m_s2;
+  carried_settings().apply(parameters, params);
+  return params;
+}
+
+/// Runs the hand-held smoother over the primary IMU. On an error of the IMU record or of the smoother, the outputs are
+/// empty.
+Status run_carried(const sim::Sensors& sensors, const sim::Values& parameters, std::vector<RateState>& rates,
+                   std::vector<AttitudeState>& attitudes, std::map<std::string, double>& health) {
+  std::vector<ImuSample> samples;
+  if (const Status status = bridge::primary_imu_samples(sensors, samples); !status.ok()) return status;
+  const HandHeldSmoother::Params params = carried_params(sensors, parameters);
+  const ClippedReadings known = find_clipped(sensors.imus.front(), samples, health);
+  HandHeldSmoother::Report report;
+  const Status status = HandHeldSmoother(params).estimate(samples, known.clipped(), rates, attitudes, report);
+  if (!status.ok()) return status;
+  known.mark_partly_saturated(rates);
+  report_carried(report, health);
+  return status;
+}
+
+/// The hand-held smoother replaces the rate smoother if the probability of hand-held motion in clipped intervals
+/// exceeds kCarried. During hand-held motion, the motion limits of the hand-held smoother give better rates than the
+/// rate smoother.
+constexpr double kCarried = 0.5;
+
+/// Smooths the attitude with the recovered rates as gyro readings, for a body that was not hand-held while its gyro
+/// clipped. The vector `rates` is the output of the rate smoother.
+Status run_thrown(const sim::Sensors& sensors, const sim::Values& parameters, const std::vector<ImuSample>& samples,
+                  const RecoveredRates& recovered, std::vector<RateState>& rates, Estimate& estimate) {
+  const std::vector<Eigen::Matrix3d>& covariances = recovered.covariances_rad2_s2;
+  ClippedReadings known = find_clipped(sensors.imus.front(), samples, estimate.health);
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    if (!covariances[k].isZero(0.0)) known.signs[k].gyro = {};
+  }
+  ClippedElements clipped = known.clipped();
+  clipped.recovered_covariance_rad2_s2 = covariances;
+  HandHeldSmoother::Report report;
+  const Status status = HandHeldSmoother(carried_params(sensors, parameters))
+                            .estimate(recovered.samples, clipped, rates, estimate.attitudes, report);
+  if (status.ok()) report_carried(report, estimate.health);
+  return status;
+}
+
+std::vector<RateState> rates_of(const RecoveredRates& recovered) {
+  std::vector<RateState> out(recovered.sources.size());
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    out[k].time_ns = recovered.samples[k].time_ns;
+    out[k].w_WI_I_rad_s = recovered.samples[k].angular_velocity_rad_s;
+    out[k].covariance_rad2_s2 = recovered.covariances_rad2_s2[k];
+    out[k].source = recovered.sources[k];
+  }
+  return out;
+}
+
+Estimate run_attitude_tumble_batch(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
+  Estimate estimate;
+  std::vector<ImuSample> samples;
+  estimate.status = bridge::primary_imu_samples(sensors, samples);
+  if (!estimate.status.ok()) return estimate;
+  RecoveredRates recovered;
+  recovered.samples = samples;
+  if (sensors.sphere_radius_m <= 0.0)
+    recovered = recovered_readings(sensors, samples, ReplacedReadings::clipped, estimate);
+  std::vector<RateState> rates;
+  if (recovered.estimated && recovered.report.hand_held_probability_max < kCarried) {
+    estimate.status = run_thrown(sensors, parameters, samples, recovered, rates, estimate);
+  } else {
+    estimate.status = run_carried(sensors, parameters, rates, estimate.attitudes, estimate.health);
+  }
+  if (!estimate.status.ok()) return estimate;
+  report_unknown_attitude(estimate);
+  // The checks use the input of the attitude smoother, because its output always agrees with gravity at rest.
+  (void)check_imu_with_rates(sensors, samples, rates_of(recovered), carried_share(recovered.report), estimate);
+  return estimate;
+}
+
+}  // namespace
+
+Method attitude_tumble_batch() {
+  MethodInfo info;
+  info.name = "tumble_batch";
+  info.kind = Kind::attitude;
+  info.doc =
+      "Smooths the complete recording of a hand-held body. The smoother assumes bounded acceleration, velocity and "
+      "position, and uses clipped gyro readings as bounds. While the body moves freely, rates come from rate/tumble.";
+  info.ours = true;
+  info.settings = {&carried_settings()};
+  return make_method(std::move(info), at_sample_times<run_attitude_tumble_batch>);
+}
+
+}  // namespace tumble::scenarios
