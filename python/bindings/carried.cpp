@@ -139,7 +139,7 @@ void bind_stream(nb::module_& m) {
           "failures", [](Object& self) { return self.run([](Live& at) { return at.state->stream.failures; }); },
           "number of steps skipped because their equations were not positive definite")
       .def_static("parameters", [] { return list_fields(HandHeldStream::Params{}, kUnusedParameters); });
-  bind_keeping<HandHeldPipeline>(bound);
+  bind_copy<Object>(bound);
 }
 
 }  // namespace

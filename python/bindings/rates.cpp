@@ -264,7 +264,7 @@ auto bind_stream(nb::module_& m, const char* name, const char* doc,
                 [&](Streaming<Stream>& at) { return rate(at.filter).health(rate_state(*at.state)).findings; });
           },
           nb::sig("def health(self) -> list[HealthFinding]"), kHealth);
-  bind_keeping<Stream>(bound);
+  bind_copy<Object>(bound);
   return bound;
 }
 

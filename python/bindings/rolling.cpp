@@ -5,13 +5,13 @@
 
 #include <cstddef>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "parameters.hpp"
 #include "results.hpp"
+#include "saving.hpp"
 #include "streams.hpp"
 #include "tumble/odometry/rolling_odometry.hpp"
 #include "tumble/rolling/rolling_filter.hpp"
@@ -61,7 +61,7 @@ void bind_rolling_smoother(nb::module_& m) {
           },
           "Ends the run and returns the remaining poses.")
       .def_static("parameters", [] { return list_fields(RollingSmoother::Params{}); });
-  bind_keeping<RollingSmoother>(bound);
+  bind_copy<Object>(bound);
 }
 
 void bind_filter(nb::module_& m) {
@@ -123,7 +123,7 @@ void bind_filter(nb::module_& m) {
           [](Object& self) { return self.run([](Live& at) { return at.state->started_in_motion; }); },
           "True if the run started in motion; the initial attitude then has a larger uncertainty")
       .def_static("parameters", [] { return list_fields(RollingFilter::Params{}); });
-  bind_keeping<RollingFilter>(bound);
+  bind_copy<Object>(bound);
 }
 
 /// Returns the names of the parameters that RollingOdometry sets itself.
@@ -196,18 +196,7 @@ RollingPoses take_all(RollingOdometry& odometry) {
 struct BoundRollingOdometry {
   RollingOdometry odometry;
   std::size_t units;
-
-  std::vector<std::byte> save() const { return odometry.save(); }
-  Status load(std::span<const std::byte> bytes) { return odometry.load(bytes); }
 };
-
-BoundRollingOdometry restored_rolling(std::span<const std::byte> bytes) {
-  RollingOdometry::Params params;
-  require(RollingOdometry::saved_params(bytes, params));
-  BoundRollingOdometry out{RollingOdometry(params), params.units.size()};
-  require(out.load(bytes));
-  return out;
-}
 
 void bind_unit(nb::module_& m) {
   using U = ImuMergeUnit;
@@ -327,7 +316,8 @@ void bind_rolling_odometry(nb::module_& m) {
           "state of each unit, from a comparison of the units, in the order of `units`")
       .def_static("parameters", [] { return list_fields(RollingOdometry::Params{}, derived_rolling_parameters()); });
   bind_copy<Object>(bound);
-  bind_saving<BoundRollingOdometry>(bound, &restored_rolling);
+  bind_saving<BoundRollingOdometry>(bound,
+                                    [](BoundRollingOdometry& self) -> RollingOdometry& { return self.odometry; });
 }
 
 }  // namespace

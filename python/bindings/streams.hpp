@@ -6,16 +6,13 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "guarded.hpp"
-#include "saving.hpp"
 #include "trouble.hpp"
 #include "tumble/common/imu.hpp"
-#include "tumble/odometry/saved_streams.hpp"
 
 namespace tumble::python {
 
@@ -28,49 +25,26 @@ struct Running {
   State state;
 };
 
-/// Streaming holds a stream and its State. The State is on the heap, because the state of a sphere stream needs half a
-/// megabyte.
-template <SavedStream Stream>
+/// Streaming is a stream with its State. The State is on the heap, because that of a sphere has half a megabyte.
+template <class Stream>
 struct Streaming {
   using Params = typename Stream::Params;
   using State = typename Stream::State;
 
-  Params params;
   Stream filter;
   std::unique_ptr<State> state = std::make_unique<State>();
 
-  explicit Streaming(const Params& given) : params(given), filter(given) {
+  explicit Streaming(const Params& params) : filter(params) {
     if constexpr (requires { filter.start(); }) *state = filter.start();
   }
-  Streaming(const Streaming& other)
-      : params(other.params), filter(other.filter), state(std::make_unique<State>(*other.state)) {}
+  Streaming(const Streaming& other) : filter(other.filter), state(std::make_unique<State>(*other.state)) {}
   Streaming(Streaming&&) noexcept = default;
   Streaming& operator=(const Streaming&) = delete;
   ~Streaming() = default;
-
-  std::vector<std::byte> save() const { return save_state<Stream>(params, *state); }
-  Status load(std::span<const std::byte> bytes) { return load_state<Stream>(bytes, params, *state); }
 };
 
-/// Constructs a stream, including its parameters, from saved bytes.
-template <class Stream>
-Streaming<Stream> restored(std::span<const std::byte> bytes) {
-  typename Stream::Params params;
-  require(saved_params<Stream>(bytes, params));
-  Streaming<Stream> out(params);
-  require(out.load(bytes));
-  return out;
-}
-
-/// Binds copying, save(), load() and pickling of a stream.
-template <class Stream, class Class>
-void bind_keeping(Class& bound) {
-  bind_copy<Guarded<Streaming<Stream>>>(bound);
-  bind_saving<Streaming<Stream>>(bound, &restored<Stream>);
-}
-
-/// Adds samples to an estimator until it rejects one. The raised TumbleError then contains the index of the rejected
-/// sample and the results of the earlier samples. `step(estimator, sample, out)` returns a Status.
+/// Adds samples to an estimator up to the first rejected sample. The raised TumbleError then has the index of that
+/// sample and the results before it. `step(estimator, sample, out)` returns a Status.
 template <class Out, class Estimator, class Step>
 Out feed(Guarded<Estimator>& to, const std::vector<ImuSample>& samples, Step step) {
   Out out;

@@ -11,20 +11,11 @@
 /// Every attitude method calls run_attitude_filter, which runs a filter sample by sample on the primary IMU.
 namespace tumble::scenarios {
 
-/// NoCovariance is for filters that report no covariance.
-struct NoCovariance {
-  template <typename State>
-  Eigen::Matrix3d operator()(const State&) const {
-    return Eigen::Matrix3d::Zero();
-  }
-};
-
-/// Runs an attitude filter over the primary IMU and stores one attitude per sample, in the IMU's frame. `Filter` must
-/// have the types Params and State (with q_WI), and the function step(sample, state). `covariance(state)` returns the
-/// covariance for AttitudeState. The first error of the filter ends the run; the estimate keeps the earlier attitudes.
-template <typename Filter, typename CovarianceOf = NoCovariance>
-Estimate run_attitude_filter(const sim::Sensors& sensors, const typename Filter::Params& params,
-                             const CovarianceOf& covariance = {}) {
+/// Runs an attitude filter over the primary IMU and stores one attitude per sample, in the IMU's frame. The type
+/// `Filter` must have the types Params and State (with q_WI) and the function step(sample, state). The first error of
+/// the filter ends the run; the estimate keeps the earlier attitudes.
+template <typename Filter>
+Estimate run_attitude_filter(const sim::Sensors& sensors, const typename Filter::Params& params) {
   const Filter filter(params);
   Estimate estimate;
   std::vector<ImuSample> samples;
@@ -37,7 +28,7 @@ Estimate run_attitude_filter(const sim::Sensors& sensors, const typename Filter:
   for (const ImuSample& sample : samples) {
     estimate.status = filter.step(sample, state);
     if (!estimate.status.ok()) return estimate;
-    estimate.attitudes.push_back({sample.time_ns, state.q_WI, covariance(state)});
+    estimate.attitudes.push_back({sample.time_ns, state.q_WI, Eigen::Matrix3d::Zero()});
   }
   return estimate;
 }

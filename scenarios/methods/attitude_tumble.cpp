@@ -113,14 +113,14 @@ void report_unknown_attitude(Estimate& estimate) {
   add_findings(health, {}, estimate);
 }
 
-Estimate run_attitude_tumble(const sim::Sensors& sensors, const sim::Values& parameters) {
-  return sensors.sphere_radius_m > 0.0 ? run_sphere(sensors, parameters) : run_rig(sensors, parameters);
-}
-
 namespace {
 
-Estimate run_without_truth(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput& /*oracle*/) {
-  return run_attitude_tumble(sensors, parameters);
+/// Estimates one attitude per sample of the recording. On a rig, the filter uses the primary IMU with recovered clipped
+/// rates. On a sphere, the filter uses all IMUs, merged into one. The status is the first error of the sensor records
+/// or of the filter. The estimate keeps the attitudes that precede an error.
+Estimate run_attitude_tumble(const sim::Sensors& sensors, const sim::Values& parameters,
+                             const OracleInput& /*oracle*/) {
+  return sensors.sphere_radius_m > 0.0 ? run_sphere(sensors, parameters) : run_rig(sensors, parameters);
 }
 
 }  // namespace
@@ -134,7 +134,7 @@ Method attitude_tumble() {
       "sphere, zero at rest. Rates of clipped samples come from rate/tumble.";
   info.ours = true;
   info.settings = {&attitude_tumble_settings()};
-  return make_method(std::move(info), at_sample_times<run_without_truth>);
+  return make_method(std::move(info), at_sample_times<run_attitude_tumble>);
 }
 
 }  // namespace tumble::scenarios

@@ -18,7 +18,6 @@ namespace tumble::scenarios {
 
 Method slam_published();
 Method slam_constant_velocity();
-Method slam_floor();
 Method slam_tumble_lag();
 Method slam_tumble_live();
 

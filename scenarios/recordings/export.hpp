@@ -29,7 +29,8 @@ void require_own_kind(const std::string& format, const std::filesystem::path& ou
 struct ExportChoices {
   bool truth = false;
   SweepLayout sweeps = own_sweep_layout();
-  /// Adds estimates to a bag (scenarios/exchange); may be empty. Points and truth of the passed sensors are on disk.
+  /// The function adds estimates to a bag (scoring/estimate_in_bag.hpp); it may be empty. The points and the truth of
+  /// the sensors that the function receives are on disk.
   std::function<void(const sim::Sensors&, BagWriting&)> more = {};
   std::string frame = "body";  ///< for `tum` and `kitti`: frame of the true poses, see true_mounting
 };

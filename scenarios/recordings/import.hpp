@@ -113,47 +113,4 @@ void attach_reference(Imported& recording, const ReferenceSource& source);
 /// Throws BadInput if the times do not overlap.
 void attach_imus(Imported& recording, Imported imu);
 
-/// Reads a trial of the data set BROAD (Laidig et al., Data 2021, 6(7), 72) from its HDF5 file: imu_gyr, imu_acc,
-/// imu_mag (converted to tesla), sampling_rate. If the file contains opt_quat and opt_pos, they become the reference,
-/// which is unknown where the cameras lost the markers. Reference rates and velocities are differences over 140 ms. The
-/// interval of 140 ms is short enough to detect rest, but blurs fast rotations. The reference rates at the IMU samples
-/// are differences over 40 ms (reference_rate.hpp). Sample k has the time k / sampling_rate. Ranges and noise of the
-/// IMU are 0, because the file does not contain them. Throws BadInput if the file is invalid.
-Imported import_broad(const std::filesystem::path& path);
-
-/// Reads a recording of the data set RepoIMU (Szczesna et al., ICCVG 2016) in its published form. The columns are
-/// separated by ';' and follow two header lines (group, column). The columns are time s, "Vicon Orientation" W X Y Z,
-/// "IMU Acceleration" m/s^2, "IMU Gyroscope" rad/s, and "IMU Magnetometer" (without unit, omitted).
-///
-/// The reader detects and corrects the following defects, with notes.
-/// - Time stamps with few decimals become regular, within their rounding (steady_stamps.hpp).
-/// - Repeated readings (sample and hold) are dropped, and the remaining readings get stamps at the gyro's rate. A
-///   slower accelerometer is interpolated between its distinct readings (repeated_readings.hpp).
-/// - Glitches of the optical reference are removed (reference_glitches.hpp).
-/// - Delay, rotation and tilt between reference and IMU are estimated (align_reference.hpp). If `align` is set, the
-///   importer removes these alignment errors. After this correction, the truth is the attitude of the IMU in a world
-///   with z up.
-///
-/// The true rates at the IMU's stamps are derivatives of the reference attitudes (reference_rate.hpp). The reference
-/// contains no positions.
-///
-/// Throws BadInput with file, line, value and limit for unknown, missing or repeated columns, invalid numbers,
-/// non-finite IMU readings, a stamp that does not increase, or a truncated last line. Throws BadInput if the norm of
-/// more than a fifth of the quaternions differs from 1 by more than 1 %.
-Imported import_repoimu(const std::filesystem::path& path, bool align);
-
-/// Returns whether the file starts like a recording of RepoIMU.
-bool is_repoimu(const std::filesystem::path& path);
-
-/// Reads a flight log of AirbrakesV2 (NCSU High-Powered Rocketry Club, MIT). The names in the header identify the
-/// columns: timestamp_seconds, raw_acceleration_{x,y,z}_gs, raw_angular_rate_{x,y,z}_deg_per_s, and optionally
-/// magnetic_field_{x,y,z}_microteslas. The importer ignores other columns. The imported recording has no truth, because
-/// the filter of the log is not a reference instrument. Rows with a repeated stamp are dropped and counted. If the log
-/// has parts more than a second apart, only the longest part is used, with a note. Throws BadInput with file and line
-/// if the file is invalid.
-Imported import_airbrakes(const std::filesystem::path& path);
-
-/// Returns whether the file has the header of an AirbrakesV2 log.
-bool is_airbrakes(const std::filesystem::path& path);
-
 }  // namespace tumble::scenarios

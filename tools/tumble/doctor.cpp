@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/exchange/diagnosis.hpp"
+#include "scenarios/methods/diagnosis.hpp"
 #include "tools/tumble/chosen_method.hpp"
 #include "tools/tumble/importing.hpp"
 #include "tools/tumble/verbs.hpp"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/exchange/estimate_clock.hpp"
+#include "scenarios/methods/estimate_clock.hpp"
 #include "scenarios/methods/estimate_file.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 #include "tools/tumble/arguments.hpp"

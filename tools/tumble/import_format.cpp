@@ -20,8 +20,8 @@ namespace {
 
 using scenarios::BadInput;
 
-const std::vector<std::string> kFormats = {"airbrakes", "broad",   "csv",     "kitti",   "mcap", "pcd", "odometry",
-                                           "ply",       "repoimu", "rosbag1", "rosbag2", "tum",  "vtk"};
+const std::vector<std::string> kFormats = {"csv", "kitti",   "mcap",    "pcd", "odometry",
+                                           "ply", "rosbag1", "rosbag2", "tum", "vtk"};
 
 /// Detects the format of the files in a folder. Several ROS 1 bags are parts of one recording.
 std::string format_of_folder(const std::filesystem::path& folder) {
@@ -50,10 +50,23 @@ std::string format_of_folder(const std::filesystem::path& folder) {
   return found;
 }
 
+/// Throws BadInput for a table of a data set that the Python package reads.
+void require_no_data_set(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  std::string line;
+  std::getline(stream, line);
+  const bool repoimu = line.find(";Vicon Orientation;") != std::string::npos;
+  if (!repoimu && line.find("raw_angular_rate_x_deg_per_s") == std::string::npos) return;
+  throw BadInput(
+      fmt::format("{}: this is a file of {}; convert it with the Python package: tumble.write(\"out.h5\", "
+                  "tumble.{}(\"{}\"))",
+                  file.string(), repoimu ? "RepoIMU" : "AirbrakesV2", repoimu ? "read_repoimu" : "read_airbrakes",
+                  file.filename().string()));
+}
+
 /// Detects the format of a CSV file from its first line.
 std::string format_of_csv(const std::filesystem::path& file) {
-  if (scenarios::is_repoimu(file)) return "repoimu";
-  if (scenarios::is_airbrakes(file)) return "airbrakes";
+  require_no_data_set(file);
   try {
     return scenarios::pose_format(file);
   } catch (const BadInput&) {
@@ -69,7 +82,7 @@ std::string format_of_content(const std::filesystem::path& file) {
   if (start.starts_with("#ROSBAG V")) return "rosbag1";
   if (start.starts_with("\x89MCAP")) return "mcap";
   if (start.starts_with("SQLite format 3")) return "rosbag2";
-  return start.starts_with("\x89HDF\r\n") ? "broad" : "";
+  return start.starts_with("\x89HDF\r\n") ? "recording" : "";
 }
 
 /// Detects the format of a text file: a table with commas, or poses. The first line that is no comment decides.
@@ -101,11 +114,11 @@ std::string format_of(const ImportOptions& options) {
   if (ending == ".bag") return "rosbag1";
   if (ending == ".db3" || ending == ".zstd") return "rosbag2";
   if (ending == ".mcap") return "mcap";
-  if (ending == ".hdf5" || ending == ".h5") return "broad";
+  if (ending == ".hdf5" || ending == ".h5") return "recording";
   if (exists && (ending.empty() || ending == ".txt")) return format_of_text(options.path);
   if (ending == ".tum" || ending == ".txt" || ending == ".kitti") return scenarios::pose_format(options.path);
   throw BadInput(fmt::format(
-      "{}: the file name does not reveal the format; give --format (broad, csv, kitti, mcap, rosbag1, rosbag2 or tum)",
+      "{}: the file name does not reveal the format; give --format (csv, kitti, mcap, rosbag1, rosbag2 or tum)",
       options.path.string()));
 }
 

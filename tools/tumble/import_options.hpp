@@ -31,8 +31,8 @@ struct ImportOptions {
   // Properties of the reference.
   std::filesystem::path reference;
   std::string reference_frame;
-  bool sorted = false, align_reference = false;
-  // Topics of a bag.
+  bool sorted = false;
+  // These options select topics of a bag.
   std::vector<std::string> imu_topics, lidar_topics;
   std::string reference_topic, stamps;
   bool leave_out_topics = false;  ///< skip a faulty topic if another topic of its kind is readable

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/exchange/imu_notes.hpp"
+#include "scenarios/methods/imu_notes.hpp"
 #include "tools/tumble/arguments.hpp"
 
 namespace tumble::tools {
@@ -28,17 +28,6 @@ Imported import_format(const Session& session, const ImportOptions& options, con
     return scenarios::import_csv_folder(options.path, imu_sheet(session, options), accel_unit(options),
                                         gyro_unit(options));
   if (format == "csv") return imu_table(session, options, options.path);
-  if (format == "broad") {
-    Imported imported = scenarios::import_broad(options.path);
-    complete(imu_sheet(session, options), imported.sensors.imus.front());
-    return imported;
-  }
-  if (format == "repoimu" || format == "airbrakes") {
-    Imported imported = format == "repoimu" ? scenarios::import_repoimu(options.path, options.align_reference)
-                                            : scenarios::import_airbrakes(options.path);
-    complete(imu_sheet(session, options), imported.sensors.imus.front());
-    return imported;
-  }
   if (format == "rosbag1") return scenarios::import_ros1_bag(options.path, bag_reading(session, options));
   if (format == "rosbag2") return scenarios::import_ros2_bag(options.path, bag_reading(session, options));
   if (format == "mcap") return scenarios::import_mcap(options.path, bag_reading(session, options));
@@ -101,19 +90,14 @@ void open_own(const Session& session, OpenRecording& out) {
   for (std::string& note : scenarios::imu_notes(out.content)) out.content.notes.push_back(std::move(note));
 }
 
-bool is_own_recording(const std::filesystem::path& path) {
-  try {
-    (void)scenarios::read_info(path);
-    return true;
-  } catch (const BadInput&) {
-    return false;
-  }
-}
-
 }  // namespace
 
 Imported import_recording(const Session& session, const ImportOptions& options, const std::string& format,
                           scenarios::LidarRotationCheck& rotation) {
+  if (format == "recording") {
+    (void)scenarios::read_info(options.path);  // throws for an HDF5 file of another program
+    throw BadInput(options.path.string() + ": this file is already a recording; use the file directly, without import");
+  }
   Imported imported = import_format(session, options, format);
   if (!options.imu.empty()) {
     scenarios::attach_imus(imported, imu_table(session, options, options.imu));
@@ -136,7 +120,7 @@ OpenRecording open_recording(const Session& session, ImportOptions options) {
   out.options = std::move(options);
   out.options.leave_out_topics = true;
   out.format = format_of(out.options);
-  if (out.format == "broad" && is_own_recording(out.options.path)) {
+  if (out.format == "recording") {
     open_own(session, out);
     return out;
   }

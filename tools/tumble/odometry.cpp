@@ -10,7 +10,7 @@
 #include <span>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/exchange/diagnosis.hpp"
+#include "scenarios/methods/diagnosis.hpp"
 #include "scenarios/methods/estimate_file.hpp"
 #include "scenarios/methods/given_parameters.hpp"
 #include "scenarios/methods/map_file.hpp"

@@ -71,8 +71,6 @@ std::string require_plausible_rates(const std::string& where, const sim::ImuReco
 /// is insufficient for a check.
 std::string rates_text(const std::string& where, const sim::ImuRecord& imu, GyroUnit unit);
 
-inline constexpr double kTeslaPerMicrotesla = 1e-6;
-
 /// Returns the factor that converts the unit to m/s^2 or rad/s.
 double scale_of(AccelUnit unit);
 double scale_of(GyroUnit unit);

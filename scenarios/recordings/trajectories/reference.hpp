@@ -77,11 +77,4 @@ std::size_t count_kitti_poses(const std::filesystem::path& file);
 /// whichever is earlier. Throws BadInput if no pose is known, or if the truth would be longer than a day.
 sim::Truth reference_truth(const std::vector<ReferencePose>& poses, std::int64_t end_ns);
 
-/// Returns the rotation vector of `q`, with an angle of at most pi.
-Eigen::Vector3d rotation_vector(const Eigen::Quaterniond& q);
-
-/// Computes velocity and rate of the truth by central differences over `reach` samples on each side. Velocity and rate
-/// are unknown if one of the samples within `reach` is unknown.
-void differentiate(sim::Truth& truth, std::size_t reach);
-
 }  // namespace tumble::scenarios

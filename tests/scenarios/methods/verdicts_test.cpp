@@ -166,8 +166,6 @@ TEST(Verdicts, AttitudesTellWrongReadingsOfATumble) {
   for (const char* wrong :
        {"gyro_zero", "gyro_flipped", "gyro_halved", "gyro_x_y_swapped", "accel_without_gravity", "accel_x_y_swapped"})
     EXPECT_TRUE(tells("attitude/tumble", wrong)) << wrong;
-  EXPECT_FALSE(tells("attitude/tumble_batch", "none"));
-  EXPECT_TRUE(tells("attitude/tumble_batch", "gyro_zero")) << "it makes the turning up itself";
 }
 
 struct SaidOfRates {
@@ -257,7 +255,6 @@ TEST(Verdicts, AttitudesTellAWandWhoseGyroIsNamedOtherwise) {
   };
   EXPECT_FALSE(tells("attitude/tumble", "none"));
   EXPECT_TRUE(tells("attitude/tumble", "gyro_z_flipped")) << "about which it hardly turns";
-  EXPECT_TRUE(tells("attitude/tumble_batch", "gyro_z_flipped"));
 }
 
 // The scoring uses the covariances from before the findings increased them.

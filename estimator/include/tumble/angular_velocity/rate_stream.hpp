@@ -83,12 +83,6 @@ class RateStream {
   /// accelerometer from impacts, unless the data sheet excludes a delay (RateStreamDelay).
   KnownSensorErrors sensor_errors(const State& state) const;
 
-  /// Returns true if two states lead to identical results, bit for bit. The comparison ignores buffers.
-  static bool equal(const State& a, const State& b);
-
-  /// Checks the consistency of a state that was loaded from a file. Returns the first violated condition.
-  Status check_state(const State& state) const;
-
  private:
   void marginalise_leaving(State& state) const;
   void marginalise(std::size_t first, State& state) const;

@@ -42,10 +42,6 @@ class Localisation {
   /// Returns the time of the sweep with which the finding of current_verdict() began.
   std::optional<TimeNs> lost_since_ns() const { return lost_since_ns_ ? lost_since_ns_ : previous_contradicted_ns_; }
 
-  /// Calls `visit` for every member of the state (see state_visitor.hpp).
-  template <class Self, class Visitor>
-  static void members(Self& s, Visitor& visit);
-
  private:
   double matched_m_;
   bool map_started_ = false;

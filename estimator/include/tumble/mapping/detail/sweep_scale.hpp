@@ -62,10 +62,6 @@ class SweepScaleEstimator {
 
   const SweepScale& scale() const { return scale_; }
 
-  /// Calls `visit` for every member of the state (see state_visitor.hpp).
-  template <class Self, class Visitor>
-  static void members(Self& s, Visitor& visit);
-
  private:
   double gravity_m_s2_;
   std::size_t samples_max_;
