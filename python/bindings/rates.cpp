@@ -124,10 +124,6 @@ void bind_batch(nb::module_& m) {
       .def_prop_ro(
           "planes", [](const RateReport& r) { return as_list(r.planes); },
           nb::for_getter(nb::sig("def planes(self) -> list[RailPlane | None]")), "rails of the gyro elements")
-      .def_ro("rate_unit_suspect", &RateReport::rate_unit_suspect,
-              "True if the rates are implausible, for example because they are in deg/s")
-      .def_ro("force_unit_suspect", &RateReport::force_unit_suspect,
-              "True if the magnitude of the specific force is near 1, so that its unit may be g")
       .def_ro("samples", &RateReport::samples)
       .def_ro("clipped", &RateReport::clipped)
       .def_ro("recovered_flight", &RateReport::recovered_flight)

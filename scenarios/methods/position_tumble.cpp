@@ -9,7 +9,6 @@
 #include <string>
 #include <utility>
 
-#include "scenarios/methods/imu_check.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/robot_presets.hpp"
 #include "scenarios/methods/settings.hpp"
@@ -69,9 +68,9 @@ sim::ContactLabel contact_label(double radius_m, const RollingOdometry::Pose& po
   return slip_or_slide(radius_m, pose.pose.q_WA, pose.angular_velocity_rad_s, pose.pose.v_WA_m_s);
 }
 
-/// Adds the findings about the IMUs, which refer to the whole recording, to the estimate.
+/// Adds the calibration of the IMUs from the whole recording to the health.
 void report_whole(const MergedFindings& whole, std::span<const std::string> names, Estimate& estimate) {
-  report_merged(whole, names, estimate);
+  if (whole.merged.lever_arm_agreement) estimate.health["imu_arm_share"] = *whole.merged.lever_arm_agreement;
   estimate.health["imu_readings_left_out"] = static_cast<double>(whole.merged.excluded_readings);
   if (whole.merged.units.size() < 2) return;
   for (const MergedRecordings::Unit& unit : whole.merged.units) {
@@ -150,8 +149,7 @@ Estimate run(const char* method, const Settings<RollingOdometry::Params>& settin
   estimate.status = replay(units.recordings, odometry, params.radius_m, units.names, estimate);
   estimate.health["imus"] = static_cast<double>(params.units.size());
   if (odometry.recording() != nullptr) report_whole(*odometry.recording(), units.names, estimate);
-  report_stamps(sensors, estimate);
-  report_beyond_range(units.beyond_range, sensors, estimate);
+  report_beyond_range(units.beyond_range, estimate);
   report(odometry, params, estimate);
   return estimate;
 }

@@ -126,10 +126,8 @@ Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& paramet
     if (std::optional<CalibratedRig> rig = learnt(stream, params.rate, given, state)) *found = std::move(rig);
   }
   if (estimate.status.ok()) {
-    // The rates are already final, so the findings do not change their covariance.
-    const ImuFindings findings = check_recording(checked_imu(sensors), samples, estimate.rates, carried_share);
-    report_findings(findings, sensors, estimate);
-    report_stamps(sensors, estimate);
+    // The method only reports the findings, because the rates are already final.
+    (void)check_imu_with_rates(sensors, samples, estimate.rates, carried_share, estimate);
   }
   count_sources(estimate.rates, estimate.health);
   return estimate;

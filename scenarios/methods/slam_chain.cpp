@@ -76,7 +76,7 @@ Estimate begin_with_rates(const sim::Sensors& sensors, std::vector<ImuSample>& s
   if (estimate.status.ok()) estimate.status = rates(estimate);
   if (!estimate.status.ok()) return estimate;
   const ImuFindings frozen = check_frozen(checked_imu(sensors), samples);
-  report_findings(frozen, sensors, estimate);
+  report_findings(frozen.health, sensors, estimate);
   inflate_rates(frozen, samples, estimate);
   flag_saturated_forces(stated_rails(sensors.imus.front()), samples);
   return estimate;
@@ -144,7 +144,7 @@ bool run_slam_chain(const sim::Sensors& sensors, std::span<const ImuSample> samp
   SensorHealth health;
   mapped.add_findings(scale, health);
   add_findings(health, {}, estimate);
-  return conclude(mapped.mapper, mapped.localisation, chain.calibration ? &scale : nullptr, estimate);
+  return conclude(mapped.mapper, estimate);
 }
 
 }  // namespace tumble::scenarios

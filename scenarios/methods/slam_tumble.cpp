@@ -80,11 +80,7 @@ using SweepProgress = TumblingOdometry::SweepProgress;
 class Collector {
  public:
   Collector(Output output, const TumblingOdometry::Params& params, std::string imu, Estimate& estimate)
-      : output_(output),
-        given_(params.stated_calibration()),
-        localisation_(params.expert.mapping.expert.matching.distance_m),
-        estimate_(estimate),
-        names_{std::move(imu)} {}
+      : output_(output), given_(params.stated_calibration()), estimate_(estimate), names_{std::move(imu)} {}
 
   /// Stores the live pose after each processed sample.
   void observe(const TumblingOdometry& odometry) {
@@ -102,7 +98,6 @@ class Collector {
       std::vector<PoseState> smoothed = std::move(sweep->report.smoothed);
       const TimeNs end_ns = sweep->report.pose.time_ns;
       found_.observe(odometry.health());
-      localisation_.add(sweep->report);
       append_sweep(sweep->status, end_ns, std::move(sweep->report), estimate_);
       apply_next(std::move(smoothed));
     }
@@ -116,7 +111,7 @@ class Collector {
     estimate_.health["lidar_calibration_mahalanobis"] = given_.deviations(odometry.mapper().calibration());
     found_.observe(odometry.health());
     add_findings(found_, names_, estimate_);
-    scenarios::conclude(odometry.mapper(), localisation_, &odometry.sweep_scale(), estimate_);
+    scenarios::conclude(odometry.mapper(), estimate_);
   }
 
  private:
@@ -141,7 +136,6 @@ class Collector {
 
   Output output_;
   StatedCalibration given_;
-  Localisation localisation_;
   Estimate& estimate_;
   std::vector<std::string> names_;
   SensorHealth found_;
@@ -200,8 +194,7 @@ void report_whole(const RecordingEstimate& whole, const sim::Sensors& sensors, E
   estimate.suspect_rad2_s2 = whole.suspect_rad2_s2;
   for (std::size_t k = 0; k < estimate.rates.size(); ++k) estimate.rates[k].time_ns = whole.stamps_ns[k];
   report_rates(whole.report, estimate);
-  report_findings(whole.findings, sensors, estimate);
-  report_inflated(whole.findings, estimate);
+  report_findings(whole.findings.health, sensors, estimate);
   count_sources(estimate.rates, estimate.health);
   if (whole.corrected_jitter_s > 0.0) estimate.health["stamps_mended_s"] = whole.corrected_jitter_s;
   for (std::size_t left = whole.mapped.unfinished_sweeps; left > 0; --left) leave_out_unfinished(estimate);
@@ -241,7 +234,6 @@ Estimate run(Output output, const Settings<TumblingOdometry::Params>& settings, 
   Collector collector(output, params, sensors.imus.front().name, estimate);
   estimate.status = replay(sensors, samples, output == Output::whole, odometry, collector, on_sweep, estimate);
   if (odometry.recording()) report_whole(*odometry.recording(), sensors, estimate);
-  report_stamps(sensors, estimate);
   if (!estimate.status.ok()) return estimate;
   const std::size_t left_out = sensors.imus.front().time_ns.size() - samples.size();
   const std::size_t rejected = left_out + odometry.rejected_readings();

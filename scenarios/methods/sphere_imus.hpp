@@ -30,8 +30,8 @@ struct MergedImus {
   int beyond_range = 0;            ///< see SphereImus
 };
 
-/// Adds the number of readings that were dropped because they exceed the device's range to the health.
-void report_beyond_range(int readings, const sim::Sensors& sensors, Estimate& estimate);
+/// Adds the number of dropped readings beyond the range of the device to the estimate's health.
+void report_beyond_range(int readings, Estimate& estimate);
 
 /// Merges the readings of all IMUs of a sphere by merge_recordings().
 Status merge_imus(const sim::Sensors& sensors, MergedImus& out);

@@ -8,9 +8,6 @@ SensorHealth RateStream::health(const State& state) const {
   SensorHealth out;
   frozen_.add_findings(HealthFinding::Kind::frozen_axis, "imu", state.frozen, out);
   out.add(HealthFinding::Kind::flight_forces, flight_sign_check_.current_verdict(state.sense), "imu");
-  const double fastest = state.frozen.rate_max_so_far_rad_s, limit = params_.model.rate_max_rad_s;
-  if (fastest > limit)
-    out.add(HealthFinding::Kind::rate_unit, {ErrorCode::out_of_range, "angular_velocity_rad_s", fastest, limit}, "imu");
   return out;
 }
 

@@ -189,7 +189,7 @@ Status RollingOdometry::add_inliers(std::span<const ImuSample> samples) {
     return status;
   }
   if (Status status = imu_merge_.step(judged, *merge_state_buffer_, merged); !status.ok()) return status;
-  if (Status status = imu_merge_.verdict(*merge_state_buffer_); !status.ok()) return status;
+  if (Status status = ImuMerge::verdict(*merge_state_buffer_); !status.ok()) return status;
   if (merged) {
     if (Status status = process_accepted_sample(*merged); !status.ok()) return status;
   }

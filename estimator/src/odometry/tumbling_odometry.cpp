@@ -178,9 +178,9 @@ SensorHealth TumblingOdometry::health() const {
   if (is_whole()) return whole_ ? whole_->health : SensorHealth{};
   using Kind = HealthFinding::Kind;
   SensorHealth out = pass_.rates().rate().health(pass_.rate_state().rate);
-  out.add(Kind::force_at_rest, pass_.check_force_at_rest(), "imu", "", {}, 1.0);
+  out.add(Kind::force_at_rest, pass_.check_force_at_rest(), "imu");
   add_findings(plausibility_, plausibility_state_, "imu", out);
-  out.add(Kind::lidar_scale, pass_.sweep_scale().verdict(), "lidar", "", {}, 1.0);
+  out.add(Kind::lidar_scale, pass_.sweep_scale().verdict(), "lidar");
   out.add(Kind::vertical_unknown, mapper().check_vertical(), "");
   out.add(Kind::not_localised, mapper().localised(), "");
   const Localisation& localisation = pass_.localisation();

@@ -130,7 +130,6 @@ TEST(RateLearnt, AnotherRigsInertiaIsDoubtedAndNotPassedOn) {
     const Estimate estimate = calibrating_method(batch, right).run(hill_of_one_rig(seed), {}, {});
     EXPECT_FALSE(has_finding(HealthFinding::Kind::rig_calibration, estimate))
         << seed << ' ' << estimate.faults.message();
-    EXPECT_FALSE(estimate.health.contains("learnt_rig_contradicted"));
   }
   const sim::Sensors sensors = hill_of_one_rig(96101);
   for (const char* const name : {"rate/tumble", "rate/tumble_lag"}) {
@@ -139,7 +138,6 @@ TEST(RateLearnt, AnotherRigsInertiaIsDoubtedAndNotPassedOn) {
       other.given->calibration.constants.inertia[shape] += 0.3;
       const Estimate estimate = calibrating_method(*find_methods(name).front(), other).run(sensors, {}, {});
       EXPECT_TRUE(has_finding(HealthFinding::Kind::rig_calibration, estimate)) << name << ' ' << shape;
-      EXPECT_GT(estimate.health.at("learnt_rig_contradicted"), 2.0);
       EXPECT_EQ(other.found(), nullptr) << "the file stays as it is";
     }
   }

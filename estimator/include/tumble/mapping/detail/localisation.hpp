@@ -32,9 +32,6 @@ class Localisation {
   /// Processes a sweep that has a pose. Sweeps must be in time order. Cost: O(1).
   void add(const SweepReport& sweep);
 
-  double largest_sigma_m() const { return largest_sigma_m_; }
-  /// Returns the second largest SweepReport::innovation.
-  double second_largest_innovation() const { return second_largest_innovation_; }
   /// Returns `out_of_range` with the finding and the violated limit, or `ok` without a finding.
   Status verdict() const;
   /// Returns `out_of_range` with the current finding and the violated limit, or `ok` without a finding.
