@@ -27,8 +27,6 @@ constexpr std::array kMeanings = {
     Meaning{"unit_frozen", false, "the IMU repeats one reading, and its readings are left out; check the sensor"},
     Meaning{"unit_silent", false, "the IMU delivers no readings"},
     Meaning{"unit_disagrees", false, "the IMU disagrees with the other IMUs, and its readings are left out"},
-    Meaning{"rate_unit", false, "the gyro's readings seem to be in another unit than rad/s; check the unit"},
-    Meaning{"force_unit", false, "the accelerometer's readings seem to be in another unit than m/s^2; check the unit"},
     Meaning{
         "force_at_rest", true,
         "the force at rest differs from gravity, probably because of a wrong unit or scale of the accelerometer; do "
