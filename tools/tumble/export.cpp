@@ -9,6 +9,7 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/dialects/export_for.hpp"
 #include "scenarios/recordings/replace_file.hpp"
+#include "scenarios/scoring/estimate_in_bag.hpp"
 #include "tools/tumble/arguments.hpp"
 #include "tools/tumble/verbs.hpp"
 

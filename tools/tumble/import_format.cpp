@@ -114,7 +114,7 @@ std::string format_of(const ImportOptions& options) {
   if (ending == ".bag") return "rosbag1";
   if (ending == ".db3" || ending == ".zstd") return "rosbag2";
   if (ending == ".mcap") return "mcap";
-  if (ending == ".hdf5" || ending == ".h5") return "broad";
+  if (ending == ".hdf5" || ending == ".h5") return "recording";
   if (exists && (ending.empty() || ending == ".txt")) return format_of_text(options.path);
   if (ending == ".tum" || ending == ".txt" || ending == ".kitti") return scenarios::pose_format(options.path);
   throw BadInput(fmt::format(

@@ -87,11 +87,7 @@ def rising(field: str, times: Array) -> None:
 
 
 def symmetric(field: str, matrices: Array) -> None:
-<<<<<<< HEAD
     """Raises TumbleError if one of the covariances (N, M, M) is not symmetric to single precision."""
-=======
-    """Raises TumbleError if one of the covariances (N, M, M) is not symmetric. The tolerance allows rounding to single precision."""
->>>>>>> words_hdr
     deviation = np.sqrt(np.maximum(np.diagonal(matrices, axis1=1, axis2=2), 0.0))
     apart = np.abs(matrices - matrices.transpose(0, 2, 1)) > SYMMETRIC * deviation[:, :, None] * deviation[:, None, :]
     bad = np.flatnonzero(apart.any(axis=(1, 2)))
@@ -100,11 +96,7 @@ def symmetric(field: str, matrices: Array) -> None:
 
 
 def rigid(field: str, given: Any) -> None:
-<<<<<<< HEAD
     """Raises TumbleError if `given` is not a rigid transform (4, 4)."""
-=======
-    """Raises TumbleError if `given` is not a rigid transform, (4, 4)."""
->>>>>>> words_hdr
     pose = unmasked(field, given)
     if pose.shape != (4, 4):
         raise refusal("shape", field, pose.shape, (4, 4))
