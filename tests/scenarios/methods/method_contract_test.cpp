@@ -268,7 +268,7 @@ TEST(Registry, TheFirstOfOursIsTheOneThatIsCalledTumble) {
 }
 
 TEST(Registry, FindsByNameAndByKindAndName) {
-  EXPECT_EQ(find_methods("oracle").size(), 4u);
+  EXPECT_EQ(find_methods("oracle").size(), 3u);
   ASSERT_EQ(find_methods("rate/oracle").size(), 1u);
   EXPECT_EQ(find_methods("rate/oracle").front()->info.kind, Kind::rate);
   try {
