@@ -41,14 +41,14 @@ std::vector<std::byte> RollingOdometry::save() const {
                           ? std::optional(*params_.expert.rolling.filter.calibration)
                           : std::nullopt;
   if (state_->live.started) saved.calibration = RollingFilter::calibration(state_->live);
-  RollingOdometry ended(*this);
-  if (state_->live.started) ended.restart_at_newest(0.0);
-  if (ended.start_) {
+  const auto ended = std::make_unique<RollingOdometry>(*this);
+  if (state_->live.started) ended->restart_at_newest(0.0);
+  if (ended->start_) {
     saved.pose.emplace();
     saved.pose->time_ns = state_->live.last_time_ns;
-    saved.pose->p_WA_m = ended.start_->translation();
-    saved.pose->q_WA = Eigen::Quaterniond(ended.start_->linear()).normalized();
-    if (ended.restart_) saved.pose->covariance = ended.restart_->covariance;
+    saved.pose->p_WA_m = ended->start_->translation();
+    saved.pose->q_WA = Eigen::Quaterniond(ended->start_->linear()).normalized();
+    if (ended->restart_) saved.pose->covariance = ended->restart_->covariance;
   }
   odometry::SavedWriter out;
   visit_saved(out, std::as_const(saved));
