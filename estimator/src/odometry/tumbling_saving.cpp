@@ -129,6 +129,10 @@ std::optional<PoseState> newest_or_start(const TumblingOdometry& odometry) {
 }  // namespace
 
 std::vector<std::byte> TumblingOdometry::save() const {
+  return save_at(newest_or_start(*this));  // the pose needs most of the stack, so this function needs little
+}
+
+std::vector<std::byte> TumblingOdometry::save_at(const std::optional<PoseState>& pose) const {
   const auto out = std::make_unique<SavedTumbling>();  // too large for a small stack
   out->lever_arm_I_m = params_.lever_arm_I_m;
   out->stated_T_IL = stated_.calibration.T_IL;
@@ -147,7 +151,7 @@ std::vector<std::byte> TumblingOdometry::save() const {
 
   const PriorMap* const prior = mapper().prior_map();
   out->extend = prior == nullptr || prior->extend;
-  out->pose = newest_or_start(*this);
+  out->pose = pose;
   return write(*out, mapper().localised().ok() ? mapper().map() : prior->points);
 }
 
