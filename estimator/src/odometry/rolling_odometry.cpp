@@ -251,7 +251,7 @@ std::optional<RollingOdometry::Pose> RollingOdometry::take() {
 }
 
 RollingOdometry::Calibration RollingOdometry::calibration() const {
-  const bool newest = live_ || !state_->committed.started;
+  const bool newest = live_ || (!finished_ && !state_->committed.started);
   const RollingNominal& constants = newest ? state_->live.nominal : state_->constants;
   return {-constants.lever_arm_error_m, params_.radius_m + constants.radius_error_m, state_->radius_sigma_m};
 }

@@ -36,19 +36,23 @@ void visit_saved(Visit& visit, Saved& saved) {
 }  // namespace
 
 std::vector<std::byte> RollingOdometry::save() const {
-  SavedRolling saved{params_.radius_m, imu_merge_.p_C_m(), static_cast<std::uint32_t>(params_.units.size()), {}, {}};
-  saved.calibration = params_.expert.rolling.filter.calibration
-                          ? std::optional(*params_.expert.rolling.filter.calibration)
-                          : std::nullopt;
-  if (state_->live.started) saved.calibration = RollingFilter::calibration(state_->live);
-  RollingOdometry ended(*this);
-  if (state_->live.started) ended.restart_at_newest(0.0);
-  if (ended.start_) {
-    saved.pose.emplace();
-    saved.pose->time_ns = state_->live.last_time_ns;
-    saved.pose->p_WA_m = ended.start_->translation();
-    saved.pose->q_WA = Eigen::Quaterniond(ended.start_->linear()).normalized();
-    if (ended.restart_) saved.pose->covariance = ended.restart_->covariance;
+  const auto ended = std::make_unique<RollingOdometry>(*this);
+  if (state_->live.started) ended->restart_at_newest(0.0);  // needs most of the stack, so this function needs little
+  if (!ended->start_) return save_at(std::nullopt);
+  PoseState pose;
+  pose.time_ns = state_->live.last_time_ns;
+  pose.p_WA_m = ended->start_->translation();
+  pose.q_WA = Eigen::Quaterniond(ended->start_->linear()).normalized();
+  if (ended->restart_) pose.covariance = ended->restart_->covariance;
+  return save_at(pose);
+}
+
+std::vector<std::byte> RollingOdometry::save_at(const std::optional<PoseState>& pose) const {
+  SavedRolling saved{params_.radius_m, imu_merge_.p_C_m(), static_cast<std::uint32_t>(params_.units.size()), {}, pose};
+  if (state_->live.started) {
+    saved.calibration = RollingFilter::calibration(state_->live);
+  } else if (params_.expert.rolling.filter.calibration) {
+    saved.calibration = *params_.expert.rolling.filter.calibration;
   }
   odometry::SavedWriter out;
   visit_saved(out, std::as_const(saved));

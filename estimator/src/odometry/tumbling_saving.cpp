@@ -71,9 +71,9 @@ std::vector<std::byte> write(const SavedTumbling& saved, std::span<const MapPoin
   return std::move(out).finish(odometry::SavedKind::tumbling);
 }
 
-/// Reads a saved run. `given` contains the stated parameters of the object that loads the run.
-Status read(std::span<const std::byte> bytes, const SavedTumbling& given, SavedTumbling& saved,
-            std::vector<MapPoint>& map) {
+/// Reads a saved run, whose stated lever arm and mounting must equal those of the object that loads the run.
+Status read(std::span<const std::byte> bytes, const Eigen::Vector3d& lever_arm_I_m, const Eigen::Isometry3d& T_IL,
+            SavedTumbling& saved, std::vector<MapPoint>& map) {
   odometry::SavedReader in(odometry::SavedKind::tumbling, bytes);
   in("lever_arm_m", saved.lever_arm_I_m);
   in("T_IL", saved.stated_T_IL);
@@ -84,8 +84,8 @@ Status read(std::span<const std::byte> bytes, const SavedTumbling& given, SavedT
   if (in.present("pose", saved.pose)) odometry::visit_pose(in, *saved.pose);
   if (saved.pose) odometry::check_pose(in, *saved.pose);
   in("extend", saved.extend);
-  in.require_equal("lever_arm_m", saved.lever_arm_I_m, given.lever_arm_I_m);
-  in.require_equal("T_IL", saved.stated_T_IL.matrix(), given.stated_T_IL.matrix());
+  in.require_equal("lever_arm_m", saved.lever_arm_I_m, lever_arm_I_m);
+  in.require_equal("T_IL", saved.stated_T_IL.matrix(), T_IL.matrix());
   if (!in.status().ok()) return in.status();
   if (saved.rig) {
     if (const Status status = check_calibration(*saved.rig); !status.ok()) return status;
@@ -129,35 +129,40 @@ std::optional<PoseState> newest_or_start(const TumblingOdometry& odometry) {
 }  // namespace
 
 std::vector<std::byte> TumblingOdometry::save() const {
-  SavedTumbling out;
-  out.lever_arm_I_m = params_.lever_arm_I_m;
-  out.stated_T_IL = stated_.calibration.T_IL;
+  return save_at(newest_or_start(*this));  // the pose needs most of the stack, so this function needs little
+}
+
+std::vector<std::byte> TumblingOdometry::save_at(const std::optional<PoseState>& pose) const {
+  const auto out = std::make_unique<SavedTumbling>();  // too large for a small stack
+  out->lever_arm_I_m = params_.lever_arm_I_m;
+  out->stated_T_IL = stated_.calibration.T_IL;
   const RateStream& stream = pass_.rates().rate();
   const RateStream::State& state = pass_.rate_state().rate;
   const RateStreamParams& used = pass_.rates().params().rate;
   const bool estimated = whole_ ? !whole_->report.rate.calibration_at_prior : !is_at_prior(stream, state);
-  const RigCalibration found = rig();
-  if ((estimated || used.model.calibration) && check_calibration(found).ok()) out.rig = found;
-  if (whole_ && estimated) out.sensor_errors = whole_->report.rate.sensor_errors;
+  if (estimated || used.model.calibration) out->rig = rig();
+  if (out->rig && !check_calibration(*out->rig).ok()) out->rig.reset();
+  if (whole_ && estimated) out->sensor_errors = whole_->report.rate.sensor_errors;
   if (!whole_ && (state.device.front().delay.found || used.calibrated_errors))
-    out.sensor_errors = stream.sensor_errors(state);
-  out.rails = rails();
+    out->sensor_errors = stream.sensor_errors(state);
+  out->rails = rails();
   const auto sigma = mapper().calibration_weighting_covariance().diagonal().cwiseSqrt().eval();
-  out.lidar = {mapper().calibration(), sigma.head<3>().maxCoeff(), sigma.segment<3>(3).maxCoeff(), sigma[6]};
+  out->lidar = {mapper().calibration(), sigma.head<3>().maxCoeff(), sigma.segment<3>(3).maxCoeff(), sigma[6]};
 
   const PriorMap* const prior = mapper().prior_map();
-  out.extend = prior == nullptr || prior->extend;
-  out.pose = newest_or_start(*this);
-  return write(out, mapper().localised().ok() ? mapper().map() : prior->points);
+  out->extend = prior == nullptr || prior->extend;
+  out->pose = pose;
+  return write(*out, mapper().localised().ok() ? mapper().map() : prior->points);
 }
 
 Status TumblingOdometry::load(std::span<const std::byte> bytes, std::optional<PoseState>* last_pose) {
-  SavedTumbling given, saved;
-  given.lever_arm_I_m = params_.lever_arm_I_m;
-  given.stated_T_IL = stated_.calibration.T_IL;
+  const auto heap = std::make_unique<SavedTumbling>();  // too large for a small stack
+  SavedTumbling& saved = *heap;
   PriorMap map;
-  if (const Status status = read(bytes, given, saved, map.points); !status.ok()) return status;
-  Params params = params_;
+  const Status read_status = read(bytes, params_.lever_arm_I_m, stated_.calibration.T_IL, saved, map.points);
+  if (!read_status.ok()) return read_status;
+  const auto changed = std::make_unique<Params>(params_);
+  Params& params = *changed;
   RateStreamParams& rate = params.expert.rate.rate;
   if (saved.rig) {
     rate.model.nominal.gyro_bias_rad_s = saved.rig->constants.gyro_bias_rad_s;

@@ -217,6 +217,7 @@ class RollingOdometry {
   using Frozen = std::array<FrozenAxes::State, ImuMerge::kImus>;
   using Outliers = std::array<OutlierFilter::State, ImuMerge::kImus>;
 
+  std::vector<std::byte> save_at(const std::optional<PoseState>& pose) const;
   RollingOdometry(const Params& params, const ImuMerge::Params& merged);
 
   void restart_at_newest(double gap_s);

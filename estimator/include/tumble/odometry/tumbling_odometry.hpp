@@ -218,6 +218,7 @@ class TumblingOdometry {
   Status load(std::span<const std::byte> bytes, std::optional<PoseState>* last_pose = nullptr);
 
  private:
+  std::vector<std::byte> save_at(const std::optional<PoseState>& pose) const;
   Status add_reading(const OdometerReading& reading);
   Status process_accepted_sample(const ImuSample& sample);
   void register_sweep(TimeNs start_ns, TimeNs end_ns, std::vector<LidarPoint> points);

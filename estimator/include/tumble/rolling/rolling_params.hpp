@@ -60,7 +60,7 @@ struct RollingParams {
   double accel_range_m_s2 = 1e5;
   /// Calibration from an earlier run, which replaces the prior of the sensor errors, the lever arm and the radius.
   /// Biases keep the prior's uncertainty in addition, because biases change at every switch-on.
-  std::shared_ptr<const RollingCalibration> calibration;
+  std::shared_ptr<const RollingCalibration> calibration = {};
   double speed_max_m_s = 2.5;  ///< maximum speed of the sphere; grip at a higher speed is rejected
 
   using Expert = RollingExpertParams;

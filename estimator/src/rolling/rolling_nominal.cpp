@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// rolling_nominal.cpp converts between the error state and the nominal trajectory and constants.
+#include "rolling_node.hpp"
+#include "tumble/common/so3.hpp"
+
+namespace tumble::rolling {
+
+Eigen::Matrix<double, RollingCalibration::kSize, 1> constants_of(const RollingNominal& nominal) {
+  Eigen::Matrix<double, RollingCalibration::kSize, 1> out;
+  out << nominal.gyro_bias_rad_s, nominal.accel_bias_m_s2, nominal.accel_scale.reshaped(),
+      nominal.gyro_scale.reshaped(), nominal.accel_delay_s, nominal.lever_arm_error_m, nominal.slope,
+      nominal.radius_error_m;
+  return out;
+}
+
+/// Adds the estimated errors x to the nominal states: rolling.md (R1).
+void move_linearisation_point(const Vector& x, RollingNominal& nominal) {
+  nominal.q_WI = (so3::exp(x.segment<3>(kAttitude)) * nominal.q_WI).normalized();
+  nominal.v_WI_m_s += x.segment<3>(kVelocity);
+  nominal.p_WI_m += x.segment<3>(kPosition);
+  nominal.gyro_bias_rad_s += x.segment<3>(kGyroBias);
+  nominal.accel_bias_m_s2 += x.segment<3>(kAccelBias);
+  nominal.accel_scale += Eigen::Map<const Eigen::Matrix3d>(x.data() + kAccelScale);
+  nominal.gyro_scale += Eigen::Map<const Eigen::Matrix3d>(x.data() + kGyroScale);
+  nominal.accel_delay_s += x[kDelay];
+  nominal.lever_arm_error_m += x.segment<3>(kLeverArm);
+  nominal.slope += x.segment<2>(kSlope);
+  nominal.radius_error_m += x[kRadius];
+}
+
+}  // namespace tumble::rolling
