@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "scenarios/methods/bridge.hpp"
-#include "scenarios/methods/imu_check.hpp"
 #include "scenarios/methods/method.hpp"
 
 /// Every attitude method calls run_attitude_filter, which runs a filter sample by sample on the primary IMU.
@@ -22,7 +21,6 @@ Estimate run_attitude_filter(const sim::Sensors& sensors, const typename Filter:
   estimate.status = bridge::primary_imu_samples(sensors, samples);
   if (!estimate.status.ok()) return estimate;
 
-  (void)check_imu(sensors, samples, estimate);  // a warning: constant external pushes cause the same readings
   typename Filter::State state;
   estimate.attitudes.reserve(samples.size());
   for (const ImuSample& sample : samples) {

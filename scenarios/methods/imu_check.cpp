@@ -18,13 +18,8 @@ void report_findings(const SensorHealth& health, const sim::Sensors& sensors, Es
   add_findings(health, {&sensors.imus.front().name, 1}, estimate);
 }
 
-void check_imu(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate) {
-  report_findings(check_readings(checked_imu(sensors), samples), sensors, estimate);
-}
-
-ImuFindings check_imu_with_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples,
-                                 std::span<const RateState> rates, std::optional<double> carried_share,
-                                 Estimate& estimate) {
+ImuFindings check_imu(const sim::Sensors& sensors, std::span<const ImuSample> samples, std::span<const RateState> rates,
+                      std::optional<double> carried_share, Estimate& estimate) {
   ImuFindings out = check_recording(checked_imu(sensors), samples, rates, carried_share);
   report_findings(out.health, sensors, estimate);
   return out;

@@ -148,8 +148,7 @@ Estimate rates_of_batch(const sim::Sensors& sensors, const sim::Values& paramete
     if (estimate.status.ok()) {
       report_rates(report, estimate);
       report_gaps(samples, estimate);
-      inflate_rates(check_imu_with_rates(sensors, samples, estimate.rates, carried_share(report), estimate), samples,
-                    estimate);
+      inflate_rates(check_imu(sensors, samples, estimate.rates, carried_share(report), estimate), samples, estimate);
       if (std::optional<CalibratedRig> rig = learnt(report.rate, given, params.model); rig && found != nullptr)
         *found = std::move(rig);
     }

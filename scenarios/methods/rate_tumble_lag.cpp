@@ -127,7 +127,7 @@ Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& paramet
   }
   if (estimate.status.ok()) {
     // The method only reports the findings, because the rates are already final.
-    (void)check_imu_with_rates(sensors, samples, estimate.rates, carried_share, estimate);
+    (void)check_imu(sensors, samples, estimate.rates, carried_share, estimate);
   }
   count_sources(estimate.rates, estimate.health);
   return estimate;

@@ -46,9 +46,10 @@ bool check_readings(const CheckedImu& imu, std::span<const ImuSample> samples, S
   }
   add_findings(plausibility, state, kImu, health);
   health.add(Kind::force_at_rest, gravity.magnitude_verdict(at_rest), kImu);
-  const PivotCheck pivots =
-      PivotCheck::of(samples, imu.gravity_m_s2, imu.merged ? 0.0 : imu.gyro_range_rad_s, imu.accel_range_m_s2);
-  health.add(Kind::rotation, pivots.verdict(), kImu);
+  if (!imu.merged) {  // several IMUs are on a sphere, which does not rotate about a pivot
+    const PivotCheck pivots = PivotCheck::of(samples, imu.gravity_m_s2, imu.gyro_range_rad_s, imu.accel_range_m_s2);
+    health.add(Kind::rotation, pivots.verdict(), kImu);
+  }
   return confirms_gyro(plausibility, state);
 }
 
