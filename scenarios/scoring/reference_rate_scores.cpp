@@ -80,13 +80,15 @@ Eigen::Vector3d reference_variance(const ScoredEstimate& scored, const ClippingT
   return variance;
 }
 
-/// Computes the coverage with the error of the reference added to the covariance, unlike rate_coverage_3sigma.
+/// Computes the coverage with the error of the reference added to the covariance, unlike rate_coverage_3sigma. Rates
+/// without a covariance are left out.
 bool reference_coverage(const ScoredEstimate& scored, double& value) {
   const ClippingTruth& truth = clipping_truth(scored);
   if (!truth.is_reference()) return false;
   const Eigen::Vector3d own = reference_variance(scored, truth);
   double axes = 0.0, within = 0.0;
   for (const PairedRate& pair : paired_rates(scored)) {
+    if (!pair.has_covariance()) continue;
     for (int j = 0; j < 3; ++j) {
       if ((pair.clipped_axes() & (1u << j)) == 0) continue;
       const double error = pair.error_rad_s()[j];
