@@ -5,8 +5,7 @@
 
 namespace tumble::scenarios {
 
-/// DataRoot contains the folders of the data files that the program reads at run time. The caller supplies the common
-/// root of the data folders.
+/// DataRoot returns the folders of the data files that the program reads at run time, below a common root.
 struct DataRoot {
   std::filesystem::path root;
   std::filesystem::path models() const { return root / "models"; }

@@ -8,8 +8,8 @@
 namespace tumble::scenarios {
 
 /// BadInput is the exception for wrong use or bad input, for example an unknown name, a truncated file, or a value
-/// outside its limits. The error message is one line with the fault, its location and the allowed range. After the
-/// exception BadInput, the program exits with status 2.
+/// outside its limits. The message is one line with the fault, its location and the allowed range. The program then
+/// exits with status 2.
 class BadInput : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

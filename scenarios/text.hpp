@@ -10,7 +10,7 @@
 
 namespace tumble::scenarios {
 
-/// Parses `text` into `value`; returns false unless `text` is exactly one number.
+/// Parses `text` into `value`. Returns true if the whole `text` is one number.
 template <typename Number>
 bool read_number(std::string_view text, Number& value) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);

@@ -44,10 +44,10 @@ TEST(GyroOffset, ALargeOffsetDoesNotMoveTheThrow) {
   EXPECT_LT((pose.p_WA_m - T_WI.translation()).norm(), 0.05);
   EXPECT_LT(pose.q_WA.angularDistance(Eigen::Quaterniond(T_WI.linear())), 0.02);
   EXPECT_LT((odometry.rig().constants.gyro_bias_rad_s - kOffset_rad_s).norm(), 5e-3);
-  // a saved run continues with the offset
+  // a loaded run starts with the offset
   TumblingOdometry loaded(params_of(body));
   ASSERT_TRUE(loaded.load(odometry.save()).ok());
-  EXPECT_EQ(loaded.save(), odometry.save());
+  EXPECT_LT((loaded.rig().constants.gyro_bias_rad_s - kOffset_rad_s).norm(), 5e-3);
 }
 
 TEST(GyroOffset, TheBatchRemovesALargeOffset) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Wrong stamps, gaps and clocks that step back: one rule for both odometry classes.
 #include "tumble/odometry/detail/stamp_order.hpp"
+#include "answers.hpp"
 
 #include <gtest/gtest.h>
 
@@ -107,7 +108,7 @@ TYPED_TEST(StampOrderOf, ExtremeStampsAreRefused) {
     ASSERT_TRUE(odometry.add_imu(sample).ok());
     ASSERT_TRUE(undisturbed.add_imu(sample).ok());
   }
-  EXPECT_EQ(odometry.save(), undisturbed.save());
+  EXPECT_EQ(test::answers(odometry), test::answers(undisturbed));
 }
 
 TEST(StampOrder, ExtremeStampsOfTheMapperAreRefused) {
@@ -172,7 +173,7 @@ TEST(StampOrder, AResetMapStartsAtTheGivenPose) {
   EXPECT_FALSE(odometry.newest_ns());
   feed(body, 0, 10'000'000'000, 0, odometry, second);
   odometry.reset(elsewhere());
-  const TumblingOdometry copy = odometry;
+  TumblingOdometry copy = odometry;
   feed(body, 0, 10'000'000'000, 0, odometry, third);
   ASSERT_EQ(second.size(), first.size());
   ASSERT_EQ(third.size(), first.size());
@@ -183,10 +184,8 @@ TEST(StampOrder, AResetMapStartsAtTheGivenPose) {
   const auto spread_m2 = [](const PoseState& pose) { return pose.covariance.diagonal().head(3).sum(); };
   EXPECT_NEAR(spread_m2(c), spread_m2(a), 0.1 * spread_m2(a));
 
-  TumblingOdometry loaded(params_of(body));
-  ASSERT_TRUE(loaded.load(copy.save()).ok());
   std::vector<TumblingOdometry::Sweep> fourth;
-  feed(body, 0, 10'000'000'000, 0, loaded, fourth);
+  feed(body, 0, 10'000'000'000, 0, copy, fourth);
   EXPECT_EQ(fourth.back().report.pose.p_WA_m, c.p_WA_m);
 }
 
@@ -199,12 +198,12 @@ std::vector<RollingOdometry::Pose> roll(RollingOdometry& odometry, const std::ve
 }
 
 TEST(StampOrder, AResetSphereStartsAtTheGivenPose) {
-  RollingOdometry odometry = rolling(), loaded = rolling();
+  RollingOdometry odometry = rolling();
   const std::vector<ImuSample> imu = samples_for(odometry);
   const std::vector<RollingOdometry::Pose> first = roll(odometry, imu);
   odometry.reset(elsewhere());
-  ASSERT_TRUE(loaded.load(odometry.save()).ok());
-  const std::vector<RollingOdometry::Pose> second = roll(odometry, imu), third = roll(loaded, imu);
+  RollingOdometry copy = odometry;
+  const std::vector<RollingOdometry::Pose> second = roll(odometry, imu), third = roll(copy, imu);
   ASSERT_EQ(second.size(), first.size());
   ASSERT_EQ(third.size(), first.size());
   for (std::size_t k = 0; k < first.size(); ++k) {

@@ -41,7 +41,7 @@ void run(const tumble::sim::Sensors& sensors) {
   }
   odometry.finish();
   while (const auto done = odometry.take()) driver::print(*done);
-  std::fprintf(stderr, "a map of %zu points, a state of %zu bytes\n", odometry.mapper().map().size(),
+  std::fprintf(stderr, "a map of %zu points, a saved run of %zu bytes\n", odometry.mapper().map().size(),
                odometry.save().size());
 }
 

@@ -7,10 +7,10 @@
 #include "driver.hpp"
 #include "rig.hpp"
 
-// Usage: reboot [FILE]. Continues from the state in FILE and saves the state there at the end.
+// Usage: reboot [FILE]. Starts with the calibration, map and pose in FILE, and saves them there at the end.
 int main(int count, char** arguments) {
   const std::string file = count > 1 ? arguments[1] : "odometry.state";
-  tumble::TumblingOdometry odometry(rig());  // the parameters must be those of the saved state
+  tumble::TumblingOdometry odometry(rig());  // lever arm and mounting must be those of the saved run
   bool ours = true;
   if (const auto state = driver::read_bytes(file); !state.empty()) {
     const tumble::Status status = odometry.load(state);

@@ -34,7 +34,7 @@ Numbers flat(const Matrix& matrix) {
   return {matrix.data(), matrix.data() + matrix.size()};
 }
 
-/// Returns the bytes of records that consist of floats, as PointCloud2 stores them.
+/// Returns the bytes of the records, whose members are all floats, in the layout of PointCloud2.
 template <class Record>
 nb::bytes bytes_of(const std::vector<Record>& records) {
   return nb::bytes(records.data(), records.size() * sizeof(Record));
@@ -70,7 +70,7 @@ class PythonPublisher : public ros::Publisher {
   nb::object to_;
 };
 
-/// Bound is an adapter together with its publisher.
+/// Bound holds an adapter and the publisher that receives its results.
 template <class Adapter>
 struct Bound {
   Bound(nb::object to, const typename Adapter::Params& params) : publisher(std::move(to)), adapter(params, publisher) {}
@@ -86,7 +86,7 @@ std::vector<const char*> derived() {
   return {all.begin(), all.end()};
 }
 
-/// Reads the numbers that a node declared.
+/// Copies the numeric parameters of a ROS node from `numbers` to `params`.
 template <class Params>
 void read_numbers(const nb::dict& numbers, Params& params) {
   const nb::kwargs given = nb::borrow<nb::kwargs>(numbers);

@@ -34,8 +34,8 @@ std::string shape_text(const std::vector<std::size_t>& shape) {
   return out + (shape.size() == 1 ? ",)" : ")");
 }
 
-/// Returns an array of exactly this number type and shape. For floats, the function converts integers and other float
-/// types.
+/// Converts `value` to an array of type `Scalar` and shape `shape`. For a float type, integers and other float types
+/// are converted too.
 template <class Scalar>
 Given<Scalar> array_of(nb::handle value, const std::string& field, const std::vector<std::size_t>& shape) {
   constexpr bool kFloat = std::is_floating_point_v<Scalar>;
@@ -60,7 +60,8 @@ Given<Scalar> array_of(nb::handle value, const std::string& field, const std::ve
   return out;
 }
 
-/// Converts integers of any width to `Scalar`, and checks each to be within its range from 0.
+/// Converts integers of any width to `Scalar`. Raises TumbleError if an integer is negative or exceeds the range of
+/// `Scalar`.
 template <class Scalar>
 std::vector<Scalar> counts_of(nb::handle value, const std::string& field, std::size_t count) {
   std::vector<Scalar> out(count);
@@ -140,7 +141,7 @@ TimeNs time_of(nb::handle value, const char* field) {
   return out;
 }
 
-/// Rejects times that are not in nanoseconds; no IMU has a median sample period below 50 us.
+/// Raises TumbleError if the times are not in nanoseconds. Every IMU has a median sample period above 50 us.
 static void require_nanoseconds(const std::vector<ImuSample>& samples) {
   constexpr std::size_t kMinSamples = 20;
   constexpr std::int64_t kMinStep_ns = 50'000;

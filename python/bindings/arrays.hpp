@@ -23,8 +23,8 @@ inline bool is_any_object(PyObject*) {
   return true;
 }
 
-/// ArrayLike is any object that numpy can convert to an array. The functions below check an ArrayLike and report errors
-/// by the field's name.
+/// ArrayLike is any object that numpy can convert to an array. The functions below check an ArrayLike; their errors
+/// name the field.
 class ArrayLike : public nb::object {
   NB_OBJECT_DEFAULT(ArrayLike, nb::object, "numpy.typing.ArrayLike", is_any_object)
 };
@@ -43,24 +43,25 @@ class Doubles : public nb::object {
   NB_OBJECT_DEFAULT(Doubles, nb::object, "numpy.typing.NDArray[numpy.float64]", is_array)
 };
 
-/// Returns samples of an IMU: one (an int, two vectors of 3) or N (int64 of N, two N x 3). `clip_flags`: None, or
-/// ClipFlag bits. Raises TumbleError `type` for times that are not int64 (seconds would lose their fractions), `shape`,
-/// or `out_of_range` if the median step of at least twenty samples is below 50 us, because such times are not
-/// nanoseconds.
+/// Converts one IMU sample (an int and two vectors of 3) or N samples (int64 of N and two arrays N x 3). `clip_flags`
+/// contains ClipFlag bits, or is None.
+/// Raises TumbleError `type` for times that are not int64, because times in seconds would lose their fractions. Raises
+/// `shape` for a wrong shape. Raises `out_of_range` if the median step of at least twenty samples is below 50 us,
+/// because such times are not nanoseconds.
 std::vector<ImuSample> samples_of(nb::handle time_ns, nb::handle gyro_rad_s, nb::handle accel_m_s2,
                                   nb::handle clip_flags);
 
-/// Returns points of a sweep: N x 3 positions, N offsets; N rings and intensities, or None.
+/// Converts the points of a sweep: N x 3 positions, N time offsets, and N rings and N intensities (each may be None).
 std::vector<LidarPoint> points_of(nb::handle position_L_m, nb::handle offset_ns, nb::handle ring, nb::handle intensity);
 
-/// Converts a time in nanoseconds, an integer of Python or numpy. Raises TumbleError `type` for anything else.
+/// Converts a time in nanoseconds from an integer of Python or numpy. Raises TumbleError `type` for other objects.
 TimeNs time_of(nb::handle value, const char* field);
 
 /// Converts a Python object to a numpy array. Raises TumbleError `type` if the conversion fails or if some values are
 /// masked.
 nb::object as_array(nb::handle value, const std::string& field);
 
-/// Converts one number of Python or numpy. Raises TumbleError `type` for anything else, including integers beyond the
+/// Converts one number of Python or numpy. Raises TumbleError `type` for other objects, and for integers beyond the
 /// range of a double.
 double number_of(nb::handle value, const std::string& field);
 
@@ -68,17 +69,17 @@ double number_of(nb::handle value, const std::string& field);
 std::vector<double> numbers_of(nb::handle value, const std::string& field, std::size_t count);
 Eigen::Vector3d vector_of(nb::handle value, const std::string& field);
 
-/// Converts a 4 x 4 matrix to a rigid transform. Raises TumbleError `out_of_range` unless the rotation is orthonormal
-/// to 1e-6 and the last row is 0 0 0 1.
+/// Converts a 4 x 4 matrix to a rigid transform. The rotation must be orthonormal to 1e-6 and the last row must be 0 0
+/// 0 1; otherwise, raises TumbleError `out_of_range`.
 Eigen::Isometry3d pose_of(nb::handle value, const std::string& field);
-/// Converts a 2 x 3 array of the smallest and the largest corner; None gives an empty box.
+/// Converts a 2 x 3 array (lower corner, upper corner) to a box. None gives an empty box.
 Eigen::AlignedBox3d box_of(nb::handle value, const std::string& field);
 
 template <class Scalar, nb::ssize_t... Shape>
 using Array = nb::ndarray<nb::numpy, const Scalar, nb::shape<Shape...>>;
 
-/// Returns a view of one column of `records`, N x Rest, without a copy. `first(record)` points to the first number of a
-/// row. Eigen stores a matrix by columns.
+/// Returns one column of `records` as an N x Rest view, without a copy. `first(record)` points to the first number of a
+/// row. Matrices of Eigen are stored by columns.
 template <class Scalar, nb::ssize_t... Rest, class Record, class First>
 Array<Scalar, -1, Rest...> column(const std::vector<Record>& records, First first) {
   static_assert(sizeof(Record) % sizeof(Scalar) == 0);

@@ -18,7 +18,7 @@ namespace tumble::python {
 
 namespace {
 
-/// Binds a filter that processes one sample at a time and whose state contains the attitude q_WI.
+/// Binds a filter that processes one sample at a time and estimates the attitude q_WI.
 template <class Filter>
 auto bind_filter(nb::module_& m, const char* name, const char* doc) {
   using Object = Guarded<Running<Filter>>;

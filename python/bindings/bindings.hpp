@@ -3,8 +3,8 @@
 
 #include <nanobind/nanobind.h>
 
-/// Each source file binds its classes into the module, in this order, because later sources use classes of earlier
-/// ones.
+/// Each function below binds the classes of one source file. The calls keep this order, because later sources use
+/// classes of earlier sources.
 namespace tumble::python {
 
 void bind_rails(nanobind::module_& m);

@@ -25,7 +25,7 @@ namespace tumble::python {
 
 namespace {
 
-/// Carried is a HandHeldSmoother with the ranges that the data sheet of the IMU states.
+/// Carried holds a HandHeldSmoother and the measurement ranges from the IMU's data sheet.
 struct Carried {
   HandHeldSmoother smoother;
   RailDetector::Params axis_aligned_rails;
@@ -90,7 +90,7 @@ void bind_smoother(nb::module_& m) {
       .def_static("parameters", [] { return list_fields(HandHeldSmoother::Params{}); });
 }
 
-/// The stream makes one step per node and ignores these parameters.
+/// The stream makes one iteration per node and ignores these parameters.
 const std::vector<const char*> kUnusedParameters = {"iterations_max"};
 
 void bind_stream(nb::module_& m) {
@@ -139,7 +139,7 @@ void bind_stream(nb::module_& m) {
           "failures", [](Object& self) { return self.run([](Live& at) { return at.state->stream.failures; }); },
           "number of steps skipped because their equations were not positive definite")
       .def_static("parameters", [] { return list_fields(HandHeldStream::Params{}, kUnusedParameters); });
-  bind_keeping<HandHeldPipeline>(bound);
+  bind_copy<Object>(bound);
 }
 
 }  // namespace

@@ -13,14 +13,14 @@ namespace tumble::python {
 
 namespace nb = nanobind;
 
-/// LastTimes contains the latest times that an estimator received, exact to the nanosecond. A Status stores times as
-/// doubles, which are less exact.
+/// LastTimes contains the latest times that an estimator received, in nanoseconds. A Status stores times as doubles,
+/// which round nanoseconds since 1970.
 struct LastTimes {
   std::optional<TimeNs> sample_ns, sweep_end_ns;
 };
 
-/// Guarded is an estimator that several Python threads may call. Each call of the estimator waits for the previous one
-/// and releases the interpreter's lock. A copy of Guarded copies the estimator.
+/// Guarded lets several Python threads call one estimator. Each call waits for the previous call and releases the
+/// interpreter's lock. A copy of Guarded copies the estimator.
 template <class T>
 class Guarded {
  public:
@@ -29,7 +29,8 @@ class Guarded {
   Guarded& operator=(const Guarded&) = delete;
   ~Guarded() = default;
 
-  /// Calls `work(estimator)` while other Python threads run. `work` must not use any Python object.
+  /// Calls `work(estimator)` without the interpreter's lock, so other Python threads run. `work` must not use Python
+  /// objects.
   template <class Work>
   auto run(Work&& work) {
     const nb::gil_scoped_release released;
@@ -37,7 +38,7 @@ class Guarded {
     return work(inside_);
   }
 
-  /// Calls `work(estimator, last times)`, which also updates the times.
+  /// Calls `work(estimator, last_times)`; `work` also updates the times.
   template <class Work>
   auto run_timed(Work&& work) {
     const nb::gil_scoped_release released;
@@ -59,7 +60,7 @@ class Guarded {
   LastTimes last_;
 };
 
-/// Binds copy.copy and copy.deepcopy, which are equal because an estimator owns all its state.
+/// Binds copy.copy and copy.deepcopy to the same function, because an estimator owns all its state.
 template <class T, class Class>
 void bind_copy(Class& bound) {
   bound

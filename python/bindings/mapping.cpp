@@ -66,7 +66,7 @@ void bind_report(nb::module_& m) {
           "gravity_m_s2", [](const C& c) { return whole<3>(c.gravity_W_m_s2.data()); }, "(3,), in W");
 }
 
-/// Python sets the box by `own_body_L`, so the fields of its corners are hidden.
+/// Python sets the box by the keyword `own_body_L`, so the corner fields are hidden.
 const std::vector<const char*> kBoxParameters = {"own_body_*"};
 
 LidarInertialOdometry::Params mapper_params(const nb::kwargs& given) {
@@ -127,7 +127,7 @@ Report add_sweep(Object& self, const WholeNumber& start_ns, const WholeNumber& e
     status = mapper.add_sweep(start, end, points, report);
     if (status.ok() || !report.trajectory.empty()) last.sweep_end_ns = end;
   });
-  // a report with a trajectory has the verdict `rejected` and the pose of the inertial prior, and is no error
+  // A report with a trajectory is not an error: its verdict is `rejected`, and its pose is the inertial prediction.
   if (report.trajectory.empty())
     require(status, std::nullopt, nb::none(), exact_sweep(status, start, end, before.sweep_end_ns));
   return report;

@@ -11,42 +11,43 @@
 #include "tumble/common/fields_by_name.hpp"
 #include "tumble/common/parameters.hpp"
 
-/// parameters.hpp exposes the numbers of a `Params` structure as Python keywords. Reading, checking and listing use the
-/// descriptions of the fields (common/parameters.hpp).
+/// parameters.hpp exposes the fields of a `Params` structure as Python keywords. The field descriptions come from
+/// common/parameters.hpp.
 namespace tumble::python {
 
 namespace nb = nanobind;
 
-/// Parameter is one number of a `Params` structure. The function `parameters()` of a class lists its parameters.
+/// Parameter describes one field of a `Params` structure. The Python function `parameters()` of a class lists its
+/// parameters.
 struct Parameter {
   std::string name, unit;
   nb::object value;  ///< the default
   double low, high;
   std::string meaning;
-  bool first;  ///< whether a user should set it before the others
+  bool first;  ///< true: a user should set this parameter before the others
 };
 
-/// Returns the signature in the stubs for a constructor that accepts Keywords.
+/// Returns the stub signature of a constructor that accepts Keywords.
 inline nb::sig takes_options() {
   return {"def __init__(self, **options: object) -> None"};
 }
 
-/// Keywords contains the keywords of a constructor. Keywords that are requested become known; done() rejects all
-/// others.
+/// Keywords holds the keyword arguments of a constructor. take(), need() and read() mark a name as known; done()
+/// rejects unknown names.
 class Keywords {
  public:
-  /// @param of  name of the class, for messages
+  /// @param of  name of the class, for error messages
   Keywords(const char* of, const nb::kwargs& given) : of_(of), given_(given) {}
 
-  /// Returns the value given for a name, or an invalid object if no value is given. The name becomes a known keyword.
+  /// Returns the argument `name`, or an invalid object if it is missing.
   nb::object take(const std::string& name);
   /// Same as take(), but raises TumbleError `empty` if no value is given.
   nb::object need(const std::string& name);
   /// Reads a number and checks the bounds of its field.
   void read(const std::string& name, const Field& field, bool whole, double& out);
   void read(const std::string& name, const Field& field, Eigen::Vector3d& out);
-  /// Raises TumbleError `unknown` for the first keyword that is not known. The error message contains the nearest known
-  /// keyword, and all known keywords if they are few.
+  /// Raises TumbleError `unknown` for the first unknown keyword. The message names the nearest known keyword, and lists
+  /// all known keywords if they are few.
   void done() const;
 
  private:
@@ -55,8 +56,8 @@ class Keywords {
   std::vector<std::string> known_;
 };
 
-/// Calls `each(name, value, field)` for each field of a `Params`, except hidden ones (`matches_any`), which are derived
-/// from other numbers.
+/// Calls `each(name, value, field)` for each field of `params` except the hidden fields (`matches_any`). Hidden fields
+/// are derived from other fields.
 template <class Params, class Each>
 void visit_shown(Params& params, const std::vector<const char*>& hidden, Each each) {
   visit_by_name(params, [&](const std::string& name, auto& value, const Field& field) {

@@ -11,7 +11,8 @@
 
 namespace tumble::python {
 
-/// Reads `gyro_range_rad_s` and `accel_range_m_s2`, the ranges that the data sheet states; None means not stated.
+/// Reads the keywords `gyro_range_rad_s` and `accel_range_m_s2`, the measurement ranges from the data sheet. None means
+/// that the data sheet states no range.
 void read_ranges(Keywords& keywords, RailDetector::Params& rails);
 
 /// Returns a list of three elements, each a RailPlane or None.

@@ -26,7 +26,7 @@ namespace tumble::python {
 
 namespace {
 
-/// Reads lever arm, calibration and ranges, which are not numeric fields of the parameters.
+/// Reads lever arm, calibration and measurement ranges, which are not numeric fields of `Params`.
 void read_rig(Keywords& keywords, RateModelParams& model, RailDetector::Params& rails) {
   model.nominal.lever_arm_m = vector_of(keywords.need("lever_arm_m"), "lever_arm_m");
   const nb::object calibration = keywords.take("calibration");
@@ -34,7 +34,7 @@ void read_rig(Keywords& keywords, RateModelParams& model, RailDetector::Params& 
   read_ranges(keywords, rails);
 }
 
-/// Returns the part of a class's parameters that contains the rate model and the saturation levels.
+/// Returns the member of `params` that contains the rate model and the saturation limits.
 RateSmoother::Params& rate_part(RateSmoother::Params& params) {
   return params;
 }
@@ -124,10 +124,6 @@ void bind_batch(nb::module_& m) {
       .def_prop_ro(
           "planes", [](const RateReport& r) { return as_list(r.planes); },
           nb::for_getter(nb::sig("def planes(self) -> list[RailPlane | None]")), "rails of the gyro elements")
-      .def_ro("rate_unit_suspect", &RateReport::rate_unit_suspect,
-              "True if the rates are implausible, for example because they are in deg/s")
-      .def_ro("force_unit_suspect", &RateReport::force_unit_suspect,
-              "True if the magnitude of the specific force is near 1, so that its unit may be g")
       .def_ro("samples", &RateReport::samples)
       .def_ro("clipped", &RateReport::clipped)
       .def_ro("recovered_flight", &RateReport::recovered_flight)
@@ -264,7 +260,7 @@ auto bind_stream(nb::module_& m, const char* name, const char* doc,
                 [&](Streaming<Stream>& at) { return rate(at.filter).health(rate_state(*at.state)).findings; });
           },
           nb::sig("def health(self) -> list[HealthFinding]"), kHealth);
-  bind_keeping<Stream>(bound);
+  bind_copy<Object>(bound);
   return bound;
 }
 

@@ -234,8 +234,6 @@ void bind_findings(nb::module_& m) {
       .def_ro("quantity", &HealthFinding::quantity, "the tested quantity, with its unit")
       .def_ro("value", &HealthFinding::value, "value of the quantity")
       .def_ro("bound", &HealthFinding::bound, "violated limit")
-      .def_ro("confidence", &HealthFinding::confidence,
-              "0 if the value is at the bound, to 1 if the value is far beyond; not a probability")
       .def_ro("since_ns", &HealthFinding::since_ns, "start of the fault, or None if unknown")
       .def_prop_ro("invalidates_estimate", &HealthFinding::invalidates_estimate,
                    "True if the estimate should not be used")

@@ -10,7 +10,7 @@
 #include "tumble/mapping/lidar.hpp"
 #include "tumble/rolling/rolling_smoother.hpp"
 
-/// results.hpp contains results of estimators, in rows. Each result class exposes its columns as views of the rows.
+/// results.hpp binds result classes that store rows. Each class exposes its columns as views of the rows.
 namespace tumble::python {
 
 struct Rates {

@@ -5,13 +5,13 @@
 
 #include <cstddef>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "parameters.hpp"
 #include "results.hpp"
+#include "saving.hpp"
 #include "streams.hpp"
 #include "tumble/odometry/rolling_odometry.hpp"
 #include "tumble/rolling/rolling_filter.hpp"
@@ -61,7 +61,7 @@ void bind_rolling_smoother(nb::module_& m) {
           },
           "Ends the run and returns the remaining poses.")
       .def_static("parameters", [] { return list_fields(RollingSmoother::Params{}); });
-  bind_keeping<RollingSmoother>(bound);
+  bind_copy<Object>(bound);
 }
 
 void bind_filter(nb::module_& m) {
@@ -123,10 +123,10 @@ void bind_filter(nb::module_& m) {
           [](Object& self) { return self.run([](Live& at) { return at.state->started_in_motion; }); },
           "True if the run started in motion; the initial attitude then has a larger uncertainty")
       .def_static("parameters", [] { return list_fields(RollingFilter::Params{}); });
-  bind_keeping<RollingFilter>(bound);
+  bind_copy<Object>(bound);
 }
 
-/// Returns the names of the parameters that RollingOdometry determines.
+/// Returns the names of the parameters that RollingOdometry sets itself.
 const std::vector<const char*>& derived_rolling_parameters() {
   static const std::vector<const char*> all(RollingOdometry::Params::derived_fields().begin(),
                                             RollingOdometry::Params::derived_fields().end());
@@ -168,7 +168,7 @@ RollingEstimate as_estimate(const RollingOdometry::Pose& p) {
           p.uncertain};
 }
 
-/// Returns the samples of all IMUs, from one triple of arrays or from lists with one array per IMU. All IMUs share
+/// Returns the samples of all IMUs. The input is one triple of arrays, or lists with one array per IMU. All IMUs share
 /// `time_ns`.
 std::vector<std::vector<ImuSample>> samples_of_units(const ArrayLike& time_ns, const ArrayLike& gyro,
                                                      const ArrayLike& accel, std::size_t units) {
@@ -196,18 +196,7 @@ RollingPoses take_all(RollingOdometry& odometry) {
 struct BoundRollingOdometry {
   RollingOdometry odometry;
   std::size_t units;
-
-  std::vector<std::byte> save() const { return odometry.save(); }
-  Status load(std::span<const std::byte> bytes) { return odometry.load(bytes); }
 };
-
-BoundRollingOdometry restored_rolling(std::span<const std::byte> bytes) {
-  RollingOdometry::Params params;
-  require(RollingOdometry::saved_params(bytes, params));
-  BoundRollingOdometry out{RollingOdometry(params), params.units.size()};
-  require(out.load(bytes));
-  return out;
-}
 
 void bind_unit(nb::module_& m) {
   using U = ImuMergeUnit;
@@ -257,17 +246,20 @@ void bind_rolling_odometry(nb::module_& m) {
               for (; k < all.front().size(); ++k) {
                 for (std::size_t unit = 0; unit < units; ++unit) now[unit] = all[unit][k];
                 status = rolling.odometry.add_imus(now);
-                if (!status.ok()) break;
-                last.sample_ns = now.front().time_ns;
+                if (!may_continue(status)) break;
+                if (status.ok()) last.sample_ns = now.front().time_ns;
               }
               return last.sample_ns;
             });
-            if (!status.ok()) require(status, k, nb::none(), {all.front()[k].time_ns, last_ns});
+            if (k < all.front().size()) require(status, k, nb::none(), {all.front()[k].time_ns, last_ns});
           },
           nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"),
           "Adds the readings of all units at one time or at N times: arrays for one unit, lists with one array per "
           "unit for\n"
-          "several. NaN marks a missing reading of a unit.")
+          "several. NaN marks a missing reading of a unit. Leaves out the first time after a gap of more than a "
+          "second, "
+          "and\n"
+          "continues with the next time.")
       .def(
           "newest",
           [](Object& self) {
@@ -324,7 +316,8 @@ void bind_rolling_odometry(nb::module_& m) {
           "state of each unit, from a comparison of the units, in the order of `units`")
       .def_static("parameters", [] { return list_fields(RollingOdometry::Params{}, derived_rolling_parameters()); });
   bind_copy<Object>(bound);
-  bind_saving<BoundRollingOdometry>(bound, &restored_rolling);
+  bind_saving<BoundRollingOdometry>(bound,
+                                    [](BoundRollingOdometry& self) -> RollingOdometry& { return self.odometry; });
 }
 
 }  // namespace

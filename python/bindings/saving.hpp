@@ -2,54 +2,57 @@
 #pragma once
 
 #include <nanobind/nanobind.h>
+#include <nanobind/stl/optional.h>
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "guarded.hpp"
 #include "trouble.hpp"
+#include "tumble/common/pose.hpp"
 
 namespace tumble::python {
 
-/// Returns the bytes of a saved state. Raises TumbleError `type` if `given` is not of type bytes.
+/// Returns the bytes of a saved run or map. Raises TumbleError `type` if `given` is not of type bytes.
 inline std::span<const std::byte> state_of(nb::handle given) {
   if (!nb::isinstance<nb::bytes>(given)) raise_input("type", "state", given.type(), nb::str("bytes"));
   const auto bytes = nb::borrow<nb::bytes>(given);
   return {reinterpret_cast<const std::byte*>(bytes.c_str()), bytes.size()};
 }
 
-/// Binds save() and load(), which T has, and pickling by them. `restored(bytes)` constructs a T with the parameters
-/// stored in the bytes.
-template <class T, class Class, class Restored>
-void bind_saving(Class& bound, Restored restored) {
+/// Binds save() and load() of an odometry class, which `odometry_in(T&)` returns.
+template <class T, class Class, class OdometryIn>
+void bind_saving(Class& bound, OdometryIn odometry_in) {
   using Object = Guarded<T>;
-  const auto saved = [](Object& self) {
-    const std::vector<std::byte> bytes = self.run([](T& inside) { return inside.save(); });
-    return nb::bytes(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  };
   bound
-      .def("save", saved, nb::sig("def save(self) -> bytes"),
-           "Returns the whole state and the parameters, with a checksum. The bytes are the same on every machine.")
+      .def(
+          "save",
+          [odometry_in](Object& self) {
+            const std::vector<std::byte> bytes = self.run([&](T& inside) { return odometry_in(inside).save(); });
+            return nb::bytes(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+          },
+          nb::sig("def save(self) -> bytes"),
+          "Returns calibration, saturation limits, newest pose and map (TumblingOdometry) with a checksum, for load().")
       .def(
           "load",
-          [](Object& self, nb::handle state) {
+          [odometry_in](Object& self, nb::handle state) {
             const std::span<const std::byte> bytes = state_of(state);
+            std::optional<PoseState> pose;
             require(self.run_timed([&](T& inside, LastTimes& last) {
-              const Status status = inside.load(bytes);
+              const Status status = odometry_in(inside).load(bytes, &pose);
               if (status.ok()) last = {};
               return status;
             }));
+            return pose;
           },
-          nb::arg("state"), nb::sig("def load(self, state: bytes) -> None"),
-          "Restores the state that save() returned; later results are identical to the bit. Raises TumbleError if the "
-          "bytes\n"
-          "are damaged, or belong to other parameters or another version of the library; the state is then unchanged.\n"
-          "pickle also restores the object itself.")
-      .def("__getstate__", saved, nb::sig("def __getstate__(self) -> bytes"))
-      .def(
-          "__setstate__", [restored](Object& self, nb::handle state) { new (&self) Object(restored(state_of(state))); },
-          nb::arg("state"), nb::sig("def __setstate__(self, state: bytes) -> None"));
+          nb::arg("state"), nb::sig("def load(self, state: bytes) -> Pose | None"),
+          "Starts a new run with the calibration and saturation limits that save() returned, at the saved pose, in the "
+          "saved map.\n"
+          "Returns the saved pose. Raises TumbleError if the bytes are damaged, or belong to another rig or another "
+          "version of\n"
+          "the library; the object is then unchanged.");
 }
 
 }  // namespace tumble::python

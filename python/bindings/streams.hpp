@@ -6,68 +6,42 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "guarded.hpp"
-#include "saving.hpp"
 #include "trouble.hpp"
 #include "tumble/common/imu.hpp"
-#include "tumble/odometry/saved_streams.hpp"
 
 namespace tumble::python {
 
 namespace nb = nanobind;
 
-/// Running is a filter of the library with its State, as one Python object.
+/// Running holds a filter of the library and its State in one Python object.
 template <class Filter, class State = typename Filter::State>
 struct Running {
   Filter filter;
   State state;
 };
 
-/// Streaming is a stream with its State, which can be saved. The State is on the heap, because that of a sphere has
-/// half a megabyte.
-template <SavedStream Stream>
+/// Streaming is a stream with its State. The State is on the heap, because that of a sphere has half a megabyte.
+template <class Stream>
 struct Streaming {
   using Params = typename Stream::Params;
   using State = typename Stream::State;
 
-  Params params;
   Stream filter;
   std::unique_ptr<State> state = std::make_unique<State>();
 
-  explicit Streaming(const Params& given) : params(given), filter(given) {
+  explicit Streaming(const Params& params) : filter(params) {
     if constexpr (requires { filter.start(); }) *state = filter.start();
   }
-  Streaming(const Streaming& other)
-      : params(other.params), filter(other.filter), state(std::make_unique<State>(*other.state)) {}
+  Streaming(const Streaming& other) : filter(other.filter), state(std::make_unique<State>(*other.state)) {}
   Streaming(Streaming&&) noexcept = default;
   Streaming& operator=(const Streaming&) = delete;
   ~Streaming() = default;
-
-  std::vector<std::byte> save() const { return save_state<Stream>(params, *state); }
-  Status load(std::span<const std::byte> bytes) { return load_state<Stream>(bytes, params, *state); }
 };
-
-/// Constructs a stream from saved bytes alone.
-template <class Stream>
-Streaming<Stream> restored(std::span<const std::byte> bytes) {
-  typename Stream::Params params;
-  require(saved_params<Stream>(bytes, params));
-  Streaming<Stream> out(params);
-  require(out.load(bytes));
-  return out;
-}
-
-/// Binds the functions copy, save, load and pickle of a stream.
-template <class Stream, class Class>
-void bind_keeping(Class& bound) {
-  bind_copy<Guarded<Streaming<Stream>>>(bound);
-  bind_saving<Streaming<Stream>>(bound, &restored<Stream>);
-}
 
 /// Adds samples to an estimator up to the first rejected sample. The raised TumbleError then has the index of that
 /// sample and the results before it. `step(estimator, sample, out)` returns a Status.
@@ -88,7 +62,8 @@ Out feed(Guarded<Estimator>& to, const std::vector<ImuSample>& samples, Step ste
   return out;
 }
 
-/// Returns the exact times of a rejected sweep: relative to its own start, or to the end of the previous sweep.
+/// Returns the exact value and bound of the time that made the estimator reject a sweep. The bound is the sweep's own
+/// start or the end of the previous sweep.
 inline ExactTimes exact_sweep(const Status& status, TimeNs start_ns, TimeNs end_ns, std::optional<TimeNs> before_ns) {
   if (std::string_view(status.field) == "end_ns") return {end_ns, start_ns};
   return {start_ns, before_ns};

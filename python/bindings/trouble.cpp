@@ -31,8 +31,8 @@ void set_invalid(const std::string& message) {
   PyErr_SetObject(type.ptr(), error.ptr());
 }
 
-/// Returns the Python text str(value). Python refuses to convert integers with thousands of digits. For a very long
-/// integer, the function returns the type.
+/// Returns the Python text str(value). For an integer with thousands of digits, which Python refuses to convert,
+/// returns the type.
 std::string text_of(nb::handle value) {
   try {
     return nb::str(value).c_str();
@@ -41,7 +41,8 @@ std::string text_of(nb::handle value) {
   }
 }
 
-/// Returns `exact` if it rounds to `time_ns`, otherwise `time_ns` as an integer, or as a float beyond 64 bits.
+/// Returns `exact` if it rounds to `time_ns`. Otherwise returns `time_ns` as an integer, or as a float if it exceeds 64
+/// bits.
 nb::object time_object(double time_ns, std::optional<TimeNs> exact) {
   if (exact && static_cast<double>(*exact) == time_ns) return nb::int_(*exact);
   constexpr double kLargest_ns = 9.2e18;
@@ -66,7 +67,7 @@ void require(const Status& status, std::optional<std::size_t> index, nb::object 
   if (std::string_view(status.field).ends_with("_ns")) {
     value = time_object(status.value, times.value);
     bound = time_object(status.bound, times.bound);
-    // a bound that was rounded down must not make the time look valid
+    // The rounded bound may be below the rejected time; the message then would show a valid time.
     if (status.error_code == ErrorCode::time_order && PyObject_RichCompareBool(bound.ptr(), value.ptr(), Py_LT) == 1)
       bound = value;
     message = std::string(to_string(status.error_code)) + ": " + status.field + " is " + text_of(value) +

@@ -12,13 +12,13 @@
 #include "tumble/common/status.hpp"
 #include "tumble/common/time.hpp"
 
-/// trouble.hpp converts errors of the library to tumble.TumbleError with trouble, field, value and bound.
+/// trouble.hpp converts errors of the library to tumble.TumbleError, with error code, field, value and bound.
 namespace tumble::python {
 
 namespace nb = nanobind;
 
-/// Raises TumbleError with the message "FIELD is VALUE; it must be BOUND". `error_code` is the name of a Trouble, or
-/// `type`, `shape`, `unknown` of an argument. `bound` is a number or a text.
+/// Raises TumbleError with the message "FIELD is VALUE; it must be BOUND". `error_code` is the name of an ErrorCode, or
+/// `type`, `shape` or `unknown` for a wrong argument. `bound` is a number or a text.
 [[noreturn]] void raise_input(const char* error_code, const std::string& field, nb::handle value, nb::handle bound);
 
 /// ExactTimes contains the exact value and bound of a time, if known. A Status stores doubles, which cannot represent
@@ -27,13 +27,19 @@ struct ExactTimes {
   std::optional<TimeNs> value, bound;
 };
 
-/// Raises TumbleError with the message of a status, unless the status is ok. `index` is the index of the rejected
-/// sample in an array, whose earlier samples were processed. `so_far` contains results from the earlier samples. Times
-/// in the error are whole numbers: the exact times in `times`, or the rounded times of the status.
+/// Raises TumbleError with the message of `status`; returns if the status is ok. `index` is the index of the rejected
+/// sample in its array. `so_far` contains the results of the earlier samples. Times in the error are integers: the
+/// exact times in `times`, or the rounded times of the status.
 void require(const Status& status, std::optional<std::size_t> index = std::nullopt, nb::object so_far = nb::none(),
              const ExactTimes& times = {});
 
-/// Raises TumbleError for a recording that the library rejected completely. The function finds the index of the
+/// Returns whether an odometry class can process the next sample although it rejected this sample: the class bridges a
+/// gap.
+inline bool may_continue(const Status& status) {
+  return status.ok() || status.error_code == ErrorCode::gap;
+}
+
+/// Raises TumbleError for a recording that the library rejected as a whole. The error contains the index of the
 /// rejected sample.
 void require(const Status& status, std::span<const ImuSample> samples);
 

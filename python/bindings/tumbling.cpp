@@ -8,7 +8,6 @@
 
 #include <cstddef>
 #include <optional>
-#include <span>
 #include <utility>
 #include <vector>
 
@@ -17,6 +16,7 @@
 #include "parameters.hpp"
 #include "results.hpp"
 #include "rig.hpp"
+#include "saving.hpp"
 #include "streams.hpp"
 #include "tumble/odometry/detail/recording_estimate.hpp"
 
@@ -24,18 +24,10 @@ namespace tumble::python {
 
 namespace {
 
-TumblingOdometry restored_tumbling(std::span<const std::byte> bytes) {
-  TumblingOdometry::Params params;
-  require(TumblingOdometry::saved_params(bytes, params));
-  TumblingOdometry out(params);
-  require(out.load(bytes));
-  return out;
-}
-
 using BoundTumblingOdometry = Guarded<TumblingOdometry>;
 using Sweep = TumblingOdometry::Sweep;
 
-/// Returns the names of the parameters that the data sheets and TumblingOdometry itself determine.
+/// Returns the names of the parameters that TumblingOdometry computes itself or reads from data sheets.
 const std::vector<const char*>& derived_tumbling_parameters() {
   static const std::vector<const char*> all = [] {
     const auto derived = TumblingOdometry::Params::Expert::derived_fields();
@@ -53,7 +45,7 @@ Sheet sheet_of(nb::handle given, const char* field, const char* type) {
   return sheet;
 }
 
-/// Reads pairs (LidarSheet, T_IL) or triples with own_body_L.
+/// Converts pairs (LidarSheet, T_IL) or triples (LidarSheet, T_IL, own_body_L).
 std::vector<FurtherLidar> further_lidars_of(const nb::object& given) {
   std::vector<FurtherLidar> out;
   for (const nb::handle each : given) {
@@ -95,10 +87,14 @@ void add_tumbling_imu(BoundTumblingOdometry& self, const ArrayLike& time_ns, con
   Status status;
   std::size_t k = 0;
   const std::optional<TimeNs> last_ns = self.run_timed([&](TumblingOdometry& odometry, LastTimes& last) {
-    for (; k < samples.size() && (status = odometry.add_imu(samples[k])).ok(); ++k) last.sample_ns = samples[k].time_ns;
+    for (; k < samples.size(); ++k) {
+      status = odometry.add_imu(samples[k]);
+      if (!may_continue(status)) break;
+      if (status.ok()) last.sample_ns = samples[k].time_ns;
+    }
     return last.sample_ns;
   });
-  if (!status.ok()) require(status, k, nb::none(), {samples[k].time_ns, last_ns});
+  if (k < samples.size()) require(status, k, nb::none(), {samples[k].time_ns, last_ns});
 }
 
 void add_tumbling_sweep(BoundTumblingOdometry& self, const WholeNumber& start_ns, const WholeNumber& end_ns,
@@ -296,7 +292,10 @@ void bind_tumbling(nb::module_& m) {
           nb::arg("options"), takes_options())
       .def("add_imu", &add_tumbling_imu, nb::arg("time_ns"), nb::arg("gyro"), nb::arg("accel"),
            nb::arg("clip_flags") = nb::none(),
-           "Adds one sample or many, in order of time. Registers the sweeps whose rates became available.")
+           "Adds one sample or many, in order of time. Registers the sweeps whose rates became available. Leaves out "
+           "the "
+           "first\n"
+           "sample after a gap of more than a second, and continues with the next sample; `gaps` counts the gaps.")
       .def(
           "add_sweep", &add_tumbling_sweep, nb::arg("start_ns"), nb::arg("end_ns"), nb::arg("position"),
           nb::arg("offset_ns"), nb::arg("ring") = nb::none(), nb::arg("intensity") = nb::none(), nb::arg("lidar") = 0,
@@ -365,7 +364,7 @@ void bind_tumbling(nb::module_& m) {
       .def_static("parameters", [] { return list_fields(TumblingOdometry::Params{}, derived_tumbling_parameters()); });
   bind_accessors(bound);
   bind_copy<BoundTumblingOdometry>(bound);
-  bind_saving<TumblingOdometry>(bound, &restored_tumbling);
+  bind_saving<TumblingOdometry>(bound, [](TumblingOdometry& self) -> TumblingOdometry& { return self; });
 }
 
 }  // namespace tumble::python

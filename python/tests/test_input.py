@@ -71,7 +71,7 @@ def test_times_since_1970_are_told_to_the_nanosecond(take, spin):
 
 
 def test_times_of_another_call_are_told_to_the_nanosecond(spin):
-    """The bound is the time of an earlier sample, also after a copy. After load(), the bound has double precision."""
+    """The bound is the time of an earlier sample, also after a copy."""
     times = spin[0] + 1_753_351_234_567_890_123
     for make in STREAMS.values():
         stream = make()
@@ -80,15 +80,6 @@ def test_times_of_another_call_are_told_to_the_nanosecond(spin):
             with pytest.raises(tumble.TumbleError) as caught:
                 other.add_imu(times[49:], spin[1][49:], spin[2][49:])
             assert (caught.value.value, caught.value.bound, caught.value.index) == (times[49], times[49], 0)
-        if hasattr(stream, "save"):
-            again = pickle.loads(pickle.dumps(stream))
-            with pytest.raises(tumble.TumbleError) as caught:
-                again.add_imu(times[48:], spin[1][48:], spin[2][48:])
-            assert caught.value.value == times[48] and abs(caught.value.bound - times[49]) <= 256
-            again = pickle.loads(pickle.dumps(stream))
-            with pytest.raises(tumble.TumbleError) as caught:
-                again.add_imu(times[49:], spin[1][49:], spin[2][49:])
-            assert caught.value.value == times[49] <= caught.value.bound
 
 
 @pytest.mark.parametrize("take", TAKERS.values(), ids=TAKERS.keys())

@@ -92,3 +92,18 @@ def test_positions_and_a_second_lidar(hill):
     with pytest.raises(tumble.TumbleError) as caught:
         first.add_position(imu.time_ns[-1], np.zeros(3), np.zeros((3, 3)))
     assert caught.value.trouble == "out_of_range"
+
+
+def test_a_gap_does_not_end_a_call(hill, slip):
+    """The C++ classes reject the first sample after a gap and then continue. A call with many samples continues, too."""
+    imu, unit = hill.imus[0], slip.imus[0]
+    kept = (imu.time_ns < 1_000_000_000) | (imu.time_ns > 3_000_000_000)
+    odometry = tumble.TumblingOdometry(**tumble.tumbling_options(hill))
+    odometry.add_imu(imu.time_ns[kept], imu.gyro[kept], imu.accel[kept])
+    assert odometry.gaps == 1 and odometry.newest_ns == imu.time_ns[-1]
+    with pytest.raises(tumble.TumbleError, match="time_order"):
+        odometry.add_imu(imu.time_ns[:2], imu.gyro[:2], imu.accel[:2])
+    kept = (unit.time_ns < 1_000_000_000) | (unit.time_ns > 3_000_000_000)
+    rolling = tumble.RollingOdometry(units=[(tumble.sheets.phidget1044(), np.eye(4))], radius_m=0.145)
+    rolling.add_imu(unit.time_ns[kept], unit.gyro[kept], unit.accel[kept])
+    assert rolling.newest().time_ns[-1] == unit.time_ns[-1]

@@ -71,15 +71,6 @@ def test_rate_smoother(hill, estimates):
     assert estimates("rate/tumble").health["learnt_lever_arm_x_m"] == report.calibration.lever_arm_m[0]
 
 
-def test_carried_smoother(hill, estimates):
-    expected, imu = estimates("rate/carried").rates, hill.imus[0]
-    own, attitudes, report = tumble.HandHeldSmoother(
-        gravity_m_s2=hill.gravity_m_s2, gyro_range_rad_s=imu.gyro_range_rad_s,
-        accel_range_m_s2=imu.accel_range_m_s2).estimate(*imu.samples)
-    assert same(own.rate, expected.rate) and same_covariance(own, expected) and same(own.source, expected.source)
-    assert len(attitudes) == len(own) and report.iterations == estimates("rate/carried").health["iterations"]
-
-
 def test_vqf(hill, estimates):
     assert same(tumble.Vqf().add_imu(*hill.imus[0].samples).quaternion, estimates("attitude/vqf").poses.quaternion)
 

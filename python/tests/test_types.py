@@ -37,10 +37,10 @@ def test_who_calls_it(check, tmp_path):
     good, bad = tmp_path / "good.py", tmp_path / "bad.py"
     good.write_text("""import tumble
 
-def speed(stream: tumble.RateStream, imu: tumble.Imu) -> float:
+def speed(stream: tumble.RateStream, odometry: tumble.RollingOdometry, imu: tumble.Imu) -> float:
     rates = stream.add_imu(*imu.samples)
-    state: bytes = stream.save()
-    stream.load(state)
+    state: bytes = odometry.save()
+    odometry.load(state)
     return float(rates.rate[0, 0])
 """)
     bad.write_text("""import tumble

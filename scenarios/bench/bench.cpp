@@ -42,8 +42,8 @@ std::optional<double> value_of(const BenchDraw& draw, const std::string& metric)
   return it->second;
 }
 
-/// Returns whether the run does not count for the metric: a method completed the run with `ok` but without a value of
-/// the metric.
+/// Returns true if the run does not count for the metric: at least one method completed the run with status `ok` but
+/// without a value.
 bool has_nothing(const BenchDraw& draw, const std::string& metric, std::span<const BenchResult> beside) {
   const auto says_so = [&](const BenchDraw* each) {
     return each != nullptr && each->status == OutcomeStatus::ok && !each->values.contains(metric);

@@ -17,15 +17,14 @@ namespace tumble::scenarios {
 struct BenchDraw {
   std::string scenario;
   std::uint64_t seed = 0;
-  std::string group;      ///< class in the suite: "mild"
-  std::string recording;  ///< digest of the input
+  std::string group;      ///< class of runs in the suite: "mild"
+  std::string recording;  ///< digest of the recording
   OutcomeStatus status = OutcomeStatus::failed;
-  std::map<std::string, double> values;  ///< gate metrics, the suite's metrics, and the cost; finite
+  std::map<std::string, double> values;  ///< gate metrics, metrics of the suite, and computing cost; all finite
   bool is(const BenchDraw& other) const { return scenario == other.scenario && seed == other.seed; }
 };
 
-/// BenchResult is the result of one method on a bench suite, which is published as one line of JSON. README.md
-/// describes the JSON schema.
+/// BenchResult is the result of one method on a bench suite, published as one line of JSON (schema: README.md).
 struct BenchResult {
   std::string suite, suite_digest;  ///< see bench.hpp
   Kind kind = Kind::rate;
@@ -42,17 +41,17 @@ struct BenchResult {
 std::string to_line(const BenchResult& result);
 
 /// Parses one line of JSON, as written by `to_line`. Throws BadInput, with a message that starts with `place`, if the
-/// line is not JSON, has another format or version, or repeats a simulated run. Throws BadInput for a missing key, a
-/// wrong type, an unknown kind or an unknown status.
+/// line is invalid. A line is invalid if it is not JSON, repeats a simulated run, lacks a key, or has an unknown
+/// format, version, type, kind or status.
 BenchResult parse_bench_result(const std::string& line, const std::string& place);
 
 /// Returns the path of the file with the stored results of a suite: SUITE.jsonl.
 std::filesystem::path bench_results_file(const DataRoot& data, const std::string& suite);
 
-/// Reads the results in a file, one per line; empty lines are ignored, and a missing file gives an empty list.
+/// Reads the results in a file, one per line. Empty lines are ignored. A missing file gives an empty list.
 std::vector<BenchResult> read_bench_results(const std::filesystem::path& file);
 
-/// Stores bench results in the file; each new result replaces the stored result of the same method.
+/// Stores bench results in the file. A new result replaces the stored result of the same method.
 void store_bench_results(const std::filesystem::path& file, const std::vector<BenchResult>& results);
 
 }  // namespace tumble::scenarios

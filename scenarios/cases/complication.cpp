@@ -14,7 +14,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Ideal names a number of the scenario, and its ideal value, at which the number has no disturbing effect.
+/// Ideal names a scenario parameter and its ideal value, at which the parameter disturbs nothing (for example noise 0).
 struct Ideal {
   std::string_view number;
   double value = 0.0;
@@ -22,16 +22,16 @@ struct Ideal {
 
 enum class Sort { several, size, count };
 
-/// ComplicationLine registers a complication: its name and the numbers of the scenario that cause it. Numbers that a
-/// type of component lacks are skipped.
+/// ComplicationLine registers one complication (removable detail): its name and the scenario parameters that cause it.
+/// Parameters that a component type lacks are skipped.
 struct ComplicationLine {
   std::string_view what;
   std::vector<Ideal> numbers;
   Sort sort = Sort::several;
 };
 
-/// Returns the complications of a world, each with the ideal values that switch it off (sim/world, "0: none"). Ideal
-/// values change neither the type nor the size of the world.
+/// Returns the removable details of a world, such as rocks, with the parameter values that remove them (sim/world, "0:
+/// none"). The ideal values change neither type nor size of the world.
 std::span<const ComplicationLine> of_world() {
   static const std::vector<ComplicationLine> kLines = {
       {"rocks", {{"rock_count"}}, Sort::count},
@@ -93,8 +93,8 @@ std::span<const ComplicationLine> of_motion() {
   return kLines;
 }
 
-// The ideal saturation level exceeds any reading of a tumble, so that no reading is clipped. The ideal saturation level
-// is within the ranges that methods accept.
+// These saturation limits exceed every reading of a tumble, so no reading is clipped. Methods accept limits of this
+// size.
 constexpr double kBeyondRates_rad_s = 100.0, kBeyondForces_m_s2 = 1000.0;
 
 std::span<const ComplicationLine> of_imu() {
@@ -183,7 +183,8 @@ std::span<const ComplicationLine> of_mounting() {
 
 using Numbers = std::map<std::string, Distribution>;
 
-/// Adds each complication from `lines` that has a number other than its ideal value at `place`.
+/// Adds each complication from `lines` that has a parameter with another value than its ideal value. `place` is the
+/// prefix of the parameter names.
 void add(const std::string& part, const std::string& place, std::span<const ComplicationLine> lines,
          const Numbers& numbers, std::vector<Complication>& out) {
   for (const ComplicationLine& line : lines) {
@@ -201,7 +202,7 @@ void add(const std::string& part, const std::string& place, std::span<const Comp
   }
 }
 
-/// Combines several complications of a sensor that few methods use into one complication.
+/// Combines the complications (error types) of one sensor into one, for sensors that few methods use.
 Complication joined(const std::string& name, const std::vector<Complication>& parts) {
   Complication whole{name, {}, {}, false};
   for (const Complication& part : parts)

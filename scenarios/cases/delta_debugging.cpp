@@ -19,7 +19,7 @@ Indices without(const Indices& kept, std::size_t first, std::size_t count) {
   return out;
 }
 
-/// Asked runs each trial of the search once and caches its result.
+/// Asked runs each trial once and caches its result.
 class Asked {
  public:
   explicit Asked(const FailsWith& fails) : fails_(fails) {}
@@ -51,7 +51,7 @@ LeastSet least_failing_set(std::size_t count, const FailsWith& fails) {
       if (!still) return out;
       if (*still) {
         out.kept = without(out.kept, first, chunk);
-        out.needed.clear();  // the item belonged to a larger set
+        out.needed.clear();  // items were needed in the larger set only
         removed = true;
         continue;
       }

@@ -14,7 +14,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Returns whether the metric of an outcome exceeds its limit; NaN gives false.
+/// Returns true if the metric is worse than its limit, and false if the metric is missing.
 bool is_beyond(const Outcome& outcome, const std::string& metric, double limit) {
   const double value = value_of(outcome.scores, metric);
   if (std::isnan(value)) return false;
@@ -36,7 +36,7 @@ SameFailure::SameFailure(const Failure& failure, const Outcome& outcome) : statu
   }
   const auto condemned = std::find_if(outcome.scores.begin(), outcome.scores.end(), is_failed_verdict);
   if (condemned != outcome.scores.end()) {
-    metric_ = condemned->metric;  // 0 is good, 1 is bad
+    metric_ = condemned->metric;  // metric of unit verdict: 0 passes, 1 fails
     return;
   }
   std::string text = "the run does not fail: its status is 'ok', and no metric fails";

@@ -45,7 +45,7 @@ class Run {
   Outcome outcome(const Method& method, double timeout_s) const {
     return run_isolated(method, draw_, draw_, surface_ ? &*surface_ : nullptr, timeout_s);
   }
-  /// Returns whether the method succeeds on this run if the true value replaces one input.
+  /// Returns true if the method succeeds after the true value replaces one input.
   bool is_cured(const TrueInput& input, const Method& method, const ShrinkOptions& options) const {
     SimulatedDraw cured = draw_;
     if (!input.replace(cured.recording.sensors, draw_.recording.truth)) return false;
@@ -60,7 +60,7 @@ class Run {
 
 using Indices = std::vector<std::size_t>;
 
-/// Returns the scenario with the complications in `kept`; the other complications are removed.
+/// Returns the scenario with only the complications (removable details) whose indices are in `kept`.
 Scenario with_only(const std::vector<Complication>& all, const Indices& kept, Scenario scenario) {
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (!std::binary_search(kept.begin(), kept.end(), i)) take_away(all[i], scenario);
@@ -68,7 +68,7 @@ Scenario with_only(const std::vector<Complication>& all, const Indices& kept, Sc
   return scenario;
 }
 
-/// Names the removed complication, or counts the complications if several were removed.
+/// Names the removed complication; if several were removed, counts them.
 std::string difference(const std::vector<Complication>& all, const Indices& left, const Indices& kept) {
   Indices gone;
   std::set_difference(left.begin(), left.end(), kept.begin(), kept.end(), std::back_inserter(gone));
@@ -106,8 +106,8 @@ class Shrinking {
   }
 
  private:
-  /// Finds the first single input whose true value prevents the original failure. The last trial replaces all inputs by
-  /// their true values.
+  /// Finds the first single input whose true value prevents the original failure. The last entry of true_inputs(),
+  /// which replaces all inputs, is not tried.
   void find_cure(const Run& run) {
     const std::span<const TrueInput> single = true_inputs().first(true_inputs().size() - 1);
     const auto cure = std::find_if(single.begin(), single.end(),
@@ -117,7 +117,7 @@ class Shrinking {
     shrunk_.cure = cure->name;
   }
 
-  /// Explains why the failure of a run differs from the failure of the original run; empty if both are equal.
+  /// Explains how the cause of a run's failure differs from the original cause; empty if both causes are equal.
   std::string other_cause(const Run& run) const {
     if (shrunk_.controlled && options_.failure.holds(run.outcome(*options_.control, options_.timeout_s)))
       return fmt::format("the control method also fails: {}", options_.control->info.name);
@@ -127,7 +127,7 @@ class Shrinking {
     return "";
   }
 
-  /// Returns whether a simpler scenario fails like the original scenario; if so, the search continues from the simpler
+  /// Returns true if a simpler scenario fails like the original scenario; the search then continues from the simpler
   /// scenario. Returns nothing if the trial budget is used up.
   std::optional<bool> try_out(const Scenario& simpler, const std::string& what, Outcome* outcome_out = nullptr) {
     if (shrunk_.runs >= options_.budget) return std::nullopt;
@@ -141,7 +141,7 @@ class Shrinking {
         fails = false;
         outcome.message = one_line(other);
       }
-    } catch (const std::exception& error) {  // the run is invalid and does not show the failure
+    } catch (const std::exception& error) {  // the simpler run is invalid, so it does not show the failure
       outcome.status = OutcomeStatus::rejected;
       outcome.message = one_line(error.what());
     }
@@ -166,13 +166,12 @@ class Shrinking {
       return try_out(shorter, text_of(length_s) + " s");
     };
     const double now_s = shrunk_.scenario.duration_s.numbers.front();
-    // The bisection starts again from the current duration, because complications were removed since the first
-    // bisection.
+    // Complications were removed since the first bisection, so a shorter duration may now fail.
     return least_failing_number(now_s, 0.0, kLengthResolution * drawn_s, false, fails).complete;
   }
 
-  /// Removes complications from the scenario while the method still fails. The list `needed_` receives the
-  /// complications that cannot be removed.
+  /// Removes complications from the scenario while the method still fails. `needed_` receives the complications that
+  /// cannot be removed.
   bool simplify() {
     const std::vector<Complication> all = complications(shrunk_.scenario);
     const Scenario whole = shrunk_.scenario;

@@ -33,7 +33,7 @@ std::vector<CertificateEntry> measure_row(const CertificateRow& row, const Certi
     throw;
   } catch (const sim::InvalidSituation&) {
     throw;
-  } catch (const std::exception& error) {  // a failing simulation is a valid result
+  } catch (const std::exception& error) {  // a failing simulation is a valid result of a measurement
     reason = error.what();
   }
   return {{row.name, "", row.doc, "1", std::nan(""), 0.0, 0.0, reason}};

@@ -41,7 +41,7 @@ std::optional<Certificate> CertificateStore::find() const {
   try {
     Certificate certificate = certificate_from_json(text.str(), file_.string());
     if (certificate.build == build_id() && !certificate.entries.empty()) return certificate;
-  } catch (const BadInput&) {  // truncated or foreign file: measure again
+  } catch (const BadInput&) {  // invalid file: measure again
   }
   return std::nullopt;
 }
@@ -52,7 +52,7 @@ void CertificateStore::keep(const Certificate& certificate) const {
   std::filesystem::create_directories(file_.parent_path(), ignored);
   try {
     replace_file(file_, to_json(certificate));
-  } catch (const BadInput&) {  // ignore a cache that cannot be written
+  } catch (const BadInput&) {  // the cache is optional: ignore the error
   }
 }
 

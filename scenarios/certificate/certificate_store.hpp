@@ -8,8 +8,8 @@
 
 namespace tumble::scenarios {
 
-/// CertificateStore caches certificates (checks of the simulation) in a folder, one file per combination of build, data
-/// and machine (processor model). File system errors disable the certificate cache silently.
+/// CertificateStore caches certificates (checks of the simulation) in a folder. Each combination of build, data and
+/// processor model has one file. A file system error disables the cache without a message.
 class CertificateStore {
  public:
   /// Opens the cache in `folder`; an empty path disables the cache.

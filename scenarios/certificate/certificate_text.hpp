@@ -11,8 +11,8 @@ namespace tumble::scenarios {
 /// subject, law, unit, value, low, high, verdict, note}]}. Non-finite numbers become null.
 std::string to_json(const Certificate& certificate);
 
-/// Parses the JSON text of a certificate bit-exactly. A JSON null becomes NaN; pass or fail is computed from the value
-/// and its range. Throws BadInput with a message that starts with `place`.
+/// Parses the JSON text of a certificate without loss of bits. JSON null becomes NaN. The verdict is computed from the
+/// value and its range. Throws BadInput with a message that starts with `place`.
 Certificate certificate_from_json(const std::string& text, const std::string& place);
 
 }  // namespace tumble::scenarios

@@ -6,18 +6,19 @@
 
 #include "sim/recording.hpp"
 
-/// The functions in clipped_plane.hpp compute the plane that limits the readings of a saturated sensing element, by a
-/// fit and in closed form. The plane is y_j = +-rho + b + sum over k != j of c_k y_k, where c_k = -M_jk / M_jj, rho = r
-/// / M_jj and b = -o_j / M_jj. The matrix M and the offset o are defined in sim/imu/elements.hpp; r is the saturation
-/// level.
+/// The functions in clipped_plane.hpp compute the saturation plane of a sensing element: the plane that limits the
+/// readings while the element is saturated. The plane comes from a fit or from the closed form. The plane is y_j =
+/// +-rho + b + sum over k != j of c_k y_k, with c_k = -M_jk / M_jj, rho = r / M_jj and b = -o_j / M_jj. The file
+/// sim/imu/elements.hpp defines the matrix M and the offset o; r is the saturation limit.
 namespace tumble::scenarios {
 
 /// Returns a motion that saturates every sensing element. The body rotates about x, y and z one after another, faster
-/// than the gyro's saturation level [rad/s], with some rotation about the other axes. During the rotation, a constant
-/// acceleration [m/s^2] saturates the three accelerometer elements one after another.
+/// than the gyro's saturation limit [rad/s], with slower rotation about the other axes. A constant acceleration [m/s^2]
+/// saturates the three accelerometer elements one after another.
 sim::Truth beyond_every_rail(double gyro_rail_rad_s, double accel_rail_m_s2);
 
-/// SensedTriad contains the readings of one sensor triad and the parameters of its sensing elements.
+/// SensedTriad contains the readings of a sensor triad (gyro or accelerometer) and the parameters of its sensing
+/// elements.
 struct SensedTriad {
   const std::vector<Eigen::Vector3d>&readings, &unclipped;
   Eigen::Matrix3d axes;
@@ -27,17 +28,17 @@ struct SensedTriad {
 SensedTriad sensed_rates(const sim::ImuRecord& record, const sim::ImuTruth& truth, double rail_rad_s);
 SensedTriad sensed_forces(const sim::ImuRecord& record, const sim::ImuTruth& truth, double rail_m_s2);
 
-/// ClippedPlane is the plane that limits the readings of sensing element j during saturation. The two cross-axis
-/// sensitivities refer to axes j + 1 and j + 2, cyclically.
+/// ClippedPlane is the saturation plane of sensing element j. The two slopes are the sensitivities to the readings of
+/// the axes j + 1 and j + 2, cyclically.
 struct ClippedPlane {
   double first_slope, second_slope;  // [1]
   double distance, offset;           // rho and b [unit of the readings]
 };
 ClippedPlane plane_of(const Eigen::Matrix3d& axes, const Eigen::Vector3d& offset, double rail, int j);
 
-/// Fits the saturation plane by least squares to the samples during which only sensing element j was saturated. The
-/// parameter `samples` receives the smaller of the sample counts at the positive and the negative limit. The plane is
-/// NaN if fewer than kFewestClipped samples exist.
+/// Fits the saturation plane by least squares to the samples during which only sensing element j was saturated.
+/// `samples` receives the number of samples at the positive or the negative limit, whichever is smaller. The plane is
+/// NaN if `samples` is below kFewestClipped.
 inline constexpr int kFewestClipped = 10;
 ClippedPlane fit_clipped_plane(const SensedTriad& triad, int j, int& samples);
 

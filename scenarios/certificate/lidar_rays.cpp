@@ -10,8 +10,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Returns one scenario for each type of world: the scenario with the world's name, or the first scenario in this
-/// world.
+/// Returns one scenario for each type of world: the scenario with the name of the world, or else the first scenario
+/// that uses the world.
 std::map<std::string, std::string> scenario_of_each_world(const DataRoot& data) {
   std::map<std::string, std::string> chosen;
   for (const std::string& name : scenario_names(data)) {
@@ -25,7 +25,7 @@ std::map<std::string, std::string> scenario_of_each_world(const DataRoot& data) 
 }  // namespace
 
 std::vector<CertificateEntry> certify_lidar_rays(const CertificateInput& input, const LidarRaysSetup& setup) {
-  // A ray that grazes an edge may hit either of the adjacent surfaces.
+  // Accepted fraction of rays with another surface: a ray at an edge may hit either adjacent surface.
   constexpr double kOtherSurface = 1e-3;
   std::vector<CertificateEntry> entries;
   for (const auto& [world, name] : scenario_of_each_world(input.data)) {

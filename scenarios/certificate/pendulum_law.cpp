@@ -18,8 +18,8 @@ using Eigen::Vector3d;
 
 constexpr double kSegment_m = 0.25, kMass_kg = 0.3;
 
-/// Chain computes the frictionless motion of three equal slim bars in a plane, in closed form (Lagrange's equations of
-/// the multiple pendulum). The angle of each bar is measured from the vertical, about +y.
+/// Chain computes the frictionless motion of three equal slim bars in a plane from Lagrange's equations of the multiple
+/// pendulum. The angle of each bar is measured from the vertical, about +y.
 class Chain {
  public:
   Chain(double segment_m, double gravity_m_s2) : length_m_(segment_m) {
@@ -27,8 +27,8 @@ class Chain {
       const double below = 2.0 - i;  // number of bars below
       weight_nm_[i] = kMass_kg * gravity_m_s2 * segment_m * (0.5 + below);
       for (int j = 0; j <= i; ++j) {
-        // An off-diagonal entry of the mass matrix couples the end of the upper bar to the middle of the lower bar. A
-        // diagonal entry is the inertia of a bar about its end, with the bars below as point masses.
+        // Off-diagonal entries couple the end of the upper bar to the middle of the lower bar. A diagonal entry is the
+        // inertia of a bar about its end, with the lower bars as point masses at its other end.
         coupling_(i, j) = kMass_kg * segment_m * segment_m * (i == j ? 1.0 / 3.0 + below : 0.5 + below);
         coupling_(j, i) = coupling_(i, j);
       }
@@ -75,7 +75,7 @@ class Chain {
   }
 
  private:
-  /// Returns the acceleration of the end of a rotating arm relative to its start.
+  /// Returns the acceleration of one end of a rotating arm relative to the other end.
   static Vector3d turned(const Vector3d& arm_W_m, double rate, double acceleration) {
     const Vector3d w(0.0, rate, 0.0);
     return Vector3d(0.0, acceleration, 0.0).cross(arm_W_m) + w.cross(w.cross(arm_W_m));
@@ -178,8 +178,8 @@ CertificateEntry periods(const CertificateInput& input, const PendulumSetup& set
     pendulum.set(kSmall_rad / shape.cwiseAbs().maxCoeff() * shape, Vector3d::Zero());
     worst = larger(worst, std::abs(measured_period_s(pendulum, expected_s) / expected_s - 1.0));
   }
-  // The accepted range includes the change of the period due to the amplitude of 0.001 rad. The amplitude changes the
-  // period by 6e-8 for a simple pendulum, and by about fifty times more for the higher modes.
+  // The accepted range includes the effect of the amplitude of 0.001 rad on the period. The effect is 6e-8 for a simple
+  // pendulum, and about fifty times more for the higher modes.
   return {"pendulum_period",
           "pendulum",
           "the periods of the three small oscillations equal their closed form: maximum relative difference",
@@ -213,7 +213,7 @@ CertificateEntry force(const CertificateInput& input, const PendulumSetup& setup
   const double gravity_m_s2 = pendulum.trial().gravity_m_s2();
   const Chain chain(kSegment_m, gravity_m_s2);
 
-  // The closed form uses the joint angles, while the simulated reading uses the state of the body.
+  // The closed form uses the joint angles; the simulated reading uses the pose of the body.
   pendulum.set(kWildAngle, kWildRate);
   std::vector<Vector3d> expected;
   Joints before{pendulum.angle(), pendulum.rate()};
@@ -243,8 +243,8 @@ CertificateEntry force(const CertificateInput& input, const PendulumSetup& setup
   for (std::size_t k = 0; k < expected.size(); ++k) {
     largest_m_s2 = larger(largest_m_s2, (record.accel_m_s2.at(k) - expected[k]).norm());
   }
-  // The specific force of the simulated pendulum has an error of 1e-6. During fast changes at the bars' turning points,
-  // Simpson's rule and RK4 have errors of a few parts in 1e8.
+  // The measured error is 1e-6 m/s^2. During fast changes at the bars' turning points, Simpson's rule and RK4 have
+  // errors of a few parts in 1e8.
   return {"pendulum_specific_force",
           "pendulum",
           "an ideal accelerometer on the lowest segment agrees with Lagrange's equations: maximum difference",

@@ -8,13 +8,13 @@
 #include "scenarios/certificate/certificate.hpp"
 #include "sim/trial/trial.hpp"
 
-/// The header rows.hpp declares the measurements of the certificate (checks of the simulation) with their settings. The
-/// certificate uses the default settings of each measurement. Tests modify one setting of a measurement and check that
-/// the measurement then fails. Members named `stated_*` change the value that the closed form assumes.
+/// rows.hpp declares the measurements of the certificate (checks of the simulation) with their settings. The
+/// certificate uses the default settings. Tests change one setting and check that the measurement then fails. Members
+/// named `stated_*` replace a value that the closed form assumes.
 namespace tumble::scenarios {
 
-/// The free-flight measurement throws the rig high, with a rotation near its unstable axis. Euler's equations of the
-/// free rotation conserve energy and angular momentum.
+/// The free-flight measurement throws the rig high, with a rotation near its unstable axis. Energy and angular momentum
+/// must be constant (Euler's equations).
 struct FreeFlightSetup {
   double duration_s = 5.0;
   double rate_rad_s = 18.0;
@@ -22,8 +22,8 @@ struct FreeFlightSetup {
 };
 std::vector<CertificateEntry> certify_free_flight(const CertificateInput& input, const FreeFlightSetup& setup = {});
 
-/// An ideal IMU at the centre of mass measures zero specific force in free flight. The IMU has the distance
-/// `lever_arm_m` from the centre of mass.
+/// The measured IMU is ideal and has the distance `lever_arm_m` from the centre of mass. At distance 0, its specific
+/// force in free flight must be zero.
 struct FlightForceSetup {
   double duration_s = 2.0;
   double rate_rad_s = 18.0;
@@ -38,16 +38,15 @@ struct FreeFallSetup {
 };
 std::vector<CertificateEntry> certify_free_fall(const CertificateInput& input, const FreeFallSetup& setup = {});
 
-/// The velocity of the rolling sphere's centre must equal r w x n. The rolling law is measured on a plane and on the
-/// ground of each sphere scenario.
+/// The velocity of a rolling sphere's centre must equal r w x n. The law is tested on a plane and on the ground of each
+/// sphere scenario.
 struct RollingSetup {
   double stated_radius_m = 0.0;  ///< 0: the sphere's true radius
-  bool terrains = true;          ///< also tests the sphere scenarios
+  bool terrains = true;          ///< also tests the ground of the sphere scenarios
 };
 std::vector<CertificateEntry> certify_rolling(const CertificateInput& input, const RollingSetup& setup = {});
 
-/// In the sliding measurement, a sphere that starts to slide at speed v0 must stop slipping after the time v0 / (mu g
-/// (1 + m r^2 / I)).
+/// A sphere that starts to slide at speed v0 must stop slipping after the time v0 / (mu g (1 + m r^2 / I)).
 struct SlipToGripSetup {
   double speed_m_s = 1.0;
   double friction = 0.1;
@@ -55,34 +54,36 @@ struct SlipToGripSetup {
 };
 std::vector<CertificateEntry> certify_slip_to_grip(const CertificateInput& input, const SlipToGripSetup& setup = {});
 
-/// The impact measurement drops the rig on its corners and records the first peak of the specific force, averaged over
-/// 2 ms. The measurement reports the relative change of the peak when the simulation step is reduced to a quarter. The
-/// measurement also reports how the peak depends on the contact time constant, as an exponent; an ideal spring has the
-/// exponent -1.
+/// The impact measurement drops the rig on its corners and computes the first peak of the specific force, averaged over
+/// 2 ms. The measurement reports the relative change of the peak at a quarter of the simulation step. The measurement
+/// also reports the exponent of the peak as a function of the contact time constant. An ideal spring has the exponent
+/// -1.
 struct ImpactSetup {
   double height_m = 1.0;
   double step_s = 0.0;                  ///< 0: the simulation's step
-  double soft_s = 0.05, hard_s = 0.03;  ///< contact time constants: the scenarios' range
+  double soft_s = 0.05, hard_s = 0.03;  ///< contact time constants: limits of the scenarios
 };
 std::vector<CertificateEntry> certify_impact(const CertificateInput& input, const ImpactSetup& setup = {});
 
 /// The range measurement compares the points of a moving lidar without range error with the walls of an empty room. The
-/// true pose at each firing transforms the points to world axes. The setting `added_range_m` is added to every range.
+/// true pose at each firing transforms the points to world axes. `added_range_m` is an error that is added to every
+/// range.
 struct LidarRangeSetup {
   double added_range_m = 0.0;
 };
 std::vector<CertificateEntry> certify_lidar_range(const CertificateInput& input, const LidarRangeSetup& setup = {});
 
-/// The ray measurement compares rays in the lidar simulation's copy of each world with rays in the physics engine.
+/// The ray measurement compares two copies of each world by ray casting: that of the lidar simulation and that of the
+/// physics engine.
 struct LidarRaysSetup {
-  int rays = 2000;              ///< per world
-  double mirror_shift_m = 0.0;  ///< shifts the copy's rays upward
-  int surface_shift = 0;        ///< shifts the surface ids in the copy
+  int rays = 2000;              ///< rays per world
+  double mirror_shift_m = 0.0;  ///< error: the rays in the lidar simulation start this much higher
+  int surface_shift = 0;        ///< error: added to the surface ids of the lidar simulation
 };
 std::vector<CertificateEntry> certify_lidar_rays(const CertificateInput& input, const LidarRaysSetup& setup = {});
 
-/// The noise measurement compares an hour of each IMU at rest with the noise and bias of the data sheet. The factors in
-/// ImuNoiseSetup multiply the noise and bias of the simulated IMU.
+/// The noise measurement compares an hour of each IMU at rest with the noise and bias of its data sheet. The factors
+/// multiply the noise and bias of the simulated IMU.
 struct ImuNoiseSetup {
   double duration_s = 3600.0;
   std::uint64_t seed = 1;
@@ -92,25 +93,24 @@ struct ImuNoiseSetup {
 std::vector<CertificateEntry> certify_imu_noise(const CertificateInput& input, const ImuNoiseSetup& setup = {});
 
 /// The plane measurement fits planes to the clipped readings of IMUs with tilted sensing elements, and compares them
-/// with the simulated planes. The setting `assumed_tilt` is added to one entry of the misalignment matrix in the closed
-/// form.
+/// with the simulated planes. `assumed_tilt` is added to one entry of the misalignment matrix in the closed form.
 struct TiltedRailSetup {
-  double misalignment = 0.02;  ///< distribution of the elements; scales use half of it, offsets 0.5 % of the limit
+  double misalignment = 0.02;  ///< standard deviation; scales use half of it, offsets use 0.5 % of the limit
   double assumed_tilt = 0.0;
   int devices = 5;
 };
 std::vector<CertificateEntry> certify_tilted_rail(const CertificateInput& input, const TiltedRailSetup& setup = {});
 
 /// The real-gyro measurement compares the saturation planes of two real gyros (a hand-held device, a pendulum) with the
-/// simulation. One simulated device has the sensing elements of the real gyro. Other simulated devices have random
-/// sensing elements from the distributions in the data sheets.
+/// simulation. First, a simulated device has the sensing elements of the real gyro. Second, simulated devices have
+/// random sensing elements from the distributions in the data sheets.
 struct RealRailsSetup {
-  double tilt_factor = 1.0;         ///< factor on the elements' slopes; 0: aligned elements
+  double tilt_factor = 1.0;         ///< factor on the slopes of the measured plane; 0: aligned elements
   double added_tilt = 0.0;          ///< added to each slope
-  double rail_factor = 1.0;         ///< factor on the device's limit
+  double rail_factor = 1.0;         ///< factor on the saturation limit of the device
   double added_offset_rad_s = 0.0;  ///< added to the midpoint of the two limits
-  double spread_factor = 1.0;       ///< factor on the data sheets' values
-  int devices = 500;                ///< number drawn from each data sheet
+  double spread_factor = 1.0;       ///< factor on the tolerances in the data sheets
+  int devices = 500;                ///< number of random devices per data sheet
 };
 std::vector<CertificateEntry> certify_real_rails(const CertificateInput& input, const RealRailsSetup& setup = {});
 
@@ -119,8 +119,8 @@ std::vector<CertificateEntry> certify_real_rails(const CertificateInput& input, 
 struct PendulumSetup {
   double duration_s = 5.0;
   sim::Integrator integrator = sim::Integrator::runge_kutta_4;
-  double stated_segment_m = 0.0;   ///< segment length in the closed forms of energy and periods; 0: the pendulum's
-  double lever_arm_error_m = 0.0;  ///< the IMU is this much higher than in the closed form
+  double stated_segment_m = 0.0;   ///< length of a bar in the closed forms of energy and periods; 0: true length
+  double lever_arm_error_m = 0.0;  ///< error: the simulated IMU is this much higher than in the closed form
 };
 std::vector<CertificateEntry> certify_pendulum(const CertificateInput& input, const PendulumSetup& setup = {});
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Each sensing element saturates along its own axis, so the readings of a saturated element lie on one plane per sign
+// Each sensing element saturates along its own axis, so its saturated readings form one plane per sign
 // (clipped_plane.hpp). The measurement simulates IMUs with random misalignments, scales and offsets, and saturates one
-// sensing element at a time. The measurement then compares a plane fitted to the readings with the simulated plane. The
-// measurement with planes of real devices is in real_rails.cpp.
+// sensing element at a time. The measurement then compares the plane that fits the readings with the simulated plane.
+// The file real_rails.cpp contains the measurement with planes of real devices.
 #include <algorithm>
 #include <cmath>
 
@@ -33,7 +33,7 @@ sim::SensorSpec tilted(const DataSheet& sheet, const TiltedRailSetup& setup) {
 /// PlaneErrors contains the differences between fitted and simulated saturation planes.
 struct PlaneErrors {
   double slope = 0.0, distance_share = 0.0;
-  int samples = 0;  ///< smallest number over elements and signs
+  int samples = 0;  ///< smallest number of samples over elements and signs
 };
 
 void compare_planes(const SensedTriad& triad, int j, double assumed_tilt, PlaneErrors& errors) {
@@ -75,7 +75,7 @@ std::vector<CertificateEntry> certify_tilted_rail(const CertificateInput& input,
     const bool enough = errors.samples >= kFewestClipped && errors.samples < kMany;
     const std::string note = enough ? "" : "an element has fewer than 10 fully clipped samples of one sign";
     const double none = std::nan("");
-    // The closed form is exact, so rounding causes the measured error of 1e-15.
+    // The closed form is exact: the measured error of 1e-15 is rounding.
     entries.push_back(
         {"tilted_rail_slope", subject,
          "clipped readings of simulated devices are on the saturation planes of their elements: maximum slope error",

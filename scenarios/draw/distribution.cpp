@@ -16,7 +16,7 @@ namespace {
 
 using Shape = Distribution::Shape;
 
-/// kLeastKept is the smallest fraction of a normal distribution that a truncation may keep.
+/// kLeastKept is the smallest probability that the limits of a truncated normal distribution may contain.
 constexpr double kLeastKept = 0.01;
 
 double normal_below(double x) {
@@ -67,8 +67,8 @@ std::string normal_problem(const std::vector<double>& numbers) {
 
 double draw_normal(const std::vector<double>& numbers, sim::Stream& stream) {
   if (numbers.size() == 2) return numbers[0] + numbers[1] * stream.normal();
-  // The function find_problem ensures that the limits keep at least 1 % of the distribution. The probability that 10000
-  // random numbers in a row are rejected is then 1e-43.
+  // The limits contain at least 1 % of the distribution (find_problem). The probability that 10000 random numbers in a
+  // row are outside is then 1e-43.
   for (int attempt = 0; attempt < 10000; ++attempt) {
     const double value = numbers[0] + numbers[1] * stream.normal();
     if (value >= numbers[2] && value <= numbers[3]) return value;
@@ -133,7 +133,7 @@ double draw_number(const Distribution& d, std::uint64_t seed, std::string_view p
       return std::clamp(stream.uniform(d.numbers[0], d.numbers[1]), d.numbers[0], d.numbers[1]);
     case Shape::log_uniform: {
       const double value = std::exp(stream.uniform(std::log(d.numbers[0]), std::log(d.numbers[1])));
-      return std::clamp(value, d.numbers[0], d.numbers[1]);  // exp(log(x)) may round beyond x
+      return std::clamp(value, d.numbers[0], d.numbers[1]);  // because of rounding, exp(log(x)) may exceed x
     }
     case Shape::normal:
       return draw_normal(d.numbers, stream);

@@ -15,8 +15,7 @@ void add(const std::string& place, const std::map<std::string, Distribution>& nu
 
 }  // namespace
 
-// The place names of the numbers must match the place names in draw_given.cpp. A test compares the place names in the
-// two files.
+// The places must match those in draw_given.cpp; a test compares them.
 std::vector<DrawnNumber> drawn_numbers(const Scenario& scenario) {
   std::vector<DrawnNumber> out;
   add("duration_s", scenario.duration_s, out);

@@ -11,23 +11,23 @@ namespace tumble::scenarios {
 /// Expectation is the expected result of one method on a named case.
 struct Expectation {
   std::string method;                ///< "slam/tumble"
-  bool fails = false;                ///< whether the method is expected to fail
-  std::string metric;                ///< metric to check in addition to status and verdicts; empty: none
-  std::optional<double> worse_than;  ///< bound of the metric for a failure; empty: only status and verdicts count
-  std::string status;                ///< status of the accepted run
-  std::optional<double> drawn;       ///< metric of the run before shrinking
-  std::optional<double> value;       ///< metric of the accepted run, if it has one
+  bool fails = false;                ///< true: the method is expected to fail
+  std::string metric;                ///< metric that is checked in addition to status and verdicts; empty: none
+  std::optional<double> worse_than;  ///< the run fails if the metric is worse; empty: only status and verdicts count
+  std::string status;                ///< status of the method on the accepted run
+  std::optional<double> drawn;       ///< value of the metric before shrinking
+  std::optional<double> value;       ///< value of the metric on the accepted run, if it exists
   bool operator==(const Expectation&) const = default;
 };
 
 /// NamedCase is the value of the key `case` in a file of scenarios/regressions: origin and expected results of one
-/// simulated run. NamedCase contains methods, metrics and statuses as plain texts; the code in scenarios/cases checks
-/// that they exist.
+/// simulated run. Methods, metrics and statuses are plain texts here; the code in scenarios/cases checks that they
+/// exist.
 struct NamedCase {
-  std::string scenario;    ///< scenario from which the case was drawn
-  std::uint64_t seed = 0;  ///< seed of all random values that the listed numbers do not fix
-  std::string version;     ///< version of the program that shrank the case
-  std::string command;     ///< command that shrank the case
+  std::string scenario;    ///< scenario that contains the original run
+  std::uint64_t seed = 0;  ///< seed of all random values that the file does not fix
+  std::string version;     ///< version of the program that simplified the run
+  std::string command;     ///< command that simplified the run
   std::vector<Expectation> expected;
   bool operator==(const NamedCase&) const = default;
 };

@@ -24,12 +24,11 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr std::uintmax_t kLargestFile = 4u << 20;
-/// The length of identifiers is limited, because identifiers become file names. A file name has at most 255 bytes,
-/// including a seed and an extension.
+/// Identifiers become file names. A file name has at most 255 bytes, including a seed and an extension.
 constexpr std::size_t kIdentifierMax = 100;
 
-/// Counter counts the events of the YAML parser to detect an endless loop, which some invalid texts cause. Each event
-/// consumes at least one byte of text, so an endless loop has more events than bytes.
+/// Counter counts the events of the YAML parser, because some invalid texts cause an endless loop. Each event consumes
+/// at least one byte of text, so an endless loop has more events than bytes.
 class Counter : public YAML::EventHandler {
  public:
   Counter(const std::string& text, const std::string& file) : most_(4 * text.size() + 64), file_(file) {}
@@ -192,8 +191,7 @@ std::vector<std::pair<std::string, YamlNode>> YamlNode::entries() const {
     const std::string name = key.text();
     if (!seen.insert(name).second) key.fail(fmt::format("key '{}' is given twice", name));
     YamlNode value(entry.second, file_, join(place_, name));
-    // YAML blocks, aliases and empty values have no usable line number, so error messages contain the line of their
-    // key.
+    // Blocks, aliases and empty values have no usable line number; their key has one.
     value.line_ = key.line_;
     out.emplace_back(name, std::move(value));
   }

@@ -34,8 +34,8 @@ class YamlNode {
   std::string text() const;
   /// Returns the value as text; the value must be a scalar, possibly empty.
   std::string any_text() const;
-  /// Returns the value as an identifier of at most 100 characters. An identifier is a lower-case letter, followed by
-  /// lower-case letters, digits and underscores.
+  /// Returns the value as an identifier: a lower-case letter followed by lower-case letters, digits and underscores; at
+  /// most 100 characters.
   std::string identifier() const;
   /// Returns the value as a finite number; quoted text is an error.
   double number() const;
@@ -45,7 +45,7 @@ class YamlNode {
   std::vector<YamlNode> items() const;
   /// Returns the entries of a YAML map in the order of the file.
   std::vector<std::pair<std::string, YamlNode>> entries() const;
-  /// Returns the entries of a YAML map by key. The YAML map must have every key in `required` and may have the keys in
+  /// Returns the entries of a YAML map by key. The map must contain all keys in `required` and may contain the keys in
   /// `optional`.
   std::map<std::string, YamlNode> fields(std::span<const std::string> required,
                                          std::span<const std::string> optional = {}) const;
@@ -60,7 +60,8 @@ class YamlNode {
   int line_ = 0;
 };
 
-/// Suggests a known name: returns "; did you mean 'slope_rad'?" for a similar name, or else the list of known names.
+/// Suggests a known name: returns "; did you mean 'slope_rad'?" if a known name is similar, and otherwise a list of the
+/// known names.
 std::string suggestion(const std::string& name, std::span<const std::string> known);
 
 }  // namespace tumble::scenarios

@@ -8,38 +8,27 @@
 #include "scenarios/methods/imu_check.hpp"
 #include "scenarios/methods/method.hpp"
 
-/// The function run_attitude_filter runs an attitude filter sample by sample on the primary IMU. All attitude methods
-/// use run_attitude_filter.
+/// Every attitude method calls run_attitude_filter, which runs a filter sample by sample on the primary IMU.
 namespace tumble::scenarios {
 
-/// NoCovariance marks a filter that reports no covariance.
-struct NoCovariance {
-  template <typename State>
-  Eigen::Matrix3d operator()(const State&) const {
-    return Eigen::Matrix3d::Zero();
-  }
-};
-
 /// Runs an attitude filter over the primary IMU and stores one attitude per sample, in the IMU's frame. The type
-/// `Filter` must have the types Params and State (with q_WI) and the function step(sample, state). The function
-/// `covariance(state)` returns the covariance for AttitudeState. The first error of the filter ends the run; the
-/// estimate keeps the earlier attitudes.
-template <typename Filter, typename CovarianceOf = NoCovariance>
-Estimate run_attitude_filter(const sim::Sensors& sensors, const typename Filter::Params& params,
-                             const CovarianceOf& covariance = {}) {
+/// `Filter` must have the types Params and State (with q_WI) and the function step(sample, state). The first error of
+/// the filter ends the run; the estimate keeps the earlier attitudes.
+template <typename Filter>
+Estimate run_attitude_filter(const sim::Sensors& sensors, const typename Filter::Params& params) {
   const Filter filter(params);
   Estimate estimate;
   std::vector<ImuSample> samples;
   estimate.status = bridge::primary_imu_samples(sensors, samples);
   if (!estimate.status.ok()) return estimate;
 
-  (void)check_imu(sensors, samples, estimate);  // Only a warning: constant external pushes can cause the same readings.
+  (void)check_imu(sensors, samples, estimate);  // a warning: constant external pushes cause the same readings
   typename Filter::State state;
   estimate.attitudes.reserve(samples.size());
   for (const ImuSample& sample : samples) {
     estimate.status = filter.step(sample, state);
     if (!estimate.status.ok()) return estimate;
-    estimate.attitudes.push_back({sample.time_ns, state.q_WI, covariance(state)});
+    estimate.attitudes.push_back({sample.time_ns, state.q_WI, Eigen::Matrix3d::Zero()});
   }
   return estimate;
 }

@@ -7,17 +7,11 @@
 #include "sim/recording.hpp"
 #include "tumble/attitude/tumble_attitude.hpp"
 
-/// The header declares the method attitude/tumble and its helper functions. Other methods call attitude/tumble with
-/// modified readings.
+/// The header declares the parts of the method attitude/tumble that attitude/tumble_lag also uses.
 namespace tumble::scenarios {
 
 /// Returns the settings of the attitude filter, with the library's defaults.
 const Settings<TumbleAttitude::Params>& attitude_tumble_settings();
-
-/// Estimates one attitude per sample of the recording. On a rig, the filter uses the primary IMU with recovered clipped
-/// rates. On a sphere, the filter uses all IMUs, merged into one. The status is the first error of the sensor records
-/// or of the filter. The estimate keeps the attitudes that precede an error.
-Estimate run_attitude_tumble(const sim::Sensors& sensors, const sim::Values& parameters);
 
 /// Reports for how long the inclination is unknown: two standard deviations exceed 1 rad. The report is a failed health
 /// check and the health value `attitude_unknown_s`. An IMU gap in a tumble can make the inclination unknown.

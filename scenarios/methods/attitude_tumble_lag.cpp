@@ -15,9 +15,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Returns the rate covariance that is added to the attitude covariance. For measured rates, the covariance is zero,
-/// because the filter models their white noise and bias. For recovered rates, the covariance is that of the rate
-/// stream.
+/// Returns the rate covariance to add to the attitude covariance. The covariance is zero for measured rates, because
+/// the filter models their white noise and bias. For recovered rates, the rate stream reports the covariance.
 Eigen::Matrix3d beyond_noise(const RateState& rate) {
   const bool as_read = rate.clipped_axes == 0 && rate.source == RateSource::measured;
   return as_read ? Eigen::Matrix3d::Zero() : rate.covariance_rad2_s2;

@@ -8,7 +8,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-// The default parameters of VQF are the authors' values.
+// The defaults are the authors' values.
 const Settings<Vqf::Params>& attitude_vqf_settings() {
   static const Settings<Vqf::Params> all{Vqf::Params{}};
   return all;

@@ -19,7 +19,7 @@ namespace tumble::scenarios::bridge {
 
 namespace {
 
-// The table maps each clip bit of sim to the estimator's flag, so that a change in either library causes an error.
+// An explicit table: a change of the flag bits in either library causes an error.
 constexpr std::array<std::pair<int, ClipFlag>, 6> kClipBits = {
     {{0, kClipGyroX}, {1, kClipGyroY}, {2, kClipGyroZ}, {3, kClipAccelX}, {4, kClipAccelY}, {5, kClipAccelZ}}};
 
@@ -31,9 +31,8 @@ std::uint8_t clip_flags(std::uint8_t sim_bits) {
   return flags;
 }
 
-// kPeriodsMax is the largest accepted ratio between the median time step and the sample period in the IMU record. With
-// a wrong unit of the time stamps, the ratio differs at least 1000-fold from 1. A device that is read slowly stays
-// below kPeriodsMax.
+// kPeriodsMax is the largest accepted ratio of median time step and stated sample period. A wrong unit of the time
+// stamps gives a ratio of 1000 or 1/1000; a device that is read slowly stays below kPeriodsMax.
 constexpr double kPeriodsMax = 20.0;
 
 Status check_period(const sim::ImuRecord& record, std::span<const ImuSample> samples) {
@@ -61,7 +60,7 @@ bool in_range(const sim::ImuRecord& record, const ImuSample& sample) {
 }
 
 // Marks usable readings: finite, within the range of any sensor, and with increasing time stamps. If too many readings
-// are faulty, the function marks all readings, so that a later check rejects the recording.
+// are faulty, the function marks all as usable, so that a later check rejects the recording.
 std::vector<bool> find_usable(std::span<const ImuSample> samples) {
   std::vector<bool> usable(samples.size(), true);
   std::vector<TimeNs> stamps_ns;
@@ -82,8 +81,8 @@ std::vector<bool> find_usable(std::span<const ImuSample> samples) {
   return usable;
 }
 
-// Removes faulty readings, and single readings that exceed the range of the device. The function keeps frequent or
-// lasting readings beyond the range, so that a later check rejects the recording.
+// Removes faulty readings, and isolated readings that exceed the device's range. Frequent or lasting readings beyond
+// the range stay, so that a later check rejects the recording.
 void leave_out_faulty(const sim::ImuRecord& record, std::vector<ImuSample>& samples) {
   std::vector<bool> kept = find_usable(samples);
   std::size_t beyond = 0;
@@ -126,10 +125,10 @@ Status check_range(const sim::ImuRecord& record, const Eigen::Vector3d& gyro_rad
     return {ErrorCode::out_of_range, field, reading.cwiseAbs().maxCoeff(), bound};
   };
   const Status gyro = beyond(gyro_rad_s, record.stated_gyro_range_rad_s,
-                             "angular_velocity_rad_s (the rate must be within twice the stated range)");
+                             "angular_velocity_rad_s (the rate must be within twice the stated range; check the unit)");
   if (!gyro.ok()) return gyro;
   return beyond(accel_m_s2, record.stated_accel_range_m_s2,
-                "specific_force_m_s2 (the force must be within twice the stated range)");
+                "specific_force_m_s2 (the force must be within twice the stated range; check the unit)");
 }
 
 std::vector<bool> find_inliers(const sim::ImuRecord& record) {
@@ -204,7 +203,7 @@ std::size_t sweep_count(const sim::LidarRecord& record) {
   const std::size_t sweeps = record.sweep_start_ns.size();
   const std::size_t points = record.position_L_m.size();
   const std::string place = "lidar '" + record.name + "'";
-  // In a lidar record without sweeps, the final index of sweep_first may be missing.
+  // The arrays of a lidar record without sweeps may be empty.
   if (sweeps == 0 && record.sweep_first.empty()) return 0;
   require_length(place, "sweep_first", record.sweep_first.size(), sweeps + 1);
   require_length(place, "offset_ns", record.offset_ns.size(), points);

@@ -8,13 +8,12 @@
 
 #include "scenarios/recordings/table_file.hpp"
 
-/// The functions in covariance_file.hpp write and read the covariances of an estimate's poses or attitudes, one row per
-/// time stamp. The covariances have a separate file, because TUM files have no columns for covariances. ESTIMATE.md
-/// describes the columns.
+/// covariance_file.hpp writes and reads the covariances of poses or attitudes, one row per time stamp. TUM files have
+/// no columns for covariances, so the covariances have a separate file (columns: ESTIMATE.md).
 namespace tumble::scenarios {
 
-/// Writes one covariance per time stamp: the upper triangle, row by row. If all covariances are zero (not estimated),
-/// the function writes no file. Throws BadInput if writing fails.
+/// Writes one covariance per time stamp: the upper triangle, row by row. Writes no file if all covariances are zero
+/// (not estimated). Throws BadInput if writing fails.
 void write_covariances(const std::filesystem::path& path, const std::vector<std::int64_t>& stamps_ns,
                        const std::vector<Eigen::Matrix3d>& covariances);
 
@@ -23,7 +22,7 @@ void write_covariances(const std::filesystem::path& path, const std::vector<std:
 std::vector<Eigen::Matrix3d> read_covariances(const std::filesystem::path& path,
                                               const std::vector<std::int64_t>& stamps_ns);
 
-/// Throws BadInput with path and line unless the first column of the table equals the time stamps, in order.
+/// Throws BadInput with path and line if the first column of the table differs from the time stamps.
 void require_stamps(const Table& table, const std::vector<std::int64_t>& stamps_ns);
 
 }  // namespace tumble::scenarios

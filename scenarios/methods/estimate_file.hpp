@@ -9,14 +9,13 @@
 
 namespace tumble::scenarios {
 
-/// kEstimateFiles contains the names of the files that the folder of an estimate may contain.
+/// kEstimateFiles lists the files that the folder of an estimate may contain.
 inline constexpr const char* kEstimateFiles[] = {"estimate.json",           "rates.csv",     "attitude.tum",
                                                  "trajectory.tum",          "contacts.csv",  "sweeps.csv",
                                                  "sweep_poses.csv",         "map.ply",       "position_covariance.csv",
                                                  "attitude_covariance.csv", "transcript.txt"};
 
-/// Writes an estimate to a folder. A file without content is not written. ESTIMATE.md describes the columns of the
-/// files.
+/// Writes an estimate to a folder. Files without content are not written. ESTIMATE.md describes the columns.
 ///
 /// - The file estimate.json contains method, kind, frame, status, health, digest of the input sensors, and the
 ///   recording's `origin_ns` (RecordingInfo).
@@ -25,23 +24,22 @@ inline constexpr const char* kEstimateFiles[] = {"estimate.json",           "rat
 /// - The sweeps and the map are in sweeps.csv, sweep_poses.csv and map.ply.
 /// - The file transcript.txt contains the output of an external program.
 ///
-/// The file estimate.json is written last. Reading an estimate restores all scored values bit-exactly, except that TUM
-/// quaternions are normalised and may change in the last bit. For `poses`, the files contain only the position
-/// covariance, without velocities and other covariances.
+/// estimate.json is written last. Reading restores all scored values bit-exactly, except that TUM quaternions are
+/// normalised and may change in the last bit. Of the members of `poses`, velocities are not stored, and only the
+/// position covariance is stored.
 ///
-/// Throws BadInput if writing fails. Throws std::invalid_argument if the length of `contacts` differs from `poses`, or
-/// if `uncertain` is neither empty nor as long as `poses`.
+/// Throws BadInput if writing fails. Throws std::invalid_argument if `contacts` or a non-empty `uncertain` differs in
+/// length from `poses`.
 void write_estimate(const std::filesystem::path& folder, const std::string& method, Kind kind, const Estimate& estimate,
                     const std::string& sensors_digest = "", std::int64_t origin_ns = 0);
 
-/// Returns the digest of the sensor data from which the estimate in a folder was computed. Returns an empty text if the
-/// folder contains no digest.
+/// Returns the digest of the sensor data from which the estimate was computed; empty if the folder contains no digest.
 std::string estimated_sensors(const std::filesystem::path& path);
 
 /// Reads an estimate from a folder, or from a single file of another program: TUM, or a table of poses
-/// (read_pose_table). An estimate from a single file has the kind position, the frame `tum_frame` and the file's name
-/// as method. All numbers of a single file must be finite. The folder of an estimate may contain NaN, because a
-/// diverged method writes NaN. Throws BadInput with path, line and reason if reading fails.
+/// (read_pose_table). An estimate from a single file has the kind position and the frame `tum_frame`; its method is the
+/// file's name. A folder may contain NaN, which a diverged method writes; a single file must contain only finite
+/// numbers. Throws BadInput with path, line and reason if reading fails.
 Estimate read_estimate(const std::filesystem::path& path, Kind& kind, std::string& method, Frame tum_frame);
 
 }  // namespace tumble::scenarios

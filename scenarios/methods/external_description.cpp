@@ -22,7 +22,7 @@ namespace {
 
 constexpr double kTimeMax_s = 1e6;
 constexpr double kMemoryMax_mib = 1e7;
-constexpr std::size_t kWordMax = 4096;  // std::regex recurses once per character
+constexpr std::size_t kWordMax = 4096;  // longest argument: std::regex recurses once per character
 
 const std::regex& placeholder() {
   static const std::regex pattern(R"(\{([a-z0-9_]+)\})");
@@ -48,8 +48,7 @@ ExternalDescription::Output output_named(const YamlNode& node) {
   node.fail("unknown output '" + name + "'" + suggestion(name, known));
 }
 
-/// Returns the name of a robot, after a check that the simulation has this robot. Without the check, a method for a
-/// misspelt robot would silently never run.
+/// Returns the robot's name after checking that it exists. A method for a misspelt robot would otherwise never run.
 std::string robot_named(const YamlNode& node) {
   const std::string name = node.identifier();
   std::vector<std::string> known;
@@ -87,8 +86,8 @@ std::string digest_of(const std::string& text) {
   return fmt::format("{:016x}", XXH3_64bits(text.data(), text.size()));
 }
 
-/// Returns the files that the command's arguments name with the placeholder {folder}, sorted. An argument may be the
-/// file name, such as "{folder}/mine", or contain the name in a shell command.
+/// Returns the files that the arguments name with the placeholder {folder}, sorted. An argument may be the file name,
+/// such as "{folder}/mine", or contain the name in a shell command.
 std::set<std::filesystem::path> own_files(const std::vector<std::string>& command,
                                           const std::filesystem::path& folder) {
   static const std::regex pattern(R"(\{folder\}/([^\s{}"';|&<>()]{1,512}))");
@@ -114,8 +113,8 @@ std::uint64_t digest_of_file(const std::filesystem::path& file) {
   return XXH3_64bits_digest(state.get());
 }
 
-/// Returns a digest of the description and of the files that the command names with {folder}. A recompiled program
-/// therefore counts as another version of the method.
+/// Returns a digest of the description and of the files that the command names with {folder}. A recompiled program is
+/// therefore another version of the method.
 std::string digest_of_command(const std::string& text, const ExternalDescription& description) {
   std::string all = text;
   for (const std::filesystem::path& file : own_files(description.command, description.file.parent_path()))
@@ -123,7 +122,7 @@ std::string digest_of_command(const std::string& text, const ExternalDescription
   return digest_of(all);
 }
 
-/// The keys in kOfCommands apply only to commands, and the keys in kOfPython apply only to Python functions.
+/// kOfCommands lists the keys for commands only; kOfPython lists the keys for Python functions only.
 constexpr std::array<const char*, 2> kOfCommands = {"version", "output"};
 constexpr std::array<const char*, 2> kOfPython = {"function", "interpreter"};
 
@@ -161,7 +160,7 @@ void read_python(const std::map<std::string, YamlNode>& fields, ExternalDescript
     for (const YamlNode& item : fields.at("interpreter").items()) out.interpreter.push_back(item.text());
 }
 
-/// Returns the kinds of methods that the second group of the pattern matches in the text.
+/// Returns the kinds of methods that the second group of `pattern` matches in the text.
 std::vector<Kind> kinds_found(const std::string& text, const std::regex& pattern) {
   std::vector<Kind> found;
   for (std::sregex_iterator it(text.begin(), text.end(), pattern), end; it != end; ++it)
@@ -170,8 +169,8 @@ std::vector<Kind> kinds_found(const std::string& text, const std::regex& pattern
   return found;
 }
 
-/// Returns the kind of the only method function in the text of a Python file. Without a method function, an assignment
-/// such as `slam = ...` decides the kind.
+/// Returns the kind of the only method function in a Python file. Without a function, an assignment such as `slam =
+/// ...` determines the kind.
 Kind kind_of_function(const std::string& text, const std::string& file) {
   static const std::regex defined(R"((^|\n)def[ \t]{1,8}(rate|attitude|position|slam)[ \t]{0,8}\()");
   static const std::regex assigned(R"((^|\n)(rate|attitude|position|slam)[ \t]{0,8}=(?!=))");

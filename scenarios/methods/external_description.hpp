@@ -10,12 +10,12 @@
 
 namespace tumble::scenarios {
 
-/// kExternalTimeLimit_s is the time limit (wall time) of an external method whose description contains no limit. An
-/// external method in a Python file has no description.
+/// kExternalTimeLimit_s is the default time limit (wall time) of an external method. A Python file always has this
+/// limit, because it has no description.
 inline constexpr double kExternalTimeLimit_s = 600.0;
 
-/// ExternalDescription describes an external method: a command in a file NAME.yaml, or a Python function in NAME.py.
-/// EXTERNAL.md describes the keys and placeholders.
+/// ExternalDescription describes an external method: a command (NAME.yaml) or a Python function (NAME.py). EXTERNAL.md
+/// describes the keys and placeholders.
 struct ExternalDescription {
   enum class Output { rates, tum, estimate };
 
@@ -33,7 +33,7 @@ struct ExternalDescription {
   Output output = Output::tum;
   double time_limit_s = kExternalTimeLimit_s;
   double memory_limit_mib = 8192.0;
-  std::string digest;  ///< digest of this file and of the files that the command names by {folder}
+  std::string digest;  ///< digest of this file and of the files that the command names with {folder}
 };
 
 /// Returns the names of the placeholders that a command may contain in braces: "recording", "csv", "output".
@@ -43,13 +43,13 @@ std::vector<std::string> external_placeholders();
 /// message suggests the nearest name.
 std::vector<std::string> placeholders_in(const std::string& word);
 
-/// Returns the argument with every placeholder replaced by its value.
+/// Returns the argument with each placeholder replaced by its value.
 std::string filled(const std::string& word, const std::map<std::string, std::string>& values);
 
-/// Reads the description NAME.yaml, or a file NAME.py with exactly one function called `rate`, `attitude`, `position`
-/// or `slam`. The function's name sets the kind of the method. Throws BadInput with file, line and reason for an
-/// unknown or missing key, or for an unknown kind, frame or placeholder. Throws BadInput for a command without the
-/// placeholder of its output, a limit out of range, or a Python file without exactly one method function.
+/// Reads a description NAME.yaml, or a file NAME.py with exactly one function `rate`, `attitude`, `position` or `slam`,
+/// whose name is the kind of the method. Throws BadInput with file, line and reason for an unknown or missing key, and
+/// for an unknown kind, frame or placeholder. Also throws BadInput for a command without the placeholder of its output,
+/// a limit out of range, and a Python file without exactly one such function.
 ExternalDescription read_external(const std::filesystem::path& file);
 
 }  // namespace tumble::scenarios

@@ -26,11 +26,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Provision is one format in which an external command can receive the sensor data. The sensor data are written in a
-/// format only if the command contains its placeholder.
+/// Provision is one format in which a command can receive the sensor data. The data are written in this format if the
+/// command contains its placeholder.
 struct Provision {
   const char* placeholder;
-  const char* name;  ///< file or folder in the scratch folder
+  const char* name;  ///< name of the file or folder in the scratch folder
   std::function<void(const sim::Sensors&, const fs::path&)> write;
 };
 
@@ -66,7 +66,7 @@ std::set<std::string> named_in(const std::vector<std::string>& words) {
   return out;
 }
 
-/// Returns for each placeholder the path in the scratch folder that replaces it.
+/// Returns the path in the scratch folder for each placeholder.
 std::map<std::string, std::string> places(const ExternalDescription& description, const fs::path& scratch) {
   const bool folder = description.output == ExternalDescription::Output::estimate;
   const bool rates = description.output == ExternalDescription::Output::rates;
@@ -129,8 +129,8 @@ Estimate run(const ExternalDescription& description, const sim::Sensors& sensors
   }
 }
 
-/// Returns the version of an external method, from the output of its version command, the Python file, and the digest
-/// of its description.
+/// Returns the version of an external method: the output of its version command, the Python file, and the digest of the
+/// description.
 std::string version_of(const ExternalDescription& description) {
   const std::string own = "description " + description.digest;
   if (!description.python.empty()) return python_version(description) + "; " + own;

@@ -14,8 +14,8 @@
 
 namespace tumble::scenarios {
 
-/// NoAnswer is the exception if an external program gave no result. Possible reasons are a crash, a failed start, a
-/// time-out, or a lack of memory or disk space. The message of NoAnswer contains the program's output so far.
+/// NoAnswer means that an external program gave no result, because of a crash, a failed start, a time-out, or a lack of
+/// memory or disk space. The message contains the output of the program.
 class NoAnswer : public std::runtime_error {
  public:
   enum class Why { crashed, timed_out, machine };
@@ -29,8 +29,8 @@ class NoAnswer : public std::runtime_error {
   std::string transcript_;
 };
 
-/// RefusedAnswer is the exception if the result of an external program is invalid. The message of RefusedAnswer
-/// contains the program's output.
+/// RefusedAnswer means that the result of an external program is invalid. The message contains the output of the
+/// program.
 class RefusedAnswer : public BadInput {
  public:
   RefusedAnswer(const std::string& what, std::string transcript) : BadInput(what), transcript_(std::move(transcript)) {}
@@ -41,17 +41,16 @@ class RefusedAnswer : public BadInput {
 };
 
 /// Creates the method that a file NAME.yaml or NAME.py describes (EXTERNAL.md). A command receives the sensor data in a
-/// separate folder in the requested formats. The command runs in a separate process with limits of time and memory, and
-/// writes its result to a file. A Python function exchanges the sensor data and the result through shared memory. The
-/// external program of a method never receives the true motion.
+/// scratch folder, in the formats that it requests. The command runs in a separate process with limits of time and
+/// memory, and writes its result to a file. A Python function exchanges sensor data and result through shared memory.
+/// External programs never receive the truth.
 ///
-/// The time limit is the limit in the description, but at most `time_limit_s`. Throws BadInput if the description is
-/// invalid or if the version command fails. Running the method throws NoAnswer if there is no result, and RefusedAnswer
-/// if the result is invalid.
+/// The time limit is that of the description, but at most `time_limit_s`. Throws BadInput if the description is invalid
+/// or the version command fails. Running the method throws NoAnswer or RefusedAnswer.
 Method external_method(const std::filesystem::path& file,
                        double time_limit_s = std::numeric_limits<double>::infinity());
 
-/// Returns whether `name` has the form NAME.yaml or NAME.py, which describes an external method.
+/// Returns true if `name` has the form NAME.yaml or NAME.py of an external method.
 bool is_method_file(const std::string& name);
 
 /// Finds the methods in a list of names, like find_methods (method.hpp). The time limit of external methods is at most

@@ -24,7 +24,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr std::int64_t kStampTolerance_ns = 1000;  // tolerance for stamps stored as seconds in a double
+constexpr std::int64_t kStampTolerance_ns = 1000;  // tolerance for time stamps that were stored as seconds in a double
 constexpr const char* kRateColumns = "time_ns,wx_rad_s,wy_rad_s,wz_rad_s";
 constexpr const char* kWithCovariance = "time_ns,wx_rad_s,wy_rad_s,wz_rad_s,cxx,cxy,cxz,cyy,cyz,czz";
 
@@ -74,8 +74,8 @@ std::vector<RateState> read_rates(const std::filesystem::path& file, const sim::
   return rates;
 }
 
-/// Returns the first number of each line of a TUM file: the time stamps. The function stops at the first invalid line,
-/// which the TUM reader reports.
+/// Returns the time stamps of a TUM file: the first number of each line. Stops at the first invalid line, which the TUM
+/// reader then reports.
 std::vector<double> stamps_of(const std::filesystem::path& file) {
   std::vector<double> stamps_s;
   std::ifstream stream(file);
@@ -88,13 +88,13 @@ std::vector<double> stamps_of(const std::filesystem::path& file) {
     stamps_s.push_back(stamp_s);
   }
   constexpr double kOrigin_s = 1e-9 * static_cast<double>(kExportOrigin_ns);
-  // Large time stamps are bag stamps in seconds, which are converted to the time of the recording.
+  // Large time stamps are bag stamps in seconds; subtracting the origin gives the recording's time.
   if (!stamps_s.empty() && stamps_s.front() > kOrigin_s / 2 && stamps_s.back() < kOrigin_s * 2)
     for (double& stamp_s : stamps_s) stamp_s -= kOrigin_s;
   return stamps_s;
 }
 
-/// Reads poses from a TUM file; the description of the method contains their frame.
+/// Reads poses from a TUM file, in the frame that the description names.
 Estimate read_poses(const ExternalDescription& description, const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(file))
     throw BadInput(fmt::format("{}: the command did not write this file", file.filename().string()));
@@ -130,8 +130,7 @@ void require_sizes(const AnswerBounds& bounds, ExternalDescription::Output outpu
   }
 }
 
-/// Returns a function that returns the location of row k in the file. The function reads the file only when an error
-/// message needs the line number.
+/// Returns a function that maps row k to its line in the file. The function reads the file only for an error message.
 AnswerBounds::Place rows_of(const std::filesystem::path& file, bool headed) {
   return [file, headed](std::size_t row) {
     std::ifstream stream(file);
@@ -156,7 +155,7 @@ void require_sense(const AnswerBounds& bounds, const Estimate& estimate, Externa
   bounds.require_slam(estimate);
 }
 
-/// Reads the map points of any PLY file with x, y and z. Normals and standard deviations of the points are optional.
+/// Reads map points from a PLY file with x, y and z. Normals and standard deviations are optional.
 std::vector<MapPoint> read_points(const std::filesystem::path& file) {
   const Cloud cloud = read_cloud(file);
   const auto column = [&](const char* name) { return cloud.find(name); };
@@ -190,8 +189,8 @@ Estimate read_external_result(const ExternalDescription& description, const std:
       estimate.rates = read_rates(output, sensors);
       break;
     case ExternalDescription::Output::tum:
-      // The unit of the time stamps is checked before parsing. Otherwise, time stamps in a wrong unit may overflow the
-      // time type, which would give an unhelpful error message.
+      // The unit is checked before parsing, because time stamps in a wrong unit can overflow the time type, with an
+      // unhelpful error message.
       bounds.require_unit(stamps_of(output), "seconds", rows_of(output, false));
       estimate = read_poses(description, output);
       break;

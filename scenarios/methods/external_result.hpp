@@ -9,10 +9,10 @@
 
 namespace tumble::scenarios {
 
-/// Reads the result of an external command from `output`, and the map from `map` if the file exists. The time stamps of
-/// poses are either bag stamps, which start at kExportOrigin_ns, or the recording's times. Throws BadInput with
-/// location and reason for a missing file, a cell that is not a number, values outside AnswerBounds, or decreasing
-/// time. Throws BadInput if the rates do not match the samples of the first IMU.
+/// Reads the result of an external command from `output`, and the map from `map` if this file exists. The time stamps
+/// of poses are bag stamps, which start at kExportOrigin_ns, or times of the recording. Throws BadInput with location
+/// and reason for a missing file, a cell without a number, values outside AnswerBounds, or decreasing times. Throws
+/// BadInput if the rates do not match the samples of the first IMU.
 Estimate read_external_result(const ExternalDescription& description, const std::filesystem::path& output,
                               const std::filesystem::path& map, const sim::Sensors& sensors);
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -19,12 +18,6 @@ namespace {
 
 using About = HealthFinding::Kind;
 
-/// Returns the key of the start time of a finding [s], for example "imu_2_gyro_z_frozen_since_s".
-std::string since_key(const HealthFinding& finding, const char* suffix) {
-  const std::string axis = finding.axis;
-  return finding.sensor + (axis.empty() ? "" : "_" + axis) + suffix;
-}
-
 bool is_about_readings(const HealthFinding& finding) {
   const About kind = finding.kind;
   // the rotation of gravity can confirm the scale of the gyro later
@@ -36,52 +29,6 @@ bool is_about_readings(const HealthFinding& finding) {
 bool is_about_place(const HealthFinding& finding) {
   const About kind = finding.kind;
   return kind == About::tracking_lost || kind == About::lidar_scale || kind == About::lidar_calibration;
-}
-
-/// Adds the health entry of a finding; the key of the entry depends on the kind of the finding.
-void add_row(const HealthFinding& finding, std::map<std::string, double>& health) {
-  const double since_s = seconds(finding.since_ns.value_or(0));
-  switch (finding.kind) {
-    case About::frozen_axis:
-    case About::unit_frozen:
-      health[since_key(finding, "_frozen_since_s")] = since_s;
-      return;
-    case About::unit_silent:
-      health[since_key(finding, "_silent_since_s")] = since_s;
-      return;
-    case About::unit_disagrees:
-      health[since_key(finding, "_disagrees_since_s")] = since_s;
-      return;
-    case About::flight_forces:
-      health["imu_flight_against_s"] = finding.value;
-      return;
-    case About::rate_unit:
-      health["rate_unit_suspect"] = 1.0;
-      return;
-    case About::force_unit:
-      health["force_unit_suspect"] = 1.0;
-      return;
-    case About::beyond_range:
-      health["imu_readings_beyond_range"] = finding.value;
-      return;
-    case About::rounded_stamps:
-      health["imu_stamps_rounded_s"] = finding.value;
-      return;
-    case About::lidar_scale:
-      health["lidar_scale_implausible"] = 1.0;
-      return;
-    case About::rig_calibration:
-      health["learnt_rig_contradicted"] = finding.value;
-      return;
-    case About::attitude_unknown:
-      health["attitude_unknown_s"] = finding.value;
-      return;
-    case About::vertical_unknown:
-      health["vertical_sigma_rad"] = finding.value;
-      return;
-    default:  // the code below adds the entries that several kinds share
-      return;
-  }
 }
 
 bool any_of(const Estimate& estimate, bool (*about)(const HealthFinding&)) {
@@ -103,7 +50,6 @@ void add_finding(const HealthFinding& finding, Estimate& estimate) {
   const std::size_t before = estimate.faults.findings.size();
   estimate.faults.add(finding);
   if (estimate.faults.findings.size() == before) return;
-  add_row(finding, estimate.health);
   if (is_about_readings(finding)) estimate.health["imu_implausible"] = 1.0;
 }
 
@@ -148,7 +94,6 @@ nlohmann::json json_of(const HealthFinding& finding) {
           {"quantity", finding.quantity},
           {"value", finding.value},
           {"bound", finding.bound},
-          {"confidence", finding.confidence},
           {"since_ns", finding.since_ns ? nlohmann::json(*finding.since_ns) : nlohmann::json()},
           {"ended", finding.ended},
           {"text", to_text(finding)}};
@@ -167,7 +112,6 @@ HealthFinding finding_in(const std::filesystem::path& path, const nlohmann::json
   out.quantity = kept(reader.text("quantity"));
   out.value = number("value");
   out.bound = number("bound");
-  out.confidence = number("confidence");
   if (const nlohmann::json& since = reader.member("since_ns"); since.is_number_integer())
     out.since_ns = since.get<TimeNs>();
   out.ended = reader.member("ended") == true;

@@ -8,15 +8,13 @@
 
 #include "tumble/common/sensor_health.hpp"
 
-/// The functions in findings.hpp store findings (suspected faults of sensors and estimate) in an Estimate, and derive
-/// the entries of its health.
+/// The functions in findings.hpp store findings (suspected faults of sensors and estimate) in an Estimate.
 namespace tumble::scenarios {
 
 struct Estimate;
 
-/// Adds a finding to the estimate, and its entries to the health, for example `imu_implausible` or
-/// `imu_2_frozen_since_s`. A second finding of the same kind, sensor and axis is dropped. The function add_finding
-/// defines all keys of findings in the health.
+/// Adds a finding to the estimate, and `imu_implausible` to the health if the finding is about IMU readings. A second
+/// finding of the same kind, sensor and axis is dropped.
 void add_finding(const HealthFinding& finding, Estimate& estimate);
 
 /// Adds all findings in `health` to the estimate. The list `names` contains the names of the IMUs in the recording, in

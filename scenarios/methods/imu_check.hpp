@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "scenarios/methods/method.hpp"
@@ -14,23 +15,19 @@ namespace tumble::scenarios {
 /// Returns the description of the primary IMU that the library's checks need.
 CheckedImu checked_imu(const sim::Sensors& sensors);
 
-/// Adds the measured quantities of the checks to the estimate's health, and the findings about the primary IMU.
-void report_findings(const ImuFindings& findings, const sim::Sensors& sensors, Estimate& estimate);
+/// Adds findings about the primary IMU to the estimate.
+void report_findings(const SensorHealth& health, const sim::Sensors& sensors, Estimate& estimate);
 
-/// Adds the measured quantities and the findings about merged IMUs to the estimate. The list `names` contains the names
-/// of the IMUs in use.
-void report_merged(const MergedFindings& merged, std::span<const std::string> names, Estimate& estimate);
-
-/// Reports in the estimate whether the time stamps of the primary IMU are rounded.
-void report_stamps(const sim::Sensors& sensors, Estimate& estimate);
-
-/// Checks the readings of the primary IMU (check_readings), and whether their time stamps are rounded.
+/// Checks the readings of the primary IMU (check_readings).
 void check_imu(const sim::Sensors& sensors, std::span<const ImuSample> samples, Estimate& estimate);
+
+/// Runs all checks of the primary IMU with its estimated rates (check_recording).
+ImuFindings check_imu_with_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples,
+                                 std::span<const RateState> rates, std::optional<double> carried_share,
+                                 Estimate& estimate);
 
 /// Adds the covariance of suspect rates (suspect_covariance) to the rates in the estimate. Only batch methods may call
 /// inflate_rates, because live or lagged results must not depend on later readings.
 void inflate_rates(const ImuFindings& findings, std::span<const ImuSample> samples, Estimate& estimate);
-/// Reports the rates to which suspect_covariance() was added because readings contradict each other.
-void report_inflated(const ImuFindings& findings, Estimate& estimate);
 
 }  // namespace tumble::scenarios

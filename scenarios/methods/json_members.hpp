@@ -10,8 +10,8 @@
 
 namespace tumble::scenarios {
 
-/// JsonMembers reads the members of a JSON object. Each error is a BadInput with the file, the member and the value in
-/// the file. Both constructor arguments must outlive the JsonMembers object.
+/// JsonMembers reads the members of a JSON object. Each error is a BadInput with file, member and value. Both
+/// constructor arguments must outlive JsonMembers.
 class JsonMembers {
  public:
   JsonMembers(const std::filesystem::path& path, const nlohmann::json& object) : path_(path), object_(object) {}

@@ -35,7 +35,7 @@ std::vector<std::string> header(std::size_t points) {
   return lines;
 }
 
-// Reads the header of a PLY file and returns the number of points in the header.
+// Reads the header of a PLY file and returns its number of points.
 std::size_t read_header(std::istream& file, const std::filesystem::path& path) {
   const std::vector<std::string> expected = header(0);
   std::size_t points = 0;

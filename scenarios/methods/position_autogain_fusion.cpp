@@ -32,7 +32,7 @@ baselines::AutogainFusion::Params fusion_params(const sim::Sensors& sensors, con
   return params;
 }
 
-// The published filter estimates the attitude from unmodified readings, and so does this method.
+// Like the published filter, the method estimates the attitude from unmodified readings.
 Estimate run_position_autogain_fusion(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
   Estimate estimate;
   estimate.frame = Frame::centre;

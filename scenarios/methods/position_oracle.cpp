@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <cmath>
 #include <memory>
-#include <span>
 #include <string>
 #include <utility>
 
@@ -17,23 +15,20 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr std::int64_t kEdgeNs = 400'000'000;
-constexpr double kLevelTiltRad = 0.005;  // smaller tilts of the floor count as level
-
 /// Prepared contains the merged IMUs of a sphere and the smoother's parameters from the recording.
 struct Prepared {
   std::vector<ImuSample> samples;
   RollingSmoother::Params params;
 };
 
-bool prepare(const char* method, const sim::Sensors& sensors, Prepared& out, Estimate& estimate) {
+bool prepare(const sim::Sensors& sensors, Prepared& out, Estimate& estimate) {
   estimate.frame = Frame::centre;
   SphereImus units;
   MergedImus imus;
   estimate.status = sphere_imus(sensors, units);
   if (estimate.status.ok()) estimate.status = merge_imus(sensors, imus);
   if (!estimate.status.ok()) return false;
-  require_sphere(method, sensors);
+  require_sphere("position/oracle", sensors);
   RollingOdometry::Params params;
   params.lag_s = RollingOdometry::kWholeRecording;
   out.params = RollingOdometry::smoother_params(stated_params(sensors, units, params), imus.merged);
@@ -41,7 +36,7 @@ bool prepare(const char* method, const sim::Sensors& sensors, Prepared& out, Est
   return true;
 }
 
-/// Returns the smoother's settings without the `fixed` parameters, which the method takes from the truth.
+/// Returns the smoother's settings without the parameters in `fixed`, whose values come from the truth.
 Settings<RollingSmoother::Params> oracle_settings(std::vector<std::string> fixed) {
   RollingSmoother::Params params;
   params.filter.radius_m = presets::kSphereRadius_m;
@@ -49,14 +44,14 @@ Settings<RollingSmoother::Params> oracle_settings(std::vector<std::string> fixed
   return Settings<RollingSmoother::Params>(
       params, {.stated = {"radius_m", "gravity_m_s2", "lever_arm_x_m", "lever_arm_y_m", "lever_arm_z_m",
                           "gyro_range_rad_s", "accel_range_m_s2", "recovered_rate_sigma_rad_s",
-                          // The following parameters depend on whether the device has a data sheet.
+                          // The values of the following parameters depend on whether the device has a data sheet.
                           "gyro_bias_sigma_rad_s", "accel_bias_sigma_m_s2", "tilt_sigma_rad", "accel_scale_sigma",
                           "gyro_scale_sigma", "accel_delay_sigma_s", "lever_arm_sigma_m", "incline_begins_per_s"},
                .fixed = std::move(fixed)});
 }
 
-/// Smooths all samples of a recording; the vector `known` contains the true contact modes, or is empty.
-void smooth(const Prepared& prepared, std::span<const RollingMode> known, Estimate& estimate) {
+/// Smooths all samples of a recording.
+void smooth(const Prepared& prepared, Estimate& estimate) {
   const RollingSmoother smoother(prepared.params);
   const auto state = std::make_unique<RollingSmoother::State>();
   std::vector<RollingEstimate> done;
@@ -73,11 +68,7 @@ void smooth(const Prepared& prepared, std::span<const RollingMode> known, Estima
                 prepared.params.filter.radius_m, estimate);
   };
   std::for_each(done.begin(), done.end(), take);
-  if (known.empty()) {
-    smoother.finish(*state, take);
-  } else {
-    smoother.finish(known, *state, take);
-  }
+  smoother.finish(*state, take);
   estimate.centre_B_m = -state->constants.lever_arm_error_m;
 }
 
@@ -85,7 +76,7 @@ std::size_t physics_index(const sim::Truth& truth, std::int64_t time_ns, std::si
   return std::min(static_cast<std::size_t>(std::max<std::int64_t>(time_ns, 0) / truth.period_ns), count - 1);
 }
 
-/// A method with the true attitude lacks the parameters of the attitude estimate.
+/// A method with the true attitude has no parameters of the attitude estimate.
 const Settings<RollingSmoother::Params>& settings_with_attitude() {
   static const Settings<RollingSmoother::Params> all =
       oracle_settings({"gyro_range_rad_s", "tilt_sigma_rad", "gyro_bias_sigma_rad_s", "gyro_scale_sigma",
@@ -93,15 +84,10 @@ const Settings<RollingSmoother::Params>& settings_with_attitude() {
   return all;
 }
 
-const Settings<RollingSmoother::Params>& settings_with_contact() {
-  static const Settings<RollingSmoother::Params> all = oracle_settings({});
-  return all;
-}
-
 Estimate run_exact_attitude(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput& oracle) {
   Estimate estimate;
   Prepared imus;
-  if (!prepare("position/oracle", sensors, imus, estimate)) return estimate;
+  if (!prepare(sensors, imus, estimate)) return estimate;
   const sim::Truth& truth = *oracle.truth;
   const std::vector<std::int64_t>& times_ns = sensors.imus.front().time_ns;
   if (truth.imus.empty() || truth.imus.front().rate_rad_s.size() != times_ns.size() || truth.q_WB.empty()) {
@@ -109,7 +95,7 @@ Estimate run_exact_attitude(const sim::Sensors& sensors, const sim::Values& para
   }
   const Eigen::Matrix3d R_BI = truth.imus.front().T_BI.linear();
   std::size_t next = 0;
-  for (ImuSample& sample : imus.samples) {  // average over readings of the primary IMU
+  for (ImuSample& sample : imus.samples) {  // mean of the primary IMU's readings
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     const std::size_t first = next;
     while (next < times_ns.size() && times_ns[next] <= sample.time_ns) sum += truth.imus.front().rate_rad_s[next++];
@@ -126,52 +112,7 @@ Estimate run_exact_attitude(const sim::Sensors& sensors, const sim::Values& para
   params.filter.expert.noise.attitude_walk_rad_sqrts = 1e-9;
   params.filter.expert.noise.rate_error_sqrts = 1e-9;
   params.filter.expert.noise.gyro_bias_walk_rad_s_sqrts = 1e-9;
-  smooth(imus, {}, estimate);
-  return estimate;
-}
-
-/// Changes short intervals of the mode `incline` to bumps, because an edge tilts the contact normal only briefly.
-void edges_are_bumps(std::int64_t period_ns, std::vector<RollingMode>& modes) {
-  for (std::size_t begin = 0; begin < modes.size();) {
-    std::size_t end = begin;
-    while (end < modes.size() && modes[end] == RollingMode::incline) ++end;
-    if (static_cast<std::int64_t>(end - begin) * period_ns < kEdgeNs) {
-      std::fill(modes.begin() + static_cast<std::ptrdiff_t>(begin), modes.begin() + static_cast<std::ptrdiff_t>(end),
-                RollingMode::bump);
-    }
-    begin = std::max(end, begin + 1);
-  }
-}
-
-/// Returns the contact mode of each sample, from the true contact labels and contact normals.
-std::vector<RollingMode> true_modes(const sim::Truth& truth, const std::vector<ImuSample>& samples) {
-  std::vector<RollingMode> at_step(truth.label.size(), RollingMode::grip);
-  for (const sim::ContactTruth& contact : truth.contacts) {
-    if (contact.normal_W.z() < std::cos(kLevelTiltRad)) {
-      at_step[physics_index(truth, contact.time_ns, at_step.size())] = RollingMode::incline;
-    }
-  }
-  for (std::size_t k = 0; k < at_step.size(); ++k) {
-    if (truth.label[k] == sim::ContactLabel::air) at_step[k] = RollingMode::bump;
-    if (truth.label[k] == sim::ContactLabel::slip || truth.label[k] == sim::ContactLabel::slide) {
-      at_step[k] = RollingMode::slip;
-    }
-  }
-  edges_are_bumps(truth.period_ns, at_step);
-  std::vector<RollingMode> modes;
-  modes.reserve(samples.size());
-  for (const ImuSample& sample : samples)
-    modes.push_back(at_step[physics_index(truth, sample.time_ns, at_step.size())]);
-  return modes;
-}
-
-Estimate run_exact_contact(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput& oracle) {
-  Estimate estimate;
-  Prepared imus;
-  if (!prepare("position/oracle_contact", sensors, imus, estimate)) return estimate;
-  if (oracle.truth->label.empty()) throw BadInput("the truth has no contact states");
-  settings_with_contact().apply(parameters, imus.params);
-  smooth(imus, true_modes(*oracle.truth, imus.samples), estimate);
+  smooth(imus, estimate);
   return estimate;
 }
 
@@ -189,20 +130,6 @@ Method position_oracle() {
   info.needs_truth = true;
   info.robots = {"sphere"};
   return make_method(std::move(info), at_sample_times<run_exact_attitude>);
-}
-
-Method position_oracle_contact() {
-  MethodInfo info;
-  info.name = "oracle_contact";
-  info.kind = Kind::position;
-  info.doc =
-      "Gives an upper bound of the accuracy: our smoother receives the true contact state (grip, slip or none). Errors "
-      "of the sensors remain.";
-  info.ours = true;
-  info.settings = {&settings_with_contact()};
-  info.needs_truth = true;
-  info.robots = {"sphere"};
-  return make_method(std::move(info), at_sample_times<run_exact_contact>);
 }
 
 }  // namespace tumble::scenarios

@@ -6,12 +6,12 @@
 #include "scenarios/methods/method.hpp"
 #include "scenarios/methods/settings.hpp"
 
-/// The functions in position_stage.hpp use a position method as the first stage of a sphere's slam method. The slam
-/// method has all parameters of the position method under equal names.
+/// position_stage.hpp uses a position method as the first stage of a sphere's slam method. The slam method has all
+/// parameters of the position method, with the same names.
 namespace tumble::scenarios {
 
-/// Returns the settings `own` of the slam method, followed by the settings of `position`. The settings of the slam
-/// method and of `position` have different names.
+/// Returns the settings `own` of the slam method, followed by the settings of `position`. The two groups must have
+/// different parameter names.
 std::vector<const SettingsTable*> stages_after(std::vector<const SettingsTable*> own, const Method& position);
 
 /// Returns the values in `parameters` that belong to the position method.

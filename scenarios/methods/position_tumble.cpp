@@ -9,7 +9,6 @@
 #include <string>
 #include <utility>
 
-#include "scenarios/methods/imu_check.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/robot_presets.hpp"
 #include "scenarios/methods/settings.hpp"
@@ -21,20 +20,20 @@ namespace {
 
 constexpr double kLagS = 1.0;
 constexpr TimeNs kHealthPeriodNs = 100'000'000;       // time between two calls of health()
-constexpr double kSpinsM_s = 0.2, kSpinsShare = 0.3;  // speed difference at which a hop counts as slip
+constexpr double kSpinsM_s = 0.2, kSpinsShare = 0.3;  // a hop with a larger speed difference is a slip
 
 Settings<RollingOdometry::Params> odometry_settings(double lag_s, std::vector<std::string> fixed) {
   RollingOdometry::Params params;
   params.radius_m = presets::kSphereRadius_m;
   params.lag_s = lag_s;
-  // Other parameters of RollingOdometry determine the following parameters.
+  // Other parameters of RollingOdometry determine these parameters.
   fixed.insert(fixed.end(),
                {"merge_count", "merge_gyro_range_rad_s", "merge_accel_range_m_s2", "rolling_radius_m",
                 "rolling_gravity_m_s2", "rolling_lever_arm_*", "rolling_gyro_range_rad_s", "rolling_accel_range_m_s2",
                 "rolling_recovered_rate_sigma_rad_s", "rolling_lag_s", "rolling_rate_max_hz"});
   return Settings<RollingOdometry::Params>(
       params, {.stated = {"radius_m", "gravity_m_s2",
-                          // The prior parameters below depend on whether the device has a data sheet.
+                          // The priors below depend on whether the device has a data sheet.
                           "centre_sigma_m", "rolling_gyro_bias_sigma_rad_s", "rolling_accel_bias_sigma_m_s2",
                           "rolling_tilt_sigma_rad", "rolling_accel_scale_sigma", "rolling_gyro_scale_sigma",
                           "rolling_accel_delay_sigma_s", "rolling_incline_begins_per_s"},
@@ -56,8 +55,7 @@ const Settings<RollingOdometry::Params>& live_settings() {
   return all;
 }
 
-/// Returns whether the sphere rotates faster than it travels. A short flight during which the sphere rotates too fast
-/// belongs to a slip.
+/// Returns true if rolling speed and travel speed differ; a short flight then belongs to a slip.
 bool spins(double radius_m, const RollingOdometry::Pose& pose) {
   const double rolling_m_s = radius_m * (pose.pose.q_WA * pose.angular_velocity_rad_s).head<2>().norm();
   const double speed_m_s = pose.pose.v_WA_m_s.norm();
@@ -70,9 +68,9 @@ sim::ContactLabel contact_label(double radius_m, const RollingOdometry::Pose& po
   return slip_or_slide(radius_m, pose.pose.q_WA, pose.angular_velocity_rad_s, pose.pose.v_WA_m_s);
 }
 
-/// Adds the findings about the IMUs from the whole recording to the estimate.
+/// Adds the calibration of the IMUs from the whole recording to the health.
 void report_whole(const MergedFindings& whole, std::span<const std::string> names, Estimate& estimate) {
-  report_merged(whole, names, estimate);
+  if (whole.merged.lever_arm_agreement) estimate.health["imu_arm_share"] = *whole.merged.lever_arm_agreement;
   estimate.health["imu_readings_left_out"] = static_cast<double>(whole.merged.excluded_readings);
   if (whole.merged.units.size() < 2) return;
   for (const MergedRecordings::Unit& unit : whole.merged.units) {
@@ -83,7 +81,7 @@ void report_whole(const MergedFindings& whole, std::span<const std::string> name
   }
 }
 
-/// Passes the readings of all IMUs to the odometry in order of time, and collects the poses.
+/// Passes the readings of all IMUs to the odometry, in order of time, and collects the poses.
 Status replay(const std::vector<UnitRecording>& recordings, RollingOdometry& odometry, double radius_m,
               std::span<const std::string> names, Estimate& estimate) {
   TimeNs checked_ns = 0;
@@ -96,7 +94,7 @@ Status replay(const std::vector<UnitRecording>& recordings, RollingOdometry& odo
   };
   std::vector<std::size_t> next(recordings.size(), 0);
   while (true) {
-    std::optional<std::size_t> first;  // the unit with the earliest reading
+    std::optional<std::size_t> first;  // index of the IMU with the earliest reading
     TimeNs first_ns = std::numeric_limits<TimeNs>::max();
     for (std::size_t k = 0; k < recordings.size(); ++k) {
       if (next[k] == recordings[k].samples.size() || recordings[k].samples[next[k]].time_ns >= first_ns) continue;
@@ -105,7 +103,7 @@ Status replay(const std::vector<UnitRecording>& recordings, RollingOdometry& odo
     }
     if (!first) break;
     const Status status = odometry.add_imu(*first, recordings[*first].samples[next[*first]++]);
-    // The estimator rejects the first sample after a gap, and the second sample confirms the time stamp of the first.
+    // The estimator rejects the first sample after a gap, until the second sample confirms its time stamp.
     if (!status.ok() && status.error_code != ErrorCode::gap) return status;
     collect();
   }
@@ -151,8 +149,7 @@ Estimate run(const char* method, const Settings<RollingOdometry::Params>& settin
   estimate.status = replay(units.recordings, odometry, params.radius_m, units.names, estimate);
   estimate.health["imus"] = static_cast<double>(params.units.size());
   if (odometry.recording() != nullptr) report_whole(*odometry.recording(), units.names, estimate);
-  report_stamps(sensors, estimate);
-  report_beyond_range(units.beyond_range, sensors, estimate);
+  report_beyond_range(units.beyond_range, estimate);
   report(odometry, params, estimate);
   return estimate;
 }

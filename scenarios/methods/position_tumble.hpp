@@ -5,8 +5,7 @@
 #include "scenarios/methods/sphere_imus.hpp"
 #include "tumble/odometry/rolling_odometry.hpp"
 
-/// The functions in position_tumble.hpp are shared by the position methods of tumble and the methods that use the
-/// truth.
+/// Position methods of tumble and methods that use the truth share the functions in position_tumble.hpp.
 namespace tumble::scenarios {
 
 /// Returns the parameters of RollingOdometry that the recording determines. IMUs without a data sheet get wider priors.

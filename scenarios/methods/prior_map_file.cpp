@@ -18,7 +18,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// VectorColumns contains the indices of the three columns of a vector, or nothing if a column is missing.
+/// VectorColumns points to the three columns of a vector; null if a column is missing.
 struct VectorColumns {
   const std::vector<double>*x = nullptr, *y = nullptr, *z = nullptr;
 

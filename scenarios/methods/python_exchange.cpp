@@ -31,8 +31,7 @@ std::size_t aligned(std::size_t size) {
   return (size + kAlignment - 1) / kAlignment * kAlignment;
 }
 
-/// Arrays collects arrays that are written to shared memory one after another. The data of the arrays must outlive the
-/// Arrays object.
+/// Arrays collects arrays that are written to shared memory one after another. The data must outlive Arrays.
 class Arrays {
  public:
   template <typename Value>
@@ -71,7 +70,7 @@ class Arrays {
   }
 
   std::vector<std::span<const std::byte>> bytes_;
-  std::deque<std::vector<double>> matrices_;  // deque: addresses stay valid
+  std::deque<std::vector<double>> matrices_;  // deque keeps the addresses valid
   std::size_t offset_ = 0;
 };
 
@@ -143,11 +142,11 @@ json of_series(const sim::SeriesRecord& series, Arrays& arrays) {
           {"constants", std::move(constants)}};
 }
 
-/// Answer reads a result from shared memory: the JSON text, and the arrays that the text describes.
+/// Answer reads a result from shared memory: a JSON text, and the arrays that it describes.
 class Answer {
  public:
   Answer(const SharedMemory& memory, const AnswerBounds& bounds) {
-    // The size must be checked, because the Python function can enlarge the shared memory that it received.
+    // The Python function can enlarge the shared memory that it received.
     const std::uintmax_t most = bounds.table_bytes() + bounds.map_bytes();
     if (memory.size() > most)
       throw BadInput(
@@ -168,8 +167,8 @@ class Answer {
   }
   bool has(const char* name) const { return text_.contains("arrays") && text_["arrays"].contains(name); }
 
-  /// Returns the array with the given name, which must have `columns` values per row. The array must have `rows` rows;
-  /// if `rows` is empty, any number is accepted.
+  /// Returns the array `name` with `columns` values per row. The array must have `rows` rows; an empty `rows` allows
+  /// any number.
   template <typename Value>
   std::vector<Value> array(const char* name, const char* dtype, std::size_t columns,
                            std::optional<std::size_t> rows) const {
@@ -223,8 +222,7 @@ void read_rates(const Answer& answer, const sim::Sensors& sensors, Estimate& est
   }
 }
 
-/// Reads the poses of a method of kind position, slam or attitude. A method of kind attitude returns poses without
-/// positions.
+/// Reads the poses of a method of kind position, slam or attitude. Poses of kind attitude have no positions.
 std::vector<PoseState> read_poses(const Answer& answer) {
   const auto times_ns = answer.array<std::int64_t>("time_ns", "<i8", 1, {});
   const auto quaternions = answer.array<double>("quaternion", "<f8", 4, times_ns.size());

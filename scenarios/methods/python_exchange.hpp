@@ -4,20 +4,20 @@
 #include "scenarios/methods/method.hpp"
 #include "scenarios/processes/shared_memory.hpp"
 
-/// The functions in python_exchange.hpp exchange sensor data and results with a Python function through shared memory.
-/// In both directions, the memory contains the length of a JSON text (uint64, little endian), the text, and arrays. The
-/// arrays start at the next multiple of 64 bytes. The JSON text describes each array as {"dtype": "<f8", "shape": [N,
-/// 3], "offset": bytes after the start of the first array}; python_runner.py implements the Python side.
+/// python_exchange.hpp exchanges sensor data and results with a Python function through shared memory. In both
+/// directions, the memory contains the length of a JSON text (uint64, little endian), the text, and arrays. The first
+/// array starts at the next multiple of 64 bytes. The text describes each array as {"dtype": "<f8", "shape": [N, 3],
+/// "offset": bytes after the start of the first array}. The Python side is python_runner.py.
 namespace tumble::scenarios {
 
-/// Writes all sensor data to shared memory. The names of the arrays are those of the Python package
+/// Writes all sensor data to shared memory. The arrays have the names of the Python package
 /// (python/src/tumble/recordings.py).
 void write_sensors(const sim::Sensors& sensors, SharedMemory& memory);
 
-/// Reads the result of the Python function as an estimate of `kind`. The rates in the result belong to the samples of
-/// the first IMU. Throws NoAnswer with the traceback if the function raised an exception. Throws BadInput with the
-/// reason for an invalid result: wrong shape, non-finite number, times that do not increase, corrupted memory, or
-/// values outside AnswerBounds.
+/// Reads the result of the Python function as an estimate of `kind`. Rates belong to the samples of the first IMU.
+/// Throws NoAnswer with the traceback if the function raised an exception. Throws BadInput with the reason for an
+/// invalid result: wrong shape, non-finite number, times that do not increase, corrupted memory, or values outside
+/// AnswerBounds.
 Estimate read_answer(const SharedMemory& memory, Kind kind, Frame frame, const sim::Sensors& sensors);
 
 }  // namespace tumble::scenarios

@@ -28,8 +28,8 @@ except ImportError:
 print("Python", sys.version.split()[0] + ", numpy", numpy.__version__)
 )";
 
-/// Returns the command that starts the Python interpreter with the arguments `words`. The description of the method or
-/// the user selects the interpreter.
+/// Returns the command that starts Python with the arguments `words`. The description or the user selects the
+/// interpreter.
 Command interpreter(const ExternalDescription& description, const ScratchFolder& scratch,
                     const std::vector<std::string>& words) {
   Command command{.words = description.interpreter,

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Calls one function of a file with the sensors of a recording: runner FILE FUNCTION KIND SENSORS ANSWER.
+"""Calls one function of a Python file with the sensor data of a recording: runner FILE FUNCTION KIND SENSORS ANSWER.
 
-The program starts this script for a method that is a Python function (EXTERNAL.md, python_exchange.hpp). SENSORS and ANSWER are descriptors
-of shared memory: the length of a JSON text (8 bytes, little endian), the text, then arrays from the next multiple of 64 bytes. It only
-needs numpy.
+The program starts this script for a method that is a Python function (EXTERNAL.md). The script only needs numpy. SENSORS and ANSWER are
+file descriptors of shared memory, which contains the length of a JSON text (8 bytes, little endian), the text, and arrays from the next
+multiple of 64 bytes (python_exchange.hpp).
 """
 import importlib.util
 import json
@@ -18,10 +18,10 @@ import types
 import numpy as np
 
 ALIGNMENT = 64
-TOLD_MAX = 1500  # reported characters at the end of a traceback
-UNIT_TOLERANCE = 1e-2  # tolerance of a quaternion's norm, as for a TUM file
-ROUNDING_NS = 1000  # points at most this much after their sweep's end are moved to the end
-SYMMETRY_TOLERANCE = 1e-3  # tolerance of a covariance, relative to the diagonal; accepts single precision
+TOLD_MAX = 1500  # number of reported characters at the end of a traceback
+UNIT_TOLERANCE = 1e-2  # largest deviation of a quaternion's norm from 1, as for a TUM file
+ROUNDING_NS = 1000  # points up to this time after the end of their sweep get the time of the end
+SYMMETRY_TOLERANCE = 1e-3  # largest asymmetry of a covariance, relative to its diagonal; accepts single precision
 
 
 class Refused(Exception):
@@ -29,7 +29,7 @@ class Refused(Exception):
 
 
 class Lidar(types.SimpleNamespace):
-    """A lidar as a sequence of sweeps: len(lidar), lidar[k], `for sweep in lidar`."""
+    """A lidar is a sequence of sweeps: len(lidar), lidar[k], `for sweep in lidar`."""
 
     def __len__(self):
         return len(self.sweep_start_ns)
@@ -50,7 +50,7 @@ class Lidar(types.SimpleNamespace):
 
 
 def read_sensors(descriptor):
-    """Returns the recording: imus, lidars, series, robot, sphere_radius_m, gravity_m_s2. Arrays are read-only views of the memory."""
+    """Returns the recording: imus, lidars, series, robot, sphere_radius_m, gravity_m_s2. Arrays are read-only views of the shared memory."""
     memory = mmap.mmap(descriptor, 0, flags=mmap.MAP_PRIVATE, prot=mmap.PROT_READ)  # some kernels refuse MAP_SHARED for sealed memory
     (length,) = struct.unpack_from("<Q", memory)
     data = -(-(8 + length) // ALIGNMENT) * ALIGNMENT
@@ -76,14 +76,14 @@ def read_sensors(descriptor):
 
 
 def unmasked(name, given):
-    """Converts to an array; rejects masked values."""
+    """Converts `given` to an array; raises Refused for masked values."""
     if any(np.ma.is_masked(each) for each in (given, *(given if isinstance(given, (list, tuple)) else ()))):
         raise Refused(f"{name} is masked in places; all values must be numbers")
     return np.asarray(given)
 
 
 def numbers(name, given, *shape):
-    """Converts to finite float64 of the given shape; a size of None may be any number. Rejects types that lose information, such as complex numbers."""
+    """Converts `given` to finite float64 of the given shape; None allows any size. Raises Refused for types that lose information, such as complex."""
     try:
         found = unmasked(name, given)
         real = found.dtype.kind in "iuf" or (
@@ -126,7 +126,7 @@ def covariances(given, count):
 
 
 def parts(returned, names):
-    """Returns the result's parts by name: from attributes, or from a tuple in this order, whose last entry may be missing or None."""
+    """Returns the parts of the result by name, from attributes or from a tuple in the order of `names`. The last part may be missing or None."""
     if returned is None:
         raise Refused(f"nothing was returned; the function must return {', '.join(names)}")
     if hasattr(returned, names[0]):
@@ -184,7 +184,7 @@ def told(error):
 
 
 def called(file, function, recording):
-    """Calls the function of the file. The file's folder comes first in sys.path, as for a script."""
+    """Calls the function of the file. The folder of the file is the first entry of sys.path, as for a script."""
     sys.path[0] = os.path.dirname(file)
     spec = importlib.util.spec_from_file_location(os.path.splitext(os.path.basename(file))[0], file)
     module = importlib.util.module_from_spec(spec)

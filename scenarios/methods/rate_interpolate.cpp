@@ -6,12 +6,9 @@ namespace tumble::scenarios {
 
 namespace {
 
-// The parameters of the other models of ClippedBaseline are fixed.
 const Settings<baselines::ClippedBaseline::Params>& rate_interpolate_settings() {
-  static const Settings<baselines::ClippedBaseline::Params> all(
-      {.kind = baselines::ClippedBaseline::Kind::interpolate},
-      {.stated = {"gyro_noise_density"},
-       .fixed = {"acceleration_psd_rad2_s3", "snap_psd_rad2_s7", "rate_sigma_rad_s"}});
+  static const Settings<baselines::ClippedBaseline::Params> all(baselines::ClippedBaseline::Params{},
+                                                                {.stated = {"gyro_noise_density"}});
   return all;
 }
 

@@ -19,8 +19,8 @@ Estimate run_rate_oracle(const sim::Sensors& sensors, const sim::Values&, const 
 
 Status unclipped_rates(const sim::Sensors& sensors, const sim::Truth& truth, std::vector<RateState>& out) {
   out.clear();
-  // The original readings are also checked, because an oracle (a method with true input) must fail where every method
-  // must fail.
+  // The clipped readings are checked too: where no method can succeed, the oracle (a method with true input) must also
+  // fail.
   std::vector<ImuSample> samples;
   Status status = bridge::primary_imu_samples(sensors, samples);
   if (!status.ok()) return status;

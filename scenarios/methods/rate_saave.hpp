@@ -11,13 +11,12 @@
 #include "tumble/common/imu.hpp"
 #include "tumble/common/status.hpp"
 
-/// The functions in rate_saave.hpp estimate rates by the published method Saave. The rate method and the slam methods
-/// of Saave use the functions in rate_saave.hpp.
+/// The rate method and the slam methods of Saave share the functions in rate_saave.hpp.
 namespace tumble::scenarios {
 
 const Settings<Saave::Params>& saave_settings();
-/// Returns the settings of Saave's method for a method that has another stage with settings. If the other stage has a
-/// parameter with the same name, the name gets the prefix `rate_`.
+/// Returns Saave's settings for a method with another stage, whose parameters are `others`. A parameter name that both
+/// stages use gets the prefix `rate_`.
 Settings<Saave::Params> other_saave_settings(std::span<const sim::Parameter> others);
 
 /// Estimates the angular rate of each sample by Saave's method, and writes one RateState per sample to `out`. On error,

@@ -18,8 +18,8 @@
 
 namespace tumble::scenarios {
 
-// A range or noise density of 0 means that the data sheet lacks the value. The smoother then assumes an unlimited
-// range, or the library's default density.
+// A range or noise density of 0 means that the data sheet lacks the value. The smoother then assumes an unlimited range
+// or the library's default density.
 RateSmoother::Params stated_params(const sim::ImuRecord& record, RateSmoother::Params params) {
   RateModelParams& model = params.model;
   model.nominal.lever_arm_m = bridge::lever_arm_I_m(record);
@@ -41,7 +41,7 @@ Status auxiliary_recordings(const sim::Sensors& sensors, std::vector<AuxiliaryRe
   const sim::ImuRecord& primary = sensors.imus.front();
   for (std::size_t i = 1; i < sensors.imus.size() && out.size() < kAuxiliaryImusMax; ++i) {
     const sim::ImuRecord& record = sensors.imus[i];
-    if (record.name == "imu_reference") continue;  // reference IMU, for comparisons only
+    if (record.name == "imu_reference") continue;  // reference IMU, only for comparisons
     AuxiliaryRecording& added = out.emplace_back();
     if (Status status = bridge::imu_samples(record, added.samples, bridge::kAnyGapS); !status.ok()) return status;
     added.imu.T_IC = primary.T_BI.inverse(Eigen::Isometry) * record.T_BI;
@@ -70,10 +70,10 @@ const CalibratedRig* RigCalibrationUse::found() const {
 
 namespace {
 
-/// Compares a stored calibration with the calibration from a run that did not use the stored calibration. If the two
-/// calibrations belong to different rigs, the function returns false and adds a failed health check.
+/// Compares a saved calibration with that of a run without the saved calibration. If the two calibrations cannot belong
+/// to one rig, returns false and adds a failed health check.
 bool may_be_of_this_rig(const CalibratedRig& given, const std::optional<CalibratedRig>& fresh, Estimate& result) {
-  constexpr double kDistanceMax = 2.0;  // see calibration_distance
+  constexpr double kDistanceMax = 2.0;  // standard deviations; see calibration_distance
   if (!fresh || fresh->only_rails) return true;
   const double distance = calibration_distance(given.calibration, fresh->calibration);
   if (distance <= kDistanceMax) return true;
@@ -148,11 +148,8 @@ Estimate rates_of_batch(const sim::Sensors& sensors, const sim::Values& paramete
     if (estimate.status.ok()) {
       report_rates(report, estimate);
       report_gaps(samples, estimate);
-      const ImuFindings findings =
-          check_recording(checked_imu(sensors), samples, estimate.rates, carried_share(report));
-      report_findings(findings, sensors, estimate);
-      report_stamps(sensors, estimate);
-      inflate_rates(findings, samples, estimate);
+      inflate_rates(check_imu_with_rates(sensors, samples, estimate.rates, carried_share(report), estimate), samples,
+                    estimate);
       if (std::optional<CalibratedRig> rig = learnt(report.rate, given, params.model); rig && found != nullptr)
         *found = std::move(rig);
     }

@@ -24,8 +24,8 @@ const Settings<RegimeStream::Params>& rate_tumble_lag_settings() {
     std::vector<std::string> stated = stated_densities();
     stated.insert(stated.end(),
                   {"period_s", "evidence_gravity_m_s2", "carried_gravity_m_s2", "hand_held_probability_min"});
-    // RegimeStream sets the following parameters of its RateStream. The hand-held stream makes one iteration per node
-    // of its trajectory.
+    // RegimeStream sets the parameters below from its RateStream. The HandHeldStream of RegimeStream makes one
+    // iteration per node of the trajectory.
     const std::vector<std::string> fixed = {"carried_period_s", "carried_lag_s", "carried_gap_max_s",
                                             "carried_iterations_max"};
     return Settings<RegimeStream::Params>(RegimeStream::Params{}, {.stated = stated, .fixed = fixed});
@@ -59,7 +59,7 @@ void restart_after_gap(RegimeStream::Params& params, RegimeStream& joined, Regim
   const RigCalibration calibration = joined.rate().calibration(all.rate);
   if (check_calibration(calibration).ok()) params.rate.model.calibration = calibration;
   joined = RegimeStream(params);
-  const FrozenAxes::State frozen = all.rate.frozen;  // a frozen axis may remain frozen
+  const FrozenAxes::State frozen = all.rate.frozen;  // a frozen axis may stay frozen after the gap
   const FlightSignCheck::State sense = all.rate.sense;
   all = joined.start();
   all.rate.frozen = frozen;
@@ -79,8 +79,8 @@ Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& paramet
   std::vector<std::vector<AuxiliaryReading>> auxiliary_imus;
   estimate.status = align(recordings, samples, bridge::kGapMaxS, params.rate.model, auxiliary_imus);
   if (!estimate.status.ok()) return estimate;
-  // Auxiliary IMUs determine the rate even during hand-held motion, but the hand-held smoother does not use auxiliary
-  // IMUs.
+  // Auxiliary IMUs measure the rate during hand-held motion too, but the hand-held smoother cannot use them, so it is
+  // switched off.
   if (!auxiliary_imus.empty() && !parameters.has("hand_held_probability_min")) params.hand_held_probability_min = 1.0;
   RegimeStream joined(params);
   const RateStream& stream = joined.rate();
@@ -127,9 +127,7 @@ Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& paramet
   }
   if (estimate.status.ok()) {
     // The method only reports the findings, because the rates are already final.
-    const ImuFindings findings = check_recording(checked_imu(sensors), samples, estimate.rates, carried_share);
-    report_findings(findings, sensors, estimate);
-    report_stamps(sensors, estimate);
+    (void)check_imu_with_rates(sensors, samples, estimate.rates, carried_share, estimate);
   }
   count_sources(estimate.rates, estimate.health);
   return estimate;

@@ -9,9 +9,9 @@
 
 namespace tumble::scenarios {
 
-/// Replaces the gyro readings of a rig by the rates that rate/tumble recovers (recover_rates). The health of the
-/// estimate receives the saturation limits and the number of replaced samples. If the data of one auxiliary IMU are
-/// invalid, no auxiliary IMU is used.
+/// Replaces the gyro readings of a rig by the rates that rate/tumble recovers (recover_rates). Adds the saturation
+/// limits and the number of replaced samples to the health. If the data of one auxiliary IMU are invalid, no auxiliary
+/// IMU is used.
 RecoveredRates recovered_readings(const sim::Sensors& sensors, std::span<const ImuSample> samples,
                                   ReplacedReadings replaced, Estimate& estimate);
 

@@ -21,35 +21,23 @@ std::vector<Method> all_methods() {
   std::vector<Method> all = {
       rate_raw(),
       rate_interpolate(),
-      rate_reject(),
-      rate_constant_jerk(),
-      rate_accelerometers(),
-      rate_zero_velocity(),
       rate_saave(),
       rate_tumble(),
       rate_tumble_lag(),
-      rate_carried(),
       rate_oracle(),
       attitude_integrate(),
       attitude_madgwick(),
       attitude_complementary(),
-      attitude_mahony(),
-      attitude_eskf(),
       attitude_autogain(),
       attitude_vqf(),
       attitude_tumble(),
       attitude_tumble_lag(),
-      attitude_tumble_batch(),
-      attitude_oracle(),
       position_rolling(),  // Without a baseline, the first method of a kind is the reference.
-      position_double_integration(),
-      position_observer(),
       position_autogain_fusion(),
       position_tumble(),
       position_tumble_lag(),
       position_tumble_live(),
       position_oracle(),
-      position_oracle_contact(),
       slam_published(),
       slam_icp(),
       slam_icp_raw(),
@@ -62,13 +50,12 @@ std::vector<Method> all_methods() {
       slam_poses_tumble(),
       slam_rolling_prior(),
       slam_constant_velocity(),
-      slam_floor(),
   };
   std::stable_sort(all.begin(), all.end(), [](const Method& a, const Method& b) { return a.info.kind < b.info.kind; });
   return all;
 }
 
-/// The registry rejects an external method with the name of a built-in method, because the results would be ambiguous.
+/// Rejects an external method with the name of a built-in method, because its results would be ambiguous.
 MethodPointer method_of_file(const std::string& file, double time_limit_s) {
   auto method = std::make_shared<const Method>(external_method(file, time_limit_s));
   for (const Method& own : methods()) {
@@ -118,7 +105,7 @@ Method make_method(MethodInfo info, RunCore run) {
       std::make_shared<const std::vector<sim::Parameter>>(joined_rows(settings, info.parameters_first));
   info.parameters = *parameters;
   const bool needs_truth = info.needs_truth;
-  // The lambda stores `parameters`, because `info` refers to them.
+  // `info` refers to `parameters`, so the lambda keeps them alive.
   RunMethod wrapped = [name, settings, parameters, needs_truth, run](
                           const sim::Sensors& sensors, const sim::Values& given, const OracleInput& oracle) {
     if (needs_truth && oracle.truth == nullptr) {
@@ -159,7 +146,7 @@ std::vector<MethodPointer> find_methods(std::span<const std::string> names) {
 
 std::vector<MethodPointer> find_methods_within(std::span<const std::string> names, double time_limit_s) {
   std::vector<MethodPointer> found;
-  std::map<std::string, std::string> asked;  // argument that selected each method
+  std::map<std::string, std::string> asked;  // argument that selected the method
   for (const std::string& name : names) {
     for (MethodPointer& method : find_within(name, time_limit_s)) {
       const auto [before, is_new] = asked.emplace(full_name(method->info), name);

@@ -9,9 +9,9 @@
 
 namespace tumble::scenarios {
 
-/// Adds the known saturation limits of the primary gyro to `health` (ESTIMATE.md, "Rails"). The health receives the
-/// level of each axis with an observed limit, and the plane parameters of a tilted limit. Levels that were copied from
-/// another axis or from a data sheet are omitted.
+/// Adds the observed saturation limits of the primary gyro to `health` (ESTIMATE.md, "Rails"): the limit of each axis,
+/// and the plane parameters of tilted limits. Limits that were copied from another axis or from a data sheet are
+/// omitted.
 void report_rails(const SaturationLevels& rails, std::map<std::string, double>& health);
 
 /// Adds the saturation levels that the rate smoother found to `health`.

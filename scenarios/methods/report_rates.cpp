@@ -8,7 +8,6 @@
 #include <string>
 
 #include "scenarios/methods/bridge.hpp"
-#include "scenarios/methods/carried.hpp"
 #include "scenarios/methods/report_rails.hpp"
 
 namespace tumble::scenarios {
@@ -60,9 +59,13 @@ void report_rates(const RegimeSmoother::Report& report, Estimate& result) {
   health["regime_carried_clipped_max"] = report.hand_held_probability_max;
   health["regime_carried_asked"] = report.hand_held_smoother_ran ? 1.0 : 0.0;
   if (!report.hand_held_smoother_ran) return;
-  std::map<std::string, double> of_carried;
-  report_carried(report.hand_held, of_carried);
-  for (const auto& [name, value] : of_carried) health["carried_" + name] = value;
+  health["carried_iterations"] = report.hand_held.iterations;
+  health["carried_converged"] = report.hand_held.converged ? 1.0 : 0.0;
+  health["carried_hand_mahalanobis"] = report.hand_held.hand_acceleration_ratio;
+  health["carried_revolutions_asked"] = report.hand_held.revolutions_tested;
+  health["carried_revolutions_taken"] = report.hand_held.revolutions_corrected;
+  health["carried_revolutions_open"] = report.hand_held.revolutions_ambiguous;
+  health["carried_revolutions_failed"] = report.hand_held.revolutions_failed;
 }
 
 void report_gaps(std::span<const ImuSample> samples, Estimate& estimate) {

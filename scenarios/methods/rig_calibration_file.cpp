@@ -23,14 +23,14 @@ using nlohmann::json;
 constexpr double kMost = 1e6;
 constexpr const char* kKeys[] = {"lever_arm_m", "gyro_bias_rad_s", "accel_bias_m_s2", "inertia",
                                  "covariance",  "gyro_rail_rad_s", "accel_rail_m_s2"};
-// Calibration files of early versions lack the key of the gyro elements and have fewer covariance rows.
+// Files of early versions lack this key and have fewer covariance rows.
 constexpr const char* kElementsKey = "gyro_elements";
-// Calibration files of early versions lack the key of the gyro planes.
+// Files of early versions lack this key.
 constexpr const char* kPlanesKey = "gyro_planes_rad_s";
-// Calibration files of early versions lack the keys of the accelerometer planes and elements.
+// Files of early versions lack these keys.
 constexpr const char* kAccelPlanesKey = "accelerometer_planes_m_s2";
 constexpr const char* kAccelElementsKey = "accelerometer_elements";
-// Calibration files of early versions lack the keys of the device errors.
+// Files of early versions lack these keys.
 constexpr const char *kErrorsKey = "device_errors", *kErrorsCovarianceKey = "device_errors_covariance";
 constexpr int kWithoutElements = RigConstants::kElements;
 
@@ -53,7 +53,7 @@ json rails(const CalibratedRig& rig, std::size_t first) {
   return out;
 }
 
-// CalibrationReader reads the arrays in a calibration file. Each error message contains the fault and its location.
+// CalibrationReader reads the arrays in a calibration file. Error messages contain the key and the fault.
 class CalibrationReader {
  public:
   CalibrationReader(const std::filesystem::path& path, const json& object) : path_(path), object_(object) {}
@@ -74,7 +74,7 @@ class CalibrationReader {
     for (std::size_t i = 0; i < values.size(); ++i) {
       if (!values[i].is_number() || !std::isfinite(values[i].get<double>()))
         complain(key, "an element is not a number; all elements must be numbers");
-      // A number that is far larger than any rig constant would dominate all other numbers.
+      // Larger numbers cannot be rig constants, and would dominate all others.
       if (std::abs(values[i].get<double>()) > kMost) {
         complain(key, fmt::format("an element is {}; its magnitude must be at most 1e6", values[i].dump()));
       }
@@ -152,7 +152,7 @@ void read_device_errors(const CalibrationReader& reader, const json& object, Cal
   reader.read(kErrorsCovarianceKey, known.covariance);
   known.errors = SensorErrors::from(errors);
   const SensorErrors::Vector deviation = known.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
-  // The entries of the covariance differ by orders of magnitude, so their standard deviations normalise them.
+  // The entries differ by orders of magnitude, so the standard deviations scale them.
   const SensorErrors::Vector over = deviation.cwiseMax(1e-300).cwiseInverse();
   const SensorErrors::Matrix scaled = over.asDiagonal() * known.covariance * over.asDiagonal();
   if (!scaled.allFinite() || (scaled - scaled.transpose()).cwiseAbs().maxCoeff() > 1e-9 ||

@@ -15,8 +15,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// SampleTimes contains the corrected sample times of an IMU record, and the jitter of the time stamps that the
-/// correction removed [s]. Decreasing time stamps are kept, so that a later check rejects them.
+/// SampleTimes contains the corrected sample times of an IMU record, and the jitter [s] that the correction removed.
+/// Decreasing time stamps are kept, so that a later check rejects them.
 struct SampleTimes {
   std::vector<std::int64_t> times_ns;
   double corrected_jitter_s = 0.0;

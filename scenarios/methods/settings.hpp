@@ -17,16 +17,16 @@
 #include "tumble/common/fields_by_name.hpp"
 #include "tumble/common/parameters.hpp"
 
-/// The templates in settings.hpp convert the `Params` struct of a library class to the parameters of a method. Tables,
-/// parsing and tests use only the descriptions of the struct's fields (common/parameters.hpp).
+/// The templates in settings.hpp convert the `Params` struct of a library class to the parameters of a method. The
+/// templates use only the descriptions of the struct's fields (common/parameters.hpp), like tables, parsing and tests.
 namespace tumble::scenarios {
 
 namespace detail {
 
-/// Returns the names of a vector's coordinates, with the axis in front of the unit: "lever_arm_x_m".
+/// Returns the names of a vector's coordinates; the axis comes before the unit: "lever_arm_x_m".
 std::array<std::string, 3> coordinate_names(const std::string& name, const Field& field);
 
-/// Calls `each(name, value, field, whole)` for each number in a `Params` struct. A vector has three numbers.
+/// Calls `each(name, value, field, whole)` for each number in a `Params` struct; a vector has three numbers.
 template <class Params, class Each>
 void visit_numbers(Params& params, Each each) {
   visit_by_name(params, [&each](const std::string& name, auto& value, const Field& field) {
@@ -44,16 +44,14 @@ void visit_numbers(Params& params, Each each) {
 
 /// SettingsOptions lists the fields of a `Params` struct that a method treats specially.
 struct SettingsOptions {
-  /// The list `stated` names the fields whose values the recording contains, unless the user sets them; a name may end
-  /// in `*`.
+  /// Fields whose values come from the recording, unless the user sets them; a name may end in `*`.
   std::vector<std::string> stated = {};
-  /// The list `fixed` names the fields that follow from other parameters, so users cannot set them; a name may end in
-  /// `*`.
+  /// Fields that follow from other parameters, so users cannot set them; a name may end in `*`.
   std::vector<std::string> fixed = {};
-  /// The list `first` names the fields that appear first in the list of parameters.
+  /// Fields that are first in the list of parameters.
   std::vector<std::string> first = {};
-  /// The list `beside` contains the parameters of another stage of the method. A field with the same name as a
-  /// parameter of the other stage gets `prefix` before its name.
+  /// Parameters of another stage of the method. A field with the same name as a parameter of that stage gets `prefix`
+  /// before its name.
   std::span<const sim::Parameter> beside = {};
   std::string prefix = {};
 };
@@ -69,19 +67,18 @@ class SettingsTable {
   /// Returns the descriptions of the parameters, frequently used parameters first.
   std::span<const sim::Parameter> rows() const { return rows_; }
   std::size_t first_rows() const { return first_rows_; }
-  /// Returns whether a parameter must be an integer: a count, a switch or a choice.
+  /// Returns true if a parameter must be an integer: a count, a switch or a choice.
   bool is_whole(std::string_view name) const { return whole_.contains(name); }
-  /// Returns whether the recording contains the value of the parameter. Only a value from the user overrides the value
-  /// in the recording.
+  /// Returns true if the value comes from the recording, unless the user sets it.
   bool is_stated(std::string_view name) const { return stated_.contains(name); }
-  /// Returns every number of the `Params` struct after applying `values`, by the names of the library.
+  /// Returns every number of the `Params` struct after applying `values`, by its name in the library.
   virtual std::map<std::string, double> numbers(const sim::Values& values) const = 0;
 
  protected:
   explicit SettingsTable(SettingsOptions options);
   void add(const std::string& field_name, double value, const Field& field, bool whole);
   void sort_rows();
-  /// Returns whether `values` contains the field, and writes the parameter's name to `name`.
+  /// Returns true if `values` contains the field, and writes the parameter's name to `name`.
   bool applies(const std::string& field_name, const sim::Values& values, std::string& name) const;
 
  private:
@@ -91,25 +88,25 @@ class SettingsTable {
   std::vector<sim::Parameter> rows_;
   std::size_t first_rows_ = 0;
   std::set<std::string_view> first_, whole_, stated_;
-  std::deque<std::string> texts_;  ///< owns the texts that the other members refer to
+  std::deque<std::string> texts_;  ///< owns the texts to which the other members refer
 };
 
-/// Determines the values of all parameters of a method's stages, as sim::resolve does. Parameters whose values are in
-/// the recording and not set by the user are omitted. Throws InvalidSituation like sim::resolve, and also for a
-/// fraction where an integer is required.
+/// Determines the values of all parameters of a method's stages, as sim::resolve does. Parameters with a value in the
+/// recording are omitted unless the user sets them. Throws InvalidSituation like sim::resolve, and also for a fraction
+/// where an integer is required.
 sim::Values resolve_settings(const std::string& place, const sim::Values& given,
                              std::span<const SettingsTable* const> stages);
 
-/// Returns the parameter descriptions of several stages, which must have distinct names, with frequently used
-/// parameters first. The argument `first` receives the number of frequently used parameters.
+/// Returns the parameter descriptions of several stages, whose names must differ. Frequently used parameters come
+/// first; `first` receives their number.
 std::vector<sim::Parameter> joined_rows(std::span<const SettingsTable* const> stages, std::size_t& first);
 
 /// Settings contains the parameters of one stage of a method. A Settings object must be static, because methods refer
-/// to its parameter descriptions.
+/// to it.
 template <class Params>
 class Settings : public SettingsTable {
  public:
-  /// The parameter `defaults` contains the library's default values, or other defaults of the method.
+  /// `defaults` contains the default values of the method.
   explicit Settings(const Params& defaults, SettingsOptions options = {})
       : SettingsTable(std::move(options)), defaults_(defaults) {
     detail::visit_numbers(defaults_, [this](const std::string& name, const auto& value, const Field& field,
@@ -118,8 +115,8 @@ class Settings : public SettingsTable {
   }
   const Params& defaults() const { return defaults_; }
 
-  /// Copies the values to the fields of `params`. A field keeps its value if the recording determines the field and the
-  /// user did not set it.
+  /// Copies the values to the fields of `params`. A field whose value comes from the recording keeps its value unless
+  /// the user set it.
   void apply(const sim::Values& values, Params& params) const {
     detail::visit_numbers(params, [&](const std::string& field_name, auto& value, const Field&, bool) {
       using Value = std::remove_cvref_t<decltype(value)>;

@@ -38,11 +38,11 @@ LidarInertialOdometry::Params odometry_params(const sim::Sensors& sensors, const
   return odometry;
 }
 
-/// Adds the processed sweeps of a run to the estimate. Returns false if a sweep without a pose ended the run.
+/// Adds the processed sweeps to the estimate. Returns false if a sweep without a pose ended the run.
 bool append_sweeps(std::vector<MappedSweep>& sweeps, Estimate& estimate) {
   for (MappedSweep& sweep : sweeps) {
     SweepReport& report = sweep.report;
-    // The sweep has no pose, because the IMU readings start after the sweep.
+    // The sweep ended before the first IMU reading, so it has no pose.
     if (sweep.status.error_code == ErrorCode::too_few && report.trajectory.empty()) {
       leave_out_unfinished(estimate);
       continue;
@@ -76,7 +76,7 @@ Estimate begin_with_rates(const sim::Sensors& sensors, std::vector<ImuSample>& s
   if (estimate.status.ok()) estimate.status = rates(estimate);
   if (!estimate.status.ok()) return estimate;
   const ImuFindings frozen = check_frozen(checked_imu(sensors), samples);
-  report_findings(frozen, sensors, estimate);
+  report_findings(frozen.health, sensors, estimate);
   inflate_rates(frozen, samples, estimate);
   flag_saturated_forces(stated_rails(sensors.imus.front()), samples);
   return estimate;
@@ -95,7 +95,7 @@ SlamParams with_few_matches(SlamParams params) {
   return params;
 }
 
-// Adds the typical calibration uncertainties of a hand-assembled rig to the parameters.
+// Adds typical uncertainties of a hand-assembled rig: mounting, clock offset and gravity.
 SlamParams with_calibration(SlamParams params) {
   const TumblingOdometry::Params door;
   params.odometry.mount_sigma_rad = door.mount_sigma_rad;
@@ -144,7 +144,7 @@ bool run_slam_chain(const sim::Sensors& sensors, std::span<const ImuSample> samp
   SensorHealth health;
   mapped.add_findings(scale, health);
   add_findings(health, {}, estimate);
-  return conclude(mapped.mapper, mapped.localisation, chain.calibration ? &scale : nullptr, estimate);
+  return conclude(mapped.mapper, estimate);
 }
 
 }  // namespace tumble::scenarios

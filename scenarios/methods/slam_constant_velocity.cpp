@@ -11,14 +11,13 @@ namespace {
 
 constexpr int kPosesPerSweep = 10;  // poses per sweep for recordings without IMU
 
-// The prior is very weak, so that registration alone determines the pose, as in published methods with constant
-// velocity.
+// The prior is very weak: registration alone determines the pose, as in published methods with constant velocity.
 constexpr double kVelocityPriorM = 1.0;
 constexpr double kVelocityPriorRad = 0.5;
 
 /// ConstantVelocity predicts that the pose change over the last sweep repeats, in translation and rotation.
-/// ConstantVelocity takes only the times of the poses and the initial vertical from the IMU. Without an IMU,
-/// ConstantVelocity assumes that the body is upright at the start.
+/// ConstantVelocity uses the IMU only for the times of the poses and the initial vertical. Without an IMU,
+/// ConstantVelocity assumes an upright start.
 class ConstantVelocity : public TrajectoryModel {
  public:
   ConstantVelocity(std::span<const ImuSample> samples, const Eigen::Quaterniond& q_WL) : samples_(samples) {

@@ -13,33 +13,31 @@
 #include "tumble/common/imu.hpp"
 #include "tumble/mapping/detail/prior_map.hpp"
 
-/// The header slam_registry.hpp declares further slam methods, and functions that these methods share.
+/// slam_registry.hpp declares further slam methods and their shared functions.
 namespace tumble::scenarios {
 
 Method slam_published();
 Method slam_constant_velocity();
-Method slam_floor();
 Method slam_tumble_lag();
 Method slam_tumble_live();
 
-/// Returns a copy of slam/tumble_lag or slam/tumble_live that localises in a prior map (TumblingOdometry:: use_map);
-/// returns nothing for another method. The health counter `prior_map_sweep` is the number of the sweep at which the run
-/// was localised, or 0. The poses of earlier sweeps are in a local frame.
+/// Returns a copy of slam/tumble_lag or slam/tumble_live that localises in a prior map (TumblingOdometry::use_map);
+/// empty for other methods. The health value `prior_map_sweep` is the number of the sweep at which the run was
+/// localised, or 0. The poses of earlier sweeps are in a local frame.
 std::optional<Method> localised_in(const Method& method, std::shared_ptr<const PriorMap> map);
 
-/// RigSlam contains the options that distinguish the slam methods of the rig.
+/// RigSlam contains the properties in which the slam methods of the rig differ.
 struct RigSlam {
   std::string name, doc;
   bool ours = false;
-  std::string source = {};  ///< empty for our methods
+  std::string source = {};  ///< paper; empty for our methods
   std::vector<const SettingsTable*> settings;
   bool needs_truth = false;
   bool baseline = false;
 };
 Method rig_slam(RigSlam what, RunCore run);
 
-/// Creates an estimate with the rates that the function `rates` computes from the `samples` of the primary IMU, or with
-/// its error.
+/// Creates an estimate with the rates that `rates` computes from the `samples` of the primary IMU, or with its error.
 Estimate begin_with_rates(const sim::Sensors& sensors, std::vector<ImuSample>& samples,
                           const std::function<Status(Estimate&)>& rates);
 

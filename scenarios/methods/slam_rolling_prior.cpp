@@ -11,20 +11,20 @@
 #include "scenarios/methods/slam_settings.hpp"
 #include "scenarios/methods/sphere_attitude.hpp"
 
-/// The method in slam_rolling_prior.cpp maps with a rolling sphere: registration as on the rig, and rolling as an
-/// odometer (add_reading).
+/// The method maps with a rolling sphere: sweeps are registered as on the rig, with rolling as an odometer
+/// (add_reading).
 namespace tumble::scenarios {
 
 namespace {
 
-/// Returns the settings of the lidar-inertial mapping chain for the sphere. The odometer limits the corrections, and
-/// the position method determines gravity.
+/// Returns the settings of the lidar-inertial mapping chain for the sphere. The odometer sets the limits of
+/// corrections, and the position method sets gravity.
 const Settings<SlamParams>& prior_settings() {
   static const Settings<SlamParams> all = slam_settings({}, {"gravity_m_s2", "correction_max_m", "correction_max_rad"});
   return all;
 }
 
-/// AlongParams contains the parameters of the odometer that rolling provides.
+/// AlongParams contains the parameters of the rolling odometer.
 struct AlongParams {
   double grip_sigma_ratio = 4e-3, still_sigma_m_s = 3e-4, loose_sigma_share = 0.1, loose_sigma_m_s = 0.03;
   double rotation_sigma_rad = 2e-4;
@@ -86,14 +86,14 @@ struct Radius {
   double m = 0.0, sigma_m = 0.0;
 };
 
-/// Estimates the sphere's radius at which the rolled distance equals the distance of the registered sweeps, over
-/// intervals of continuous contact. Returns nothing if there are too few intervals of continuous contact.
+/// Estimates the radius at which the rolled distance equals the distance between registered sweeps, over segments of
+/// continuous contact. Returns nothing if there are fewer than two segments.
 std::optional<Radius> radius_by_lidar(const Estimate& rolled, const Estimate& registered, const sim::Sensors& sensors,
                                       double radius_m, const AlongParams& params) {
   const Eigen::Isometry3d T_IG =
       sensors.imus.front().T_BI.inverse(Eigen::Isometry) * Eigen::Translation3d(rolled.centre_B_m);
   double squares = 0.0, products = 0.0;
-  std::vector<Eigen::Vector2d> segments;  // rolled and registered distance
+  std::vector<Eigen::Vector2d> segments;  // rolled and registered distance of each segment
   bool open = false;                      // a segment has started
   Eigen::Vector3d from_rolled = Eigen::Vector3d::Zero(), from_registered = Eigen::Vector3d::Zero();
   std::size_t k = 0;
@@ -101,7 +101,7 @@ std::optional<Radius> radius_by_lidar(const Estimate& rolled, const Estimate& re
     for (; k + 1 < rolled.poses.size() && rolled.poses[k].time_ns < sweep.pose.time_ns; ++k) {
       if (rolled.contacts[k] != sim::ContactLabel::grip) open = false;
     }
-    if (sweep.verdict != SweepVerdict::registered) continue;  // a predicted pose is no independent measurement
+    if (sweep.verdict != SweepVerdict::registered) continue;  // a predicted pose is not an independent measurement
     const Eigen::Vector3d p_rolled = rolled.poses[k].p_WA_m;
     const Eigen::Vector3d p_registered =
         (Eigen::Translation3d(sweep.pose.p_WA_m) * sweep.pose.q_WA * T_IG).translation();
@@ -140,8 +140,8 @@ Estimate roll(const sim::Sensors& sensors, const sim::Values& parameters, double
   return followed().run(own, values, {});
 }
 
-/// RolledMotion supplies the rolled motion as an odometer of the primary IMU. The option `loosely` increases the
-/// uncertainty of the odometer, because the radius is uncertain.
+/// RolledMotion supplies the rolled motion as an odometer of the primary IMU. `loosely` increases its uncertainty,
+/// because the radius is uncertain.
 class RolledMotion {
  public:
   RolledMotion(const Estimate& rolled, const sim::Sensors& sensors, const AlongParams& params, bool loosely)
@@ -202,7 +202,7 @@ class RolledMotion {
   bool loosely_;
 };
 
-/// Returns the largest correction of the position that a registration may make.
+/// Returns the largest position correction that a registration may make.
 double correction_max_m(const Estimate& rolled, const AlongParams& params, bool loosely) {
   double variance_m2 = 0.0;
   for (const PoseState& pose : rolled.poses)

@@ -27,9 +27,9 @@ namespace {
 
 Settings<TumblingOdometry::Params> odometry_settings(double lag_s, std::vector<std::string> fixed) {
   TumblingOdometry::Params params;
-  params.lever_arm_I_m.setZero();  // The recording states the lever arm.
+  params.lever_arm_I_m.setZero();  // the recording contains the lever arm
   params.lag_s = lag_s;
-  // TumblingOdometry has separate parameters for the following quantities.
+  // TumblingOdometry has its own parameters for these quantities.
   fixed.insert(fixed.end(),
                {"rate_lever_arm_sigma_m", "rate_gyro_noise_density", "rate_accel_noise_density", "rate_rails_stated_*",
                 "rate_period_s", "rate_lag_s", "rate_evidence_gravity_m_s2", "rate_carried_gravity_m_s2",
@@ -42,7 +42,7 @@ Settings<TumblingOdometry::Params> odometry_settings(double lag_s, std::vector<s
 }
 
 const Settings<TumblingOdometry::Params>& whole_settings() {
-  // The following parameters apply only to streaming and to the second pass.
+  // The parameters below apply only to streaming and to the second pass.
   static const auto all =
       odometry_settings(TumblingOdometry::kWholeRecording,
                         {"lag_s", "sweeps_max", "second_pass_*", "rate_accel_bias_sigma_m_s2", "rate_inertia_sigma",
@@ -67,10 +67,10 @@ TumblingOdometry::Params stated_params(const sim::Sensors& sensors, TumblingOdom
   return params;
 }
 
-/// Output selects the poses of TumblingOdometry that the estimate contains.
+/// Output selects which poses of TumblingOdometry the estimate contains.
 enum class Output {
-  live,   ///< pose at each IMU sample, as soon as the sample is processed
-  lag,    ///< final trajectory of each sweep
+  live,   ///< live pose at each IMU sample, when the sample is processed
+  lag,    ///< final trajectory of each sweep, after a fixed lag
   whole,  ///< final trajectory of each sweep, from the whole recording
 };
 
@@ -80,17 +80,13 @@ using SweepProgress = TumblingOdometry::SweepProgress;
 class Collector {
  public:
   Collector(Output output, const TumblingOdometry::Params& params, std::string imu, Estimate& estimate)
-      : output_(output),
-        given_(params.stated_calibration()),
-        localisation_(params.expert.mapping.expert.matching.distance_m),
-        estimate_(estimate),
-        names_{std::move(imu)} {}
+      : output_(output), given_(params.stated_calibration()), estimate_(estimate), names_{std::move(imu)} {}
 
   /// Stores the live pose after each processed sample.
   void observe(const TumblingOdometry& odometry) {
     PoseState pose;
     if (output_ != Output::live || !odometry.newest(pose).ok()) return;
-    // While TumblingOdometry holds a sample back, its newest pose belongs to the previous sample.
+    // After a sample that TumblingOdometry holds back, the newest pose is that of the previous sample.
     if (live_.empty() || pose.time_ns > live_.back().time_ns) live_.push_back(pose);
   }
   void take(TumblingOdometry& odometry) {
@@ -102,7 +98,6 @@ class Collector {
       std::vector<PoseState> smoothed = std::move(sweep->report.smoothed);
       const TimeNs end_ns = sweep->report.pose.time_ns;
       found_.observe(odometry.health());
-      localisation_.add(sweep->report);
       append_sweep(sweep->status, end_ns, std::move(sweep->report), estimate_);
       apply_next(std::move(smoothed));
     }
@@ -116,7 +111,7 @@ class Collector {
     estimate_.health["lidar_calibration_mahalanobis"] = given_.deviations(odometry.mapper().calibration());
     found_.observe(odometry.health());
     add_findings(found_, names_, estimate_);
-    scenarios::conclude(odometry.mapper(), localisation_, &odometry.sweep_scale(), estimate_);
+    scenarios::conclude(odometry.mapper(), estimate_);
   }
 
  private:
@@ -141,7 +136,6 @@ class Collector {
 
   Output output_;
   StatedCalibration given_;
-  Localisation localisation_;
   Estimate& estimate_;
   std::vector<std::string> names_;
   SensorHealth found_;
@@ -150,8 +144,8 @@ class Collector {
 };
 
 /// Passes the recording to TumblingOdometry in real-time order: each sample at the end of its averaging window, each
-/// sweep after its last point. If `whole` is true, sweeps that end after the last sample are also used. If `whole` is
-/// false, sweeps that end after the last sample are only counted.
+/// sweep after its last point. Sweeps that end after the last sample are used if `whole` is true, and otherwise only
+/// counted.
 Status replay(const sim::Sensors& sensors, std::span<const ImuSample> samples, bool whole, TumblingOdometry& odometry,
               Collector& collector, const SweepProgress& on_sweep, Estimate& estimate) {
   const sim::LidarRecord& lidar = sensors.lidars.front();
@@ -165,14 +159,14 @@ Status replay(const sim::Sensors& sensors, std::span<const ImuSample> samples, b
   for (const ImuSample& sample : samples) {
     const TimeNs gap_ns = last_ns ? sample.time_ns - *last_ns : 0;
     last_ns = sample.time_ns;
-    // In real time, sweeps also arrive during a gap of the IMU; most of these sweeps have no IMU data.
+    // In real time, sweeps also arrive during a gap of the IMU. Most sweeps in a gap have no IMU data.
     while (seconds(gap_ns) > bridge::kGapMaxS && (present || next < sweeps)) {
       if (!present) present = bridge::sweep(lidar, next++);
       if (present->end_ns > sample.time_ns) break;
       if (!add_sweep(*present).ok()) estimate.health["sweeps_without_imu"] += 1.0;
       present.reset();
     }
-    // The estimator rejects the first sample after a gap, and the second sample confirms the time stamp of the first.
+    // The estimator rejects the first sample after a gap, until the second sample confirms its time stamp.
     if (Status status = odometry.add_imu(sample); !status.ok() && status.error_code != ErrorCode::gap) return status;
     while (present || next < sweeps) {
       if (!present) present = bridge::sweep(lidar, next++);
@@ -194,14 +188,13 @@ Status replay(const sim::Sensors& sensors, std::span<const ImuSample> samples, b
   return status;
 }
 
-/// Adds the contents of RecordingEstimate to the estimate, except the sweeps.
+/// Adds the results in RecordingEstimate to the estimate, except the sweeps.
 void report_whole(const RecordingEstimate& whole, const sim::Sensors& sensors, Estimate& estimate) {
   estimate.rates = whole.rates;
   estimate.suspect_rad2_s2 = whole.suspect_rad2_s2;
   for (std::size_t k = 0; k < estimate.rates.size(); ++k) estimate.rates[k].time_ns = whole.stamps_ns[k];
   report_rates(whole.report, estimate);
-  report_findings(whole.findings, sensors, estimate);
-  report_inflated(whole.findings, estimate);
+  report_findings(whole.findings.health, sensors, estimate);
   count_sources(estimate.rates, estimate.health);
   if (whole.corrected_jitter_s > 0.0) estimate.health["stamps_mended_s"] = whole.corrected_jitter_s;
   for (std::size_t left = whole.mapped.unfinished_sweeps; left > 0; --left) leave_out_unfinished(estimate);
@@ -241,7 +234,6 @@ Estimate run(Output output, const Settings<TumblingOdometry::Params>& settings, 
   Collector collector(output, params, sensors.imus.front().name, estimate);
   estimate.status = replay(sensors, samples, output == Output::whole, odometry, collector, on_sweep, estimate);
   if (odometry.recording()) report_whole(*odometry.recording(), sensors, estimate);
-  report_stamps(sensors, estimate);
   if (!estimate.status.ok()) return estimate;
   const std::size_t left_out = sensors.imus.front().time_ns.size() - samples.size();
   const std::size_t rejected = left_out + odometry.rejected_readings();

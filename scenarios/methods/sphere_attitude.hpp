@@ -10,18 +10,17 @@
 #include "sim/recording.hpp"
 #include "tumble/common/imu.hpp"
 
-/// The functions in sphere_attitude.hpp compute the attitude for position methods of the sphere that do not estimate
-/// the attitude.
+/// sphere_attitude.hpp computes the attitude for position methods of the sphere that do not estimate it.
 namespace tumble::scenarios {
 
-/// SphereAttitude contains the samples of the primary IMU after removal of the gyro bias, and the attitude at the end
-/// of each sample's averaging window.
+/// SphereAttitude contains the samples of the primary IMU without gyro bias, and the attitude at the end of each
+/// averaging window.
 struct SphereAttitude {
   std::vector<ImuSample> samples;
   std::vector<Eigen::Quaterniond> q_WI;  ///< parallel to `samples`; yaw starts at 0
 };
 
-/// RestParams contains the duration for which a method assumes rest at the start.
+/// RestParams contains the time for which a method assumes that the sphere is stationary at the start.
 struct RestParams {
   double rest_s = 1.0;
 
@@ -39,7 +38,7 @@ const Settings<RestParams>& rest_settings();
 /// recording is not from a sphere. The cost is O(N).
 Status sphere_attitude(const char* method, const sim::Sensors& sensors, double rest_s, SphereAttitude& out);
 
-/// Returns the pose of the sphere's centre in body axes, computed from the attitude of the IMU.
+/// Returns the pose of the body axes at the sphere's centre, from the attitude of the IMU.
 PoseState centre_pose(const sim::Sensors& sensors, TimeNs time_ns, const Eigen::Quaterniond& q_WI,
                       const Eigen::Vector3d& p_WG_m, const Eigen::Vector3d& v_WG_m_s);
 
@@ -48,7 +47,7 @@ PoseState centre_pose(const sim::Sensors& sensors, TimeNs time_ns, const Eigen::
 sim::ContactLabel slip_or_slide(double radius_m, const Eigen::Quaterniond& q_WI, const Eigen::Vector3d& w_WI_I_rad_s,
                                 const Eigen::Vector3d& v_WG_m_s);
 
-/// Throws BadInput, with the name `method`, unless the sensors belong to a sphere.
+/// Throws BadInput, with the name `method`, if the sensors do not belong to a sphere.
 void require_sphere(const char* method, const sim::Sensors& sensors);
 
 }  // namespace tumble::scenarios

@@ -10,8 +10,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Returns the usable readings of an IMU: finite, in order of time, and within the device's range. Throws BadInput if
-/// the arrays of the IMU record differ in length.
+/// Returns the usable readings of an IMU: finite, in order of time, within the device's range. Throws BadInput if the
+/// arrays of the record differ in length.
 std::vector<ImuSample> readings_of(const sim::ImuRecord& record, Status& status, int& beyond_range) {
   std::vector<ImuSample> samples;
   status = bridge::imu_samples(record, samples, bridge::kAnyGapS);
@@ -34,13 +34,8 @@ std::vector<ImuSample> readings_of(const sim::ImuRecord& record, Status& status,
 
 }  // namespace
 
-void report_beyond_range(int readings, const sim::Sensors& sensors, Estimate& estimate) {
-  if (readings == 0) return;
-  SensorHealth health;
-  health.add(HealthFinding::Kind::beyond_range,
-             {ErrorCode::out_of_range, "number of readings beyond the range", double(readings), 0.0},
-             sensors.imus.front().name);
-  add_finding(health.findings.front(), estimate);
+void report_beyond_range(int readings, Estimate& estimate) {
+  if (readings > 0) estimate.health["readings_beyond_range"] = readings;
 }
 
 Status sphere_imus(const sim::Sensors& sensors, SphereImus& out) {

@@ -27,8 +27,8 @@ void limit(int resource, double value) {
   setrlimit(static_cast<__rlimit_resource>(resource), &both);
 }
 
-/// Replaces the child process by the command. The function returns only if the program cannot be started, and stores
-/// the reason in `problem`.
+/// Replaces the child process by the command. Returns only if the program cannot be started; `problem` then contains
+/// the reason.
 void become(const Command& command, std::string& problem) {
   signal(SIGINT, SIG_DFL);
   signal(SIGHUP, SIG_DFL);
@@ -48,14 +48,14 @@ void become(const Command& command, std::string& problem) {
   std::vector<char*> words;
   for (const std::string& word : command.words) words.push_back(const_cast<char*>(word.c_str()));
   words.push_back(nullptr);
-  // The memory limit is set last. The child process, a copy of this program, may already exceed the limit, so later
-  // allocations would fail.
+  // The memory limit is set last: the child is a copy of this program and may exceed the limit already, so later
+  // allocations could fail.
   limit(RLIMIT_DATA, command.memory_limit_mib * kMib);
   execvp(words.front(), words.data());
   problem = command.words.front() + ": " + strerror(errno);
 }
 
-/// Returns the first and last `most` bytes of a long file, or the whole content of a short file.
+/// Returns the content of a file, but of a long file only the first and the last `most` bytes.
 std::string ends_of(const std::filesystem::path& path, std::size_t most) {
   std::ifstream file(path, std::ios::binary | std::ios::ate);
   if (!file) return {};
@@ -71,8 +71,7 @@ std::string ends_of(const std::filesystem::path& path, std::size_t most) {
   return text;
 }
 
-/// Returns the start and the end of a long program output. The start of the output usually contains the cause of an
-/// error.
+/// Returns the start and the end of a long program output. The start usually contains the cause of an error.
 std::string words_of(const std::string& transcript) {
   std::string text = transcript;
   if (text.size() > 2 * kWords) text = text.substr(0, kWords) + " ... " + text.substr(text.size() - kWords);

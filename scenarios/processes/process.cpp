@@ -20,15 +20,15 @@ namespace tumble::scenarios {
 
 namespace {
 
-// The child process does only minimal work, because it is a copy of a program that may hold locks and open files.
+// The child is a copy of a program that may hold locks and open files, so it does only minimal work.
 [[noreturn]] void run_child(const std::function<void(int)>& work, int fd, pid_t parent, bool own_group) {
   if (own_group) setpgid(0, 0);
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(1);
   const rlimit no_core{0, 0};
   setrlimit(RLIMIT_CORE, &no_core);
-  // The parent process handles Ctrl-C and hang-up. If the reader has closed the pipe, write() returns an error instead
-  // of raising a signal.
+  // The parent handles Ctrl-C and hang-up. If the reader has closed the pipe, write() must return an error and not
+  // raise a signal.
   signal(SIGINT, SIG_IGN);
   signal(SIGHUP, SIG_IGN);
   signal(SIGTERM, SIG_DFL);
@@ -65,7 +65,7 @@ Process::Process(const std::function<void(int)>& work, bool own_group) : own_gro
 }
 
 Process::Process(const std::function<void(int, int)>& work, bool own_group) : own_group_(own_group) {
-  // The channel is a socket, because sending to a closed socket can avoid a signal.
+  // A socket, because sending to a closed socket can avoid a signal.
   int ends[2];
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
     throw std::system_error(errno, std::generic_category(), "socketpair");
@@ -98,7 +98,7 @@ void Process::start(const std::function<void(int)>& work) {
     close(ends[0]);
     run_child(work, ends[1], parent, own_group_);
   }
-  // Parent and child both set the process group, so that the group exists regardless of which process runs first.
+  // Parent and child both set the process group, because either can run first.
   if (own_group_) setpgid(pid_, pid_);
   close(ends[1]);
   fd_ = ends[0];
@@ -147,7 +147,7 @@ bool Process::read_available(std::string& buffer) {
 }
 
 bool Process::ends_before(double deadline_s) {
-  long pause_ns = 500'000;  // short at first, for processes that end soon
+  long pause_ns = 500'000;  // first pause, for processes that end soon
   while (pid_ > 0) {
     siginfo_t info{};
     const int asked = waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOHANG | WNOWAIT);

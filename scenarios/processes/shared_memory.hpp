@@ -8,8 +8,8 @@
 namespace tumble::scenarios {
 
 /// SharedMemory is anonymous shared memory, which a program inherits as a file descriptor (Command::descriptors). The
-/// memory is freed when the last process that uses it ends. SharedMemory works on Linux only. The constructor throws
-/// std::system_error if there is not enough memory.
+/// memory is freed when its last user ends. SharedMemory works on Linux only. The constructor throws std::system_error
+/// if there is not enough memory.
 class SharedMemory {
  public:
   /// Creates empty shared memory; its `name` is visible in /proc.
@@ -20,7 +20,7 @@ class SharedMemory {
 
   int descriptor() const { return descriptor_; }
   void append(std::span<const std::byte> bytes);
-  /// Makes the shared memory immutable for all processes.
+  /// Makes the memory immutable for all processes.
   void seal();
   std::size_t size() const;
   /// Returns the whole content of the shared memory.

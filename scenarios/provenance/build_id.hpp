@@ -5,9 +5,8 @@
 
 namespace tumble::scenarios {
 
-/// Returns the identity of the program's code: version, compiler, build type, and a digest of the sources at build
-/// time. The digest covers the sources in estimator, sim and scenarios. Equal sources with an equal compiler and build
-/// type have equal identities on any machine.
+/// Returns the identity of the program's code: version, compiler, build type, and a digest of the sources at build time
+/// (estimator, sim and scenarios). Equal sources, compiler and build type give equal identities on any machine.
 const std::string& build_id();
 
 }  // namespace tumble::scenarios

@@ -7,8 +7,8 @@
 
 namespace tumble::scenarios {
 
-/// Returns a digest of all files that determine simulated runs: models, scenarios and named cases. One database
-/// contains only outcomes with equal data digests.
+/// Returns a digest of all files that determine simulated runs: models, scenarios and named cases. All outcomes in one
+/// database have the same data digest.
 std::string data_digest(const DataRoot& data);
 
 }  // namespace tumble::scenarios

@@ -12,10 +12,10 @@
 
 namespace tumble::scenarios {
 
-// The hash covers the bytes of numbers in memory order, so the machine must be little-endian.
+// The hash covers the bytes of numbers in memory order.
 static_assert(std::endian::native == std::endian::little);
 
-/// Hasher computes an XXH3 hash (128 bit) of data that arrive in parts.
+/// Hasher computes the XXH3 hash (128 bit) of data that arrive in parts.
 class Hasher {
  public:
   Hasher() : state_(XXH3_createState(), &XXH3_freeState) {

@@ -10,13 +10,13 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Bags (bag.hpp) and the truth of a CSV export use the names in own_names.
+/// Names that bags (bag.hpp) and the truth of a CSV export use for other purposes.
 const std::set<std::string>& own_names() {
   static const std::set<std::string> names = {"body", "clock", "tf", "tf_static", "truth", "world"};
   return names;
 }
 
-/// Readers of bags, including those of this project, do not treat the frames in frames_of_no_sensor as sensors.
+/// Frames that readers of bags, including our own, do not treat as sensors.
 const std::set<std::string>& frames_of_no_sensor() {
   static const std::set<std::string> names = {"base_link", "map", "odom"};
   return names;
@@ -25,7 +25,7 @@ const std::set<std::string>& frames_of_no_sensor() {
 /// Claim is the name that a sensor should have in an export.
 struct Claim {
   std::string sensor, name;
-  bool own;  ///< the recording's own name, not a number that replaces an invalid name
+  bool own;  ///< true: the recording's own name; false: a number in place of an invalid name
   std::string given = {};
 };
 

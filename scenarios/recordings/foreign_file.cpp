@@ -22,7 +22,7 @@ constexpr std::pair<std::string_view, const char*> kFirstBytes[] = {
 constexpr std::pair<std::string_view, const char*> kEndings[] = {
     {".csv", "a table"}, {".tum", "a trajectory"}, {".txt", "a text file"}, {".kitti", "a trajectory"}};
 
-/// Returns a description of the file type, or null if the file may be an HDF5 file.
+/// Returns a description of the file type; null if the file may be an HDF5 file.
 const char* kind_of(const std::filesystem::path& path) {
   std::array<char, kBytesRead> bytes{};
   std::ifstream stream = open_regular_file(path);

@@ -5,9 +5,9 @@
 
 namespace tumble::scenarios {
 
-/// Throws BadInput if `path` is not a regular file that may be a recording. A folder, bag, table or other file that
-/// `tumble import` can convert also throws BadInput. For a file that can be imported, the message contains the import
-/// command. The function checks the first 16 bytes and the extension of the file.
+/// Throws BadInput if `path` is not a regular file that may be a recording, judged by its first 16 bytes and its
+/// extension. For a folder, bag, table or other file that can be imported, the message contains the `tumble import`
+/// command.
 void require_recording_file(const std::filesystem::path& path);
 
 }  // namespace tumble::scenarios

@@ -10,8 +10,7 @@ namespace tumble::scenarios::hdf5 {
 
 namespace {
 
-/// kLongestText is far above the length of any valid text; without a limit, a corrupted length could request all
-/// memory.
+/// Limit far above the length of any valid text. Without a limit, a damaged length could request all memory.
 constexpr std::size_t kLongestText = std::size_t{16} << 20;
 
 /// Returns the HDF5 type of a zero-padded UTF-8 text of `length` bytes. The HDF5 library rejects length 0.
@@ -38,7 +37,7 @@ void Group::write_attribute(const std::string& name, const std::string& value) c
   const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
   const Handle attribute(H5Acreate2(group_.get(), name.c_str(), type.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT),
                          H5Aclose);
-  // c_str ends in a zero byte, which HDF5 needs as the single byte of an empty text.
+  // c_str ends in a zero byte; an empty text needs this byte in HDF5.
   if (!attribute.valid() || H5Awrite(attribute.get(), type.get(), value.c_str()) < 0)
     fail(name, "cannot be written" + last_error());
 }
@@ -73,7 +72,7 @@ std::string Group::text_attribute(const std::string& name) const {
   const Handle attribute = open_attribute(name);
   const Handle type(H5Aget_type(attribute.get()), H5Tclose);
   if (H5Tget_class(type.get()) != H5T_STRING) fail(name, "the attribute must be text");
-  if (H5Tis_variable_str(type.get()) > 0) {  // as h5py writes them
+  if (H5Tis_variable_str(type.get()) > 0) {  // h5py writes texts of variable length
     char* text = nullptr;
     if (H5Aread(attribute.get(), type.get(), &text) < 0 || text == nullptr)
       fail(name, fmt::format("the attribute cannot be read{}", last_error()));
@@ -106,7 +105,7 @@ std::int64_t Group::int_attribute(const std::string& name) const {
   std::int64_t value = 0;
   if (H5Aread(attribute.get(), H5T_NATIVE_INT64, &value) < 0)
     fail(name, fmt::format("the attribute cannot be read{}", last_error()));
-  // HDF5 limits values that exceed the range of the type.
+  // HDF5 limits values that exceed the range of the type to its largest value.
   if (!is_signed(type) && value == std::numeric_limits<std::int64_t>::max())
     fail(name, "the attribute is too large for a signed 64-bit integer");
   return value;

@@ -23,7 +23,7 @@ namespace {
 constexpr std::size_t kSuperblockBytes = 48;
 
 Handle open_file(const std::filesystem::path& path) {
-  require_recording_file(path);  // Reports missing permission; HDF5 would call such a file damaged.
+  require_recording_file(path);  // reports a missing permission, which HDF5 reports as damage
   require_survivable(path);
   Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   if (file.valid()) return file;
@@ -33,8 +33,8 @@ Handle open_file(const std::filesystem::path& path) {
   throw BadInput(fmt::format("{}: the file is truncated, damaged or not an HDF5 file{}", path.string(), reason));
 }
 
-/// When the file closes, the callback keeps the memory of the HDF5 driver instead of freeing it. The superblock is
-/// complete only after closing, because H5Fget_file_image of HDF5 1.10 leaves an old checksum.
+/// When the file closes, this callback keeps the memory of the HDF5 driver. Only then is the superblock complete:
+/// before closing, H5Fget_file_image of HDF5 1.10 returns an old checksum.
 H5FD_file_image_callbacks_t keep_image_in(void** user) {
   H5FD_file_image_callbacks_t calls{};
   calls.image_malloc = [](std::size_t size, H5FD_file_image_op_t, void*) { return std::malloc(size); };
@@ -58,17 +58,17 @@ H5FD_file_image_callbacks_t keep_image_in(void** user) {
   return calls;
 }
 
-/// Returns the file length in the superblock (format specification, superblock version 3: byte 28), because the memory
-/// of the driver is longer.
+/// Returns the file length in the superblock (format specification, superblock version 3: byte 28); the memory of the
+/// driver is longer.
 std::uint64_t stated_length(const void* image) {
   std::uint64_t length = 0;
   std::memcpy(&length, static_cast<const char*>(image) + 28, sizeof(length));
   return length;
 }
 
-/// Creates an HDF5 file called `label` with the driver in `access`; error messages contain `name`.
+/// Creates an HDF5 file `label` with the driver in `access`. Error messages contain `name`.
 Handle create_file(const std::string& name, const std::string& label, const Handle& access) {
-  // The file format of HDF5 1.10 has checksums on all metadata, so that HDF5 detects flipped bits.
+  // The file format of HDF5 1.10 has checksums on all metadata, which detect flipped bits.
   if (H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG) < 0 ||
       H5Pset_libver_bounds(access.get(), H5F_LIBVER_V110, H5F_LIBVER_V110) < 0) {
     throw BadInput(fmt::format("{}: the file cannot be prepared for writing{}", name, last_error()));
@@ -87,7 +87,7 @@ Handle create_in_memory(const std::string& name, void** image) {
   if (H5Pset_fapl_core(access.get(), kGrowth, false) < 0 || H5Pset_file_image_callbacks(access.get(), &calls) < 0) {
     throw BadInput(fmt::format("{}: the file cannot be prepared for writing{}", name, last_error()));
   }
-  // The label must differ from all existing files, because HDF5 would first read an existing file into memory.
+  // `label` must be no existing file, because HDF5 would read that file into memory.
   return create_file(name, name + " in memory", access);
 }
 
@@ -96,7 +96,7 @@ Handle create_on_disk(const std::string& name, const std::filesystem::path& path
   if (H5Pset_fapl_sec2(access.get()) < 0)
     throw BadInput(fmt::format("{}: the file cannot be prepared for writing{}", name, last_error()));
   Handle file = create_file(name, path.string(), access);
-  // Disk space is reserved after the file is created, because creating truncates the file.
+  // Creating the file truncates it, so disk space is reserved afterwards.
   void* descriptor = nullptr;
   if (H5Fget_vfd_handle(file.get(), H5P_DEFAULT, &descriptor) < 0)
     throw BadInput(fmt::format("{}: the file cannot be prepared for writing{}", name, last_error()));
@@ -138,8 +138,8 @@ Handle::~Handle() {
 }
 
 Silence::Silence() {
-  // After reading some damaged files, the cleanup of HDF5 at exit fails and prints messages. The cleanup of HDF5 is
-  // unnecessary, because the handles of this project close all files.
+  // After reading some damaged files, the cleanup of HDF5 at exit fails and prints messages. The cleanup is
+  // unnecessary, because the handles close all files.
   static const herr_t once = H5dont_atexit();
   (void)once;
   H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
@@ -219,7 +219,7 @@ void DiskFile::close() {
     throw BadInput(fmt::format("{}: the file cannot be assembled in memory", name_));
   std::filesystem::resize_file(path_, stated_length(head.data()), error);
   if (error) throw BadInput(name_ + ": cannot be written: " + error.message());
-  // If closing fails midway, HDF5 reports no error, but the length in the superblock then differs from the file length.
+  // If closing fails midway, HDF5 reports no error, but the length in the superblock differs from the file length.
   if (!Handle(H5Fopen(path_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose).valid())
     throw BadInput(fmt::format("{}: the file cannot be assembled in memory{}", name_, last_error()));
 }

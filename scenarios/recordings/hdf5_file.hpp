@@ -10,8 +10,7 @@
 #include "scenarios/recordings/hdf5_group.hpp"
 #include "scenarios/recordings/hdf5_layout.hpp"
 
-/// The classes in hdf5_file.hpp open and write HDF5 files. Every error is a BadInput with the message "FILE: PLACE:
-/// what".
+/// hdf5_file.hpp opens and writes HDF5 files. Every error is a BadInput with the message "FILE: PLACE: what".
 namespace tumble::scenarios::hdf5 {
 
 /// InputFile is an HDF5 file that is open for reading.
@@ -27,42 +26,42 @@ class InputFile {
   Group root_;
 };
 
-/// MemoryFile is an HDF5 file that is created in memory. The HDF5 library must never write to a full disk, because it
-/// cannot recover from a failed close.
+/// MemoryFile is an HDF5 file that is created in memory: the HDF5 library cannot recover from a failed close, so it
+/// must never write to a full disk.
 class MemoryFile {
  public:
-  /// Creates an HDF5 file in memory; error messages start with `name`.
+  /// Creates an HDF5 file in memory. Error messages start with `name`.
   explicit MemoryFile(const std::string& name);
   ~MemoryFile();
   MemoryFile(const MemoryFile&) = delete;
   MemoryFile& operator=(const MemoryFile&) = delete;
 
   const Group& root() const { return root_; }
-  /// Closes the file and all HDF5 objects, and returns the bytes of the file. The bytes are valid during the lifetime
-  /// of the MemoryFile.
+  /// Closes the file and all HDF5 objects, and returns the bytes of the file, which are valid until MemoryFile is
+  /// destroyed.
   std::span<const std::byte> close();
 
  private:
   Silence silence_;
   std::string name_;
-  void* image_ = nullptr;  ///< set by the library's driver when the file closes
+  void* image_ = nullptr;  ///< set by the HDF5 driver when the file closes
   Handle file_;
   Group root_;
 };
 
-/// DiskFile is an HDF5 file that is written directly to disk, in place of an empty file. DiskFile reserves the maximum
-/// disk space first, so that the HDF5 library never writes to a full disk.
+/// DiskFile is an HDF5 file that replaces an empty file on disk. DiskFile reserves the maximum disk space first, so
+/// that the HDF5 library never writes to a full disk.
 class DiskFile {
  public:
-  /// Creates an HDF5 file at `path` and reserves `most_bytes` bytes; error messages start with `name`. Throws BadInput
-  /// if the disk space is not sufficient.
+  /// Creates an HDF5 file at `path` and reserves `most_bytes` bytes. Error messages start with `name`. Throws BadInput
+  /// if disk space is missing.
   DiskFile(const std::string& name, const std::filesystem::path& path, std::uint64_t most_bytes);
   ~DiskFile();
   DiskFile(const DiskFile&) = delete;
   DiskFile& operator=(const DiskFile&) = delete;
 
   const Group& root() const { return root_; }
-  /// Closes the file and all HDF5 objects, and releases the unused disk space.
+  /// Closes the file and all HDF5 objects, and releases unused disk space.
   void close();
 
  private:

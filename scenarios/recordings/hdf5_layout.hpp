@@ -11,11 +11,10 @@
 #include <string>
 #include <utility>
 
-/// The header hdf5_layout.hpp contains RAII handles of the HDF5 C library, and the memory layout of rows.
+/// hdf5_layout.hpp contains RAII handles of the HDF5 C library, and the memory layout of rows.
 namespace tumble::scenarios::hdf5 {
 
-/// Handle owns an identifier of the HDF5 library. The destructor of Handle closes the identifier with the function for
-/// its type.
+/// Handle owns an identifier of the HDF5 library, and closes it with the function for its type.
 class Handle {
  public:
   using Close = herr_t (*)(hid_t);
@@ -32,7 +31,7 @@ class Handle {
   Close close_ = nullptr;
 };
 
-/// Silence suppresses the messages of the HDF5 library in this thread during the object's lifetime.
+/// Silence suppresses the messages of the HDF5 library in this thread during its lifetime.
 class Silence {
  public:
   Silence();
@@ -81,7 +80,7 @@ template <>
 struct RowLayout<Eigen::Quaterniond> : Layout<Scalar::float64, 4> {};
 static_assert(sizeof(Eigen::Vector3d) == 24 && sizeof(Eigen::Vector3f) == 12 && sizeof(Eigen::Quaterniond) == 32);
 
-/// kChunkBytes is the chunk size of a deflated dataset in bytes.
+/// Chunk size of a compressed dataset in bytes.
 inline constexpr std::size_t kChunkBytes = std::size_t{1} << 20;
 constexpr std::size_t rows_in_chunk(std::size_t row_bytes) {
   return std::max<std::size_t>(kChunkBytes / row_bytes, 1);
@@ -90,7 +89,7 @@ constexpr std::size_t rows_in_chunk(std::size_t row_bytes) {
 /// Returns the HDF5 type for a scalar type in memory.
 hid_t memory_type(Scalar scalar);
 
-/// Returns " (reason)" for the last error of the HDF5 library, or an empty text if the reason is unknown.
+/// Returns " (reason)" for the last error of the HDF5 library; empty if the reason is unknown.
 std::string last_error();
 
 }  // namespace tumble::scenarios::hdf5

@@ -15,9 +15,9 @@ namespace tumble::scenarios {
 
 /// Imported is an imported recording, ready for write_recording.
 struct Imported {
-  RecordingInfo info;  ///< without scenario; `attribution` states the source, `origin_ns` the stamp of time 0
+  RecordingInfo info;  ///< no scenario; `attribution` names the source, `origin_ns` is the stamp of time 0
   sim::Sensors sensors;
-  std::vector<PointStore> points;       ///< points of each lidar if stored on disk (SweepReading::scratch), else empty
+  std::vector<PointStore> points;       ///< points of each lidar on disk (SweepReading::scratch); otherwise empty
   std::optional<sim::Truth> reference;  ///< motion measured by a reference instrument: FORMAT.md, "References"
   std::vector<std::string> notes;       ///< remarks for the user about omissions and assumptions
 };
@@ -26,46 +26,47 @@ struct Imported {
 enum class AccelUnit { m_s2, g };
 enum class GyroUnit { rad_s, deg_s };
 
-/// Reads the samples of one IMU from a text table. The separator is the comma, semicolon or tab that is most frequent
-/// in the first line that is no comment. If the line contains no comma, semicolon or tab, blanks are the separator. The
-/// table may have comments, a row of units below the names, and a separator at the end of each line
+/// Reads the samples of one IMU from a text table. The separator is the comma, semicolon or tab, whichever is most
+/// frequent in the first line that is no comment. If this line has no comma, semicolon or tab, blanks are the
+/// separator. The table may have comments, a row of units below the names, and a separator at the end of each line
 /// (tables/logged_table.hpp). Numbers may be in scientific notation.
 ///
-/// The names in the header line identify the columns. The reader accepts the following column names.
-/// - The reader accepts the names that export_csv writes (each once, without other names).
-/// - The reader accepts short forms of these names (sec nsec wx.. fx.. or ax..).
-/// - The reader accepts names of ROS messages: ".../header/stamp" (seconds), ".../angular_velocity/x",
-///   ".../linear_acceleration/x", and y and z. Names of ROS messages may have points instead of slashes, as written by
-///   `rostopic echo -p` and bagpy. The reader uses the stamps of the message headers, instead of the times of
-///   recording.
-/// - The reader accepts names of loggers and data sets (tables/logger_columns.hpp): "time,gyro_x,...,accel_x,...",
-///   "#timestamp [ns],w_RS_S_x [rad s^-1],..."
+/// The names in the header line identify the columns:
+/// - names that export_csv writes (each once, without other names),
+/// - short forms of these names (sec nsec wx.. fx.. or ax..),
+/// - names of ROS messages: ".../header/stamp" (seconds), ".../angular_velocity/x", ".../linear_acceleration/x", and y
+///   and z; with points instead of slashes, as written by `rostopic echo -p` and bagpy. The stamps are those of the
+///   message headers, not the times of recording.
+/// - names of loggers and data sets (tables/logger_columns.hpp): "time,gyro_x,...,accel_x,...", "#timestamp
+///   [ns],w_RS_S_x [rad s^-1],..."
 ///
 /// A unit in a column name is used. If the name of the time column has no unit, the unit is inferred from the time
-/// steps, with a note. If the first line contains numbers, it is a sample, and the positions identify the columns. The
-/// positions count from 0: 0 stamp s, 1 stamp ns, 8-10 rate, 12-14 specific force. If `columns` is not empty, it names
-/// the columns instead: "time=t,gyro=gx,gy,gz,accel=ax,ay,az". Each column name may also be a position, counted from 0.
+/// steps, with a note. If the first line contains numbers, it is a sample, and the positions identify the columns (from
+/// 0): 0 stamp s, 1 stamp ns, 8-10 rate, 12-14 specific force. A non-empty `columns` names the columns:
+/// "time=t,gyro=gx,gy,gz,accel=ax,ay,az". Instead of a name, it may contain a position, from 0.
 ///
-/// The record `device` supplies properties that the file lacks: name, device, ranges, noise, T_BI. The period and the
-/// readings of `device` are replaced. The time of the recording counts from the first stamp, and the period is the
-/// median step. Stamps that are rounded to milliseconds are moved to the true period of the IMU, with a note
-/// (rounded_stamps.hpp). The size and rotation of gravity confirm the units, with a note if the motion allows the
-/// check.
+/// `device` supplies properties that the file lacks: name, device, ranges, noise, T_BI. The period and the readings of
+/// `device` are replaced. Times count from the first stamp; the period is the median step. Stamps that are rounded to
+/// milliseconds are moved to the true period of the IMU, with a note (rounded_stamps.hpp). The size and the rotation of
+/// gravity confirm the units, with a note, if the motion is sufficient.
 ///
-/// A line is skipped, with a note, if it has an invalid or non-finite number, a wrong number of columns, or a stamp
-/// that does not increase (left_out.hpp). A line whose readings are all 0 is also skipped.
+/// A line is skipped, with a note, if it has an invalid or non-finite number, or a wrong number of columns
+/// (left_out.hpp). A line is also skipped if its readings are all 0 or its stamp does not increase.
 ///
 /// Throws BadInput with file and line for unknown, repeated or missing columns, an unexpected unit, or a truncated last
-/// line. Throws BadInput if more than 5 % of the lines are faulty, or for fewer than two samples. The median specific
-/// force must be 3 to 30 m/s^2, and the period must be 20 us to 2 s. At most 1 % of the rates may exceed twice the
-/// device's range (100 rad/s if unknown). Gravity must not rotate 57 times faster or slower than the gyro's rates.
+/// line. Throws BadInput if more than 5 % of the lines are faulty, for fewer than two samples, or if one of these
+/// limits is exceeded:
+///
+/// - The median specific force is 3 to 30 m/s^2, and the period is 20 us to 2 s.
+/// - At most 1 % of the rates exceed twice the device's range (100 rad/s if unknown).
+/// - Gravity rotates neither 57 times faster nor 57 times slower than the gyro (deg/s in place of rad/s).
 Imported import_imu_csv(const std::filesystem::path& path, const sim::ImuRecord& device,
                         AccelUnit unit = AccelUnit::m_s2, GyroUnit gyro_unit = GyroUnit::rad_s,
                         const std::string& columns = "");
 
-/// Reads all IMU tables (.csv) in a folder, for example in a folder of `export --format csv`. Each IMU has the name of
-/// its file, and the first IMU by name is the primary IMU. Tables of poses are skipped, and other tables are skipped
-/// with a note. Throws BadInput like import_imu_csv, and if no table has IMU readings.
+/// Reads all IMU tables (.csv) in a folder, for example from `export --format csv`. Each IMU has the name of its file;
+/// the first IMU by name is the primary IMU. Tables of poses are skipped; other tables are skipped with a note. Throws
+/// BadInput like import_imu_csv, and if no table has IMU readings.
 Imported import_csv_folder(const std::filesystem::path& folder, const sim::ImuRecord& device, AccelUnit unit,
                            GyroUnit gyro_unit);
 
@@ -73,34 +74,34 @@ Imported import_csv_folder(const std::filesystem::path& folder, const sim::ImuRe
 struct SweepSource {
   std::filesystem::path folder;
   std::string format;           ///< "ply", "pcd", "vtk" or "kitti" (.bin)
-  std::string stem;             ///< file name before the number: "lidar"; "": must be equal for all files
+  std::string stem;             ///< file name before the number: "lidar"; empty: equal in all files
   std::filesystem::path times;  ///< file with a stamp per sweep; "": STEM_times.txt or times.txt in the folder, if
                                 ///< present
-  std::int64_t steady_ns = 0;   ///< sweep period if no times are available; 0: missing times throw
-  std::string bin_columns;      ///< columns of .bin files: see read_cloud
+  std::int64_t steady_ns = 0;   ///< sweep period if no times exist; 0: missing times are an error
+  std::string bin_columns;      ///< columns of .bin files (read_cloud)
   SweepReading reading;
 };
 
 /// Reads the sweeps of a lidar from one file per sweep, in natural order of the file names (sweep_stamps.hpp,
-/// cloud_file.hpp, sweep_builder.hpp). The stamp of a sweep comes from the file `times`, or else from the file names,
-/// from absolute point times, or from `steady_ns`. Time 0 of the recording is the start of the first sweep. If the
-/// clock started less than a second earlier, time 0 is the zero of the clock. A file that cannot be read or used is
-/// skipped with a note. Throws BadInput with the file if more than 5 % of the files are faulty. Throws BadInput for
-/// different numbers of stamps and files, files of several lidars, or sweeps without times.
+/// cloud_file.hpp, sweep_builder.hpp). The stamp of a sweep comes from the file `times`, or else from the file name,
+/// from absolute point times, or from `steady_ns`. Time 0 of the recording is the start of the first sweep, or the zero
+/// of the clock if it is less than a second earlier. A file that cannot be used is skipped with a note. Throws BadInput
+/// with the file if more than 5 % of the files are faulty. Throws BadInput for different numbers of stamps and files,
+/// files of several lidars, or sweeps without times.
 Imported import_sweeps(const SweepSource& source);
 
 /// ReferenceSource describes a pose file of another program.
 struct ReferenceSource {
   std::filesystem::path file;
   std::string format;           ///< "tum", "kitti" or "odometry"
-  bool of_body = false;         ///< poses of the body; else poses of the first lidar, converted with its T_BL
-  bool sorted = false;          ///< lines may be unsorted: read_tum_poses
+  bool of_body = false;         ///< true: poses of the body; false: of the first lidar, converted with its T_BL
+  bool sorted = false;          ///< true: lines may be unsorted (read_tum_poses)
   std::filesystem::path times;  ///< times of a KITTI file without sweeps
   std::int64_t steady_ns = 0;   ///< pose period of a KITTI file without sweeps
 };
 
-/// Reads a pose file as a recording that contains only a truth. The poses in the file are those of the body. Time 0 of
-/// the recording follows the rule of import_sweeps. Throws BadInput if the file is invalid.
+/// Reads a pose file as a recording that contains only a truth: poses of the body. Time 0 follows the rule of
+/// import_sweeps. Throws BadInput if the file is invalid.
 Imported import_trajectory(const ReferenceSource& source);
 
 /// Reads a pose file and uses its poses as the truth of `recording`. The stamps of the poses are in the clock of the
@@ -108,52 +109,8 @@ Imported import_trajectory(const ReferenceSource& source);
 /// Throws BadInput for errors of the reader, for lidar poses without a lidar, or if the times do not overlap.
 void attach_reference(Imported& recording, const ReferenceSource& source);
 
-/// Adds the IMUs of the recording `imu` to `recording`. The recordings `imu` and `recording` must use the same clock.
-/// The result has the earlier time 0 of the two recordings. Throws BadInput if the times of the two recordings do not
-/// overlap.
+/// Adds the IMUs of `imu` to `recording`, which must use the same clock. The result has the earlier time 0 of both.
+/// Throws BadInput if the times do not overlap.
 void attach_imus(Imported& recording, Imported imu);
-
-/// Reads a trial of the data set BROAD (Laidig et al., Data 2021, 6(7), 72) from its HDF5 file: imu_gyr, imu_acc,
-/// imu_mag (converted to tesla), sampling_rate. If the file contains opt_quat and opt_pos, they become the reference,
-/// which is unknown where the cameras lost the markers. Reference rates and velocities are differences over 140 ms. The
-/// interval of 140 ms is short enough to detect rest, but blurs fast rotations. The reference rates at the IMU samples
-/// are differences over 40 ms (reference_rate.hpp). Sample k has the time k / sampling_rate. Ranges and noise of the
-/// IMU are 0, because the file does not contain them. Throws BadInput if the file is invalid.
-Imported import_broad(const std::filesystem::path& path);
-
-/// Reads a recording of the data set RepoIMU (Szczesna et al., ICCVG 2016) in its published form. The columns are
-/// separated by ';' and follow two header lines (group, column). The columns are time s, "Vicon Orientation" W X Y Z,
-/// "IMU Acceleration" m/s^2, "IMU Gyroscope" rad/s, and "IMU Magnetometer" (without unit, omitted).
-///
-/// The reader detects and corrects the following defects, with notes.
-/// - Time stamps with few decimals become regular, within their rounding (steady_stamps.hpp).
-/// - Repeated readings (sample and hold) are dropped, and the remaining readings get stamps at the gyro's rate. A
-///   slower accelerometer is interpolated between its distinct readings (repeated_readings.hpp).
-/// - Glitches of the optical reference are removed (reference_glitches.hpp).
-/// - Delay, rotation and tilt between reference and IMU are estimated (align_reference.hpp). If `align` is set, the
-///   importer removes these alignment errors. After this correction, the truth is the attitude of the IMU in a world
-///   with z up.
-///
-/// The true rates at the IMU's stamps are derivatives of the reference attitudes (reference_rate.hpp). The reference
-/// contains no positions.
-///
-/// Throws BadInput with file, line, value and limit for unknown, missing or repeated columns, invalid numbers,
-/// non-finite IMU readings, a stamp that does not increase, or a truncated last line. Throws BadInput if the norm of
-/// more than a fifth of the quaternions differs from 1 by more than 1 %.
-Imported import_repoimu(const std::filesystem::path& path, bool align);
-
-/// Returns whether the file starts like a recording of RepoIMU.
-bool is_repoimu(const std::filesystem::path& path);
-
-/// Reads a flight log of AirbrakesV2 (NCSU High-Powered Rocketry Club, MIT). The names in the header identify the
-/// columns: timestamp_seconds, raw_acceleration_{x,y,z}_gs, raw_angular_rate_{x,y,z}_deg_per_s, and optionally
-/// magnetic_field_{x,y,z}_microteslas. The importer ignores other columns. The imported recording has no truth, because
-/// the filter of the log is not a reference instrument. Rows with a repeated stamp are dropped and counted. If the log
-/// has parts more than a second apart, only the longest part is used, with a note. Throws BadInput with file and line
-/// if the file is invalid.
-Imported import_airbrakes(const std::filesystem::path& path);
-
-/// Returns whether the file has the header of an AirbrakesV2 log.
-bool is_airbrakes(const std::filesystem::path& path);
 
 }  // namespace tumble::scenarios

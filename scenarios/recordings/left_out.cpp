@@ -10,14 +10,14 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr std::size_t kNoIndex = ~std::size_t{0};
-/// Fewer than kLeastForEnds stamps do not reveal how long a recording lasts.
+/// Fewer time stamps do not determine the duration of a recording.
 constexpr std::size_t kLeastForEnds = 10;
-/// If a few stamps are separated from the others by a gap shorter than kClockSet_ns, they belong to the recording. A
-/// longer gap means that the clock was set.
+/// If a few stamps are separated from the others by a shorter gap, they belong to the recording. A longer gap means
+/// that the clock was set.
 constexpr std::uint64_t kClockSet_ns = 86'400'000'000'000;
 
-/// Returns the indices of a longest increasing subsequence of the stamps (Fredman 1975). The search runs from the end,
-/// so it prefers a subsequence with early stamps.
+/// Returns the indices of a longest increasing subsequence of the stamps (Fredman 1975). The search starts at the end,
+/// so it prefers early stamps.
 std::vector<std::size_t> longest_increasing(std::span<const std::int64_t> stamps_ns) {
   std::vector<std::size_t> first_of_length, after(stamps_ns.size(), kNoIndex);
   for (std::size_t k = stamps_ns.size(); k-- > 0;) {
@@ -36,11 +36,11 @@ std::vector<std::size_t> longest_increasing(std::span<const std::int64_t> stamps
   return indices;
 }
 
-/// Drops a few indices at the start or the end if the gap to the other stamps exceeds the duration of the other stamps.
+/// Drops a few indices at the start or the end if the gap to the other stamps exceeds the duration of the others.
 void drop_far_ends(std::span<const std::int64_t> stamps_ns, std::vector<std::size_t>& indices) {
   const std::size_t all = indices.size();
   if (all < kLeastForEnds) return;
-  // The difference of two stamps may exceed int64, so the difference is unsigned.
+  // The difference may exceed int64, so it is unsigned.
   const auto duration = [&](std::size_t from, std::size_t to) {
     return static_cast<std::uint64_t>(stamps_ns[indices[to]]) - static_cast<std::uint64_t>(stamps_ns[indices[from]]);
   };

@@ -10,35 +10,32 @@
 
 #include "scenarios/errors.hpp"
 
-/// The functions in left_out.hpp skip single faulty items of a sensor: IMU readings or point clouds.
+/// left_out.hpp skips single faulty items of a sensor: IMU readings or point clouds.
 namespace tumble::scenarios {
 
-/// kLeftOutShareMax is the largest fraction of a sensor's readings or clouds that may be skipped as faulty. Occasional
-/// faults of drivers, buses and files affect a smaller fraction. A wrong clock, unit or layout affects a larger
-/// fraction, so the reader rejects the recording.
+/// Largest fraction of a sensor's items that may be skipped as faulty. Occasional faults of drivers, buses and files
+/// affect a smaller fraction. A wrong clock, unit or layout affects a larger fraction; the reader then rejects the
+/// recording.
 inline constexpr double kLeftOutShareMax = 0.05;
-/// One item may be skipped if the sensor has at least kLeftOutOneOf items, even if this exceeds the fraction
-/// kLeftOutShareMax.
+/// One item may always be skipped if the sensor has at least this many items.
 inline constexpr std::size_t kLeftOutOneOf = 5;
 
-/// Returns whether `count` of `all` items may be skipped as faulty.
+/// Returns true if `count` of `all` items may be skipped as faulty.
 bool may_leave_out(std::size_t count, std::size_t all);
 
-/// LeftOut counts the items of one sensor that a reader skips, by cause. LeftOut stores the location of the first item
-/// of each cause.
+/// LeftOut counts the skipped items of one sensor by cause, and stores the location of the first item of each cause.
 class LeftOut {
  public:
-  /// The text `items` is the plural name of the items in messages.
+  /// `items` is the plural name of the items in messages.
   explicit LeftOut(std::string items) : items_(std::move(items)) {}
 
-  /// Counts an item as faulty. The text `cause` completes the note "1 of 150 readings is left out: 1 with ...". The
-  /// text `error` is the message with the location of the item. If too many items are faulty, require_few() throws
-  /// `error`.
+  /// Counts an item as faulty. `cause` completes the note "1 of 150 readings is left out: 1 with ...". `error` is the
+  /// message with the location of the item, which require_few() throws if too many items are faulty.
   void add(const std::string& cause, const std::string& error);
-  /// Counts a skipped item with a cause that may affect any number of items. An example is the empty reading that a
-  /// driver publishes in place of a lost reading.
+  /// Counts a skipped item whose cause may affect any number of items. For example, some drivers publish an empty
+  /// reading in place of a lost reading.
   void add_unlimited(const std::string& cause, const std::string& error);
-  /// Calls `read`, and counts an item with faulty values if `read` throws BadInput.
+  /// Calls `read`. If `read` throws BadInput, counts an item with faulty data.
   template <class Read>
   void guard(Read&& read) {
     try {
@@ -49,10 +46,10 @@ class LeftOut {
   }
 
   std::size_t count() const { return faulty_ + unlimited_; }
-  /// Throws BadInput, with the message of the first faulty item, if too many items are faulty. The parameter `kept` is
-  /// the number of remaining items.
+  /// If too many items are faulty, throws BadInput with the message of the first one. `kept` is the number of remaining
+  /// items.
   void require_few(std::size_t kept) const;
-  /// Returns a note for the user about the skipped items, or "" if no item was skipped.
+  /// Returns a note for the user about the skipped items; empty if there are none.
   std::string note(std::size_t kept) const;
 
  private:
@@ -67,16 +64,15 @@ class LeftOut {
   std::size_t faulty_ = 0, unlimited_ = 0;
 };
 
-/// Returns for each time stamp whether to keep it, so that the kept time stamps increase. The function drops as few
-/// time stamps as possible (longest increasing subsequence); of several choices, it keeps early time stamps. If there
-/// are at least ten time stamps, the first or last may also be dropped. The first or last time stamp is dropped if its
-/// distance from the others exceeds the duration of the others. A few time stamps at either end are dropped if the gap
-/// to the others also exceeds a day. Gaps of more than a day occur when a clock is set. The cost is O(N log N), or O(N)
-/// if all time stamps increase.
+/// Returns true for each time stamp to keep, so that the kept time stamps increase. As few as possible are dropped
+/// (longest increasing subsequence), preferably late ones. With at least ten time stamps, the first or last is also
+/// dropped if its distance from the others exceeds their duration. A few time stamps at either end are dropped if the
+/// gap to the others also exceeds a day, which occurs when a clock is set. The cost is O(N log N), or O(N) if all time
+/// stamps increase.
 std::vector<bool> stamps_in_order(std::span<const std::int64_t> stamps_ns);
 
-/// Removes the elements of `rows` for which `kept` is false. A list of another length is unchanged, because it contains
-/// data that the sensor lacks.
+/// Removes the elements of `rows` for which `kept` is false. A list of another length is unchanged: the sensor lacks
+/// these data.
 template <class Row>
 void keep_rows(const std::vector<bool>& kept, std::vector<Row>& rows) {
   if (rows.size() != kept.size()) return;

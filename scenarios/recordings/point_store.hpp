@@ -10,8 +10,8 @@
 
 namespace tumble::scenarios {
 
-/// PointStore contains the points of one lidar on disk. Each column of the sim::LidarRecord is one file. The lidar
-/// record in memory then has no points.
+/// PointStore contains the points of one lidar on disk, one file per column of sim::LidarRecord. The record in memory
+/// then has no points.
 struct PointStore {
   PointStore() = default;
   explicit PointStore(const std::filesystem::path& folder)
@@ -27,8 +27,8 @@ struct PointStore {
   ColumnFile<std::uint16_t> ring;
 };
 
-/// Returns a lidar record that contains only the sweep with number `sweep`. The points come from `lidar`, or from disk
-/// (`aside`) if `aside` is not null.
+/// Returns a lidar record with only the sweep `sweep`. The points come from disk (`aside`), or from `lidar` if `aside`
+/// is null.
 sim::LidarRecord sweep_alone(const sim::LidarRecord& lidar, const PointStore* aside, std::size_t sweep);
 
 }  // namespace tumble::scenarios

@@ -16,7 +16,7 @@ namespace {
 /// RecordingReader visits every field of a recording and reads it from an HDF5 group.
 class RecordingReader {
  public:
-  /// The folder `scratch` receives the columns that are stored on disk.
+  /// `scratch` is the folder for columns that are stored on disk.
   explicit RecordingReader(hdf5::Group group, std::filesystem::path scratch = {})
       : group_(std::move(group)), scratch_(std::move(scratch)) {}
 
@@ -93,7 +93,7 @@ class RecordingReader {
   std::filesystem::path scratch_;
 };
 
-/// The type `Columns` is ContactColumns or StoredContacts.
+/// `Columns` is ContactColumns or StoredContacts.
 template <class Columns>
 void require_one_length(const Columns& columns, const std::string& file) {
   for (const std::size_t other : {columns.point_W_m.size(), columns.normal_W.size(), columns.slip_velocity_W_m_s.size(),
@@ -116,8 +116,8 @@ std::vector<sim::ContactTruth> from_columns(const ContactColumns& columns, const
 
 void require_format(const hdf5::Group& root) {
   if (!root.has_attribute("format") || root.text_attribute("format") != kRecordingFormat) {
-    root.fail("format", fmt::format("the file is not a recording of this program: the attribute must be '{}'; 'tumble "
-                                    "import' converts HDF5 files of BROAD",
+    root.fail("format", fmt::format("the file is not a recording of this program: the attribute must be '{}'. For an "
+                                    "HDF5 file of BROAD, call tumble.read_broad and tumble.write of the Python package",
                                     kRecordingFormat));
   }
   const std::int64_t version = root.int_attribute("format_version");

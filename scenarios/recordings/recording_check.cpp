@@ -17,7 +17,7 @@ namespace {
 
 using Lengths = std::initializer_list<std::pair<const char*, std::size_t>>;
 
-/// The tolerance accepts rotations and quaternions with few digits, but rejects a wrong order of components.
+/// Accepts rotations and quaternions with few digits, but rejects a wrong order of components.
 constexpr double kUnitTolerance = 1e-6;
 constexpr std::int64_t kTimeMax_ns = 100'000'000'000'000'000;
 
@@ -25,7 +25,7 @@ std::string in(const std::string& place, const std::string& problem) {
   return problem.empty() ? "" : place + ": " + problem;
 }
 
-/// Describes the problem if an array has another length than the first array; otherwise returns an empty text.
+/// Describes an array whose length differs from that of the first array; empty if all lengths are equal.
 std::string length_problem(const Lengths& lengths) {
   const auto& [first_name, first] = *lengths.begin();
   for (const auto& [name, length] : lengths) {
@@ -64,7 +64,7 @@ std::string optional_length_problem(const char* name, std::size_t length, std::s
   return fmt::format("{} has {} rows; it must have {} or none", name, length, needed);
 }
 
-/// Names must be UTF-8 text without control characters, because tables show the names.
+/// Names appear in tables, so they must be UTF-8 text without control characters.
 std::string text_problem(const char* name, const std::string& text) {
   std::size_t following = 0;
   for (const unsigned char c : text) {
@@ -77,8 +77,8 @@ std::string text_problem(const char* name, const std::string& text) {
   return following == 0 ? "" : fmt::format("{} must be UTF-8 text without control characters", name);
 }
 
-/// Checks that the times count from the start of the recording. Times beyond three years belong to another clock, and
-/// their differences may overflow.
+/// Checks that times count from the start of the recording. Times beyond three years belong to another clock, and their
+/// differences can overflow.
 std::string times_problem(const char* name, const std::vector<std::int64_t>& times_ns) {
   const auto far = [](std::int64_t t) { return t > kTimeMax_ns || t < -kTimeMax_ns; };
   const auto found = std::find_if(times_ns.begin(), times_ns.end(), far);
@@ -120,7 +120,7 @@ std::string sweep_problem(const sim::LidarRecord& lidar, std::size_t points) {
   return "";
 }
 
-/// Returns the first problem that `judge(row, index)` finds in the rows, or an empty text.
+/// Returns the first problem that `judge(row, index)` finds; empty if there is none.
 template <class Row, class Judge>
 std::string first_wrong(std::span<const Row> rows, const Judge& judge, std::size_t first = 0) {
   std::string problem;
@@ -155,7 +155,7 @@ std::string point_times_problem(const sim::LidarRecord& lidar, const Offsets& of
   return lidar.point_times == sim::PointTimes::measured ? "" : offset_problem(offsets);
 }
 
-/// The argument `points` is the lidar record if its points are in memory, or the PointStore with its points on disk.
+/// `points` is the lidar record if its points are in memory, or the PointStore with its points on disk.
 template <class Points>
 std::string lidar_problem(const sim::LidarRecord& lidar, const Points& points) {
   return first_of({text_problem("name", lidar.name), text_problem("device", lidar.device),
@@ -169,7 +169,7 @@ std::string lidar_problem(const sim::LidarRecord& lidar, const Points& points) {
                    sweep_problem(lidar, points.position_L_m.size()), point_times_problem(lidar, points.offset_ns)});
 }
 
-/// Checks that the names of columns consist of letters, digits and _.
+/// Checks that a column name consists of letters, digits and _.
 std::string column_problem(const std::string& name) {
   const auto plain = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
   if (!name.empty() && std::all_of(name.begin(), name.end(), plain)) return "";
@@ -223,7 +223,7 @@ std::string series_truth_problem(const sim::SeriesTruth& series) {
 
 /// Describes how the columns of a sensor's readings differ from the columns of their truth.
 std::string series_mismatch(const sim::SeriesRecord& series, const sim::SeriesTruth& truth) {
-  if (truth.quantities.empty()) return "";  // a reference has no quantities
+  if (truth.quantities.empty()) return "";  // the truth of a reference instrument has no quantities
   if (truth.quantities.size() != series.quantities.size())
     return "truth and sensor differ in the number of quantities; the numbers must be equal";
   std::string problem;
@@ -234,7 +234,7 @@ std::string series_mismatch(const sim::SeriesRecord& series, const sim::SeriesTr
   return problem;
 }
 
-/// The argument `imu` is a sim::ImuTruth or an IMU truth on disk; the other functions also accept both types.
+/// `imu` is a sim::ImuTruth, or an IMU truth on disk; the other functions also accept both.
 template <class Imu>
 std::string imu_truth_problem(const Imu& imu) {
   return first_of(
@@ -254,7 +254,7 @@ std::string imu_truth_problem(const Imu& imu) {
 }
 
 std::string surface_problem(std::int32_t id, std::size_t surfaces) {
-  // The surface id -1 means unknown, and -2 means the robot's cage.
+  // -1 is an unknown surface, -2 is the robot's cage.
   if (id >= -2 && id < static_cast<std::int64_t>(surfaces)) return "";
   return fmt::format("surface_id {} has no name, because 'surfaces' has only {} names", id, surfaces);
 }
@@ -301,7 +301,7 @@ std::string contacts_problem(const StoredContacts& contacts, std::size_t surface
 }
 
 std::string attitude_problem(const Eigen::Quaterniond& q_WB, std::size_t) {
-  const bool unknown = q_WB.coeffs().array().isNaN().all();  // a reference without a measurement
+  const bool unknown = q_WB.coeffs().array().isNaN().all();  // time without a measurement of the reference
   if (unknown || std::abs(q_WB.squaredNorm() - 1.0) <= kUnitTolerance) return "";
   return "the quaternion q_WB must have norm 1";
 }
@@ -382,7 +382,7 @@ std::string find_mismatch(const sim::Sensors& sensors, const sim::Truth& truth) 
                                              imu.magnetic_field_t.size())}));
   }
   for (std::size_t i = 0; i < truth.lidars.size() && problem.empty(); ++i) {
-    // The function find_problem ensured that the last entry of sweep_first is the number of points.
+    // find_problem has checked that the last entry of sweep_first is the number of points.
     const std::vector<std::uint64_t>& first = sensors.lidars[i].sweep_first;
     problem = in("lidars/" + std::to_string(i),
                  optional_length_problem("truth hit_W_m", truth.lidars[i].hit_W_m.size(),

@@ -14,7 +14,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// If the zero of a clock is less than kOwnZero_ns before the first stamp, the clock started with the recording.
+/// If the zero of a clock is less than this before the first stamp, the clock started with the recording.
 constexpr std::int64_t kOwnZero_ns = 1000000000;
 
 void shift(sim::Sensors& sensors, std::int64_t by_ns) {

@@ -8,10 +8,10 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// kHead_bytes is the size of an object or attribute without its content; kFile_bytes is the size of an empty file.
+/// Sizes of an object or attribute without its content, and of an empty file.
 constexpr std::uint64_t kHead_bytes = 4096, kFile_bytes = std::uint64_t{1} << 20;
 
-/// SizeBound visits every field of a recording and sums the maximum sizes.
+/// SizeBound visits every field of a recording and sums its maximum size.
 class SizeBound {
  public:
   std::uint64_t bytes = kFile_bytes;

@@ -6,11 +6,10 @@
 
 #include "scenarios/recordings/recording_file.hpp"
 
-/// The function size_bound computes how much disk space a recording needs.
+/// size_bound computes how much disk space a recording needs.
 namespace tumble::scenarios {
 
-/// Returns an upper bound of the file size of a recording [bytes]. The bound assumes uncompressed numbers, full chunks
-/// and large headers.
+/// Returns an upper bound of the file size of a recording [bytes]: uncompressed numbers, full chunks, large headers.
 std::uint64_t size_bound(const RecordingInfo& info, const sim::Sensors& sensors, const std::vector<PointStore>& points,
                          const sim::Truth* truth);
 

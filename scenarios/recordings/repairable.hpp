@@ -8,14 +8,13 @@
 
 namespace tumble::scenarios {
 
-/// ImportOption is an option of `tumble import` that changes how a recording is read, for example {"--gyro-unit",
-/// "deg/s"}.
+/// ImportOption is an option of `tumble import` that changes how a recording is read: {"--gyro-unit", "deg/s"}.
 struct ImportOption {
   std::string name, value;
 };
 
-/// RepairableInput is the exception for a recording that can be read with another value of one import option. The error
-/// message also names this option.
+/// RepairableInput is the exception for a recording that can be read with another value of one import option, which the
+/// message names.
 class RepairableInput : public BadInput {
  public:
   RepairableInput(const std::string& message, ImportOption repair) : BadInput(message), repair_(std::move(repair)) {}

@@ -27,7 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kLinksMax = 40;  // the system's limit
+constexpr int kLinksMax = 40;  // limit of the operating system for symbolic links
 
 [[noreturn]] void fail(const fs::path& path, const std::string& reason) {
   throw BadInput(path.string() + ": cannot be written: " + reason);
@@ -59,7 +59,7 @@ std::optional<struct stat> status_of(const fs::path& path) {
   return found;
 }
 
-/// Returns the path after following all symbolic links, including links to missing files.
+/// Returns the path after following all symbolic links; the target may be missing.
 fs::path behind_links(const fs::path& path) {
   fs::path place = path;
   std::error_code error;
@@ -80,11 +80,11 @@ void require_replaceable(const fs::path& given, const fs::path& place) {
   if (access(place.c_str(), W_OK) != 0) fail(given, errno);
 }
 
-/// Throws BadInput if the output is within an input folder, at any depth, because the program must not modify inputs.
+/// Throws BadInput if the output is in an input folder, at any depth, because inputs must not change.
 void require_outside(const fs::path& output, std::span<const fs::path> inputs) {
   std::error_code error;
   const fs::path place = fs::canonical(output, error);
-  if (error) return;  // does not exist
+  if (error) return;  // the output does not exist
   for (const fs::path& input : inputs) {
     if (!fs::is_directory(input, error)) continue;
     const fs::path folder = fs::canonical(input, error);
@@ -96,22 +96,21 @@ void require_outside(const fs::path& output, std::span<const fs::path> inputs) {
   }
 }
 
-/// Returns the part of a temporary file's name that identifies the process that writes it: ".tumble-HOST-PID.".
+/// Returns the part of a temporary file's name that identifies its process: ".tumble-HOST-PID.".
 std::string process_mark(const std::string& pid) {
-  std::array<char, 17> host{};  // longer names are cut
+  std::array<char, 17> host{};  // longer names are truncated
   if (gethostname(host.data(), host.size() - 1) != 0) host[0] = '\0';
   return ".tumble-" + std::string(host.data()) + "-" + pid + ".";
 }
 
-/// Removes the temporary files of processes on this computer that were killed by SIGKILL. The function examines each
-/// folder once per process.
+/// Removes the temporary files of killed processes (SIGKILL) of this computer, once per folder.
 void remove_abandoned(const fs::path& folder) {
   static std::mutex mutex;
   static std::set<fs::path> cleaned;
   const std::lock_guard lock(mutex);
   if (!cleaned.insert(folder).second) return;
   const std::string mark = process_mark("");
-  const std::string start = mark.substr(0, mark.size() - 1);  // without the dot after the PID
+  const std::string start = mark.substr(0, mark.size() - 1);  // without the point after the PID
   std::error_code ignored;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder.empty() ? "." : folder, ignored)) {
     const std::string name = entry.path().filename().string();
@@ -163,7 +162,7 @@ void OutputFile::move_into_place() {
   Descriptor file(open(unfinished_.c_str(), O_RDONLY | O_CLOEXEC));
   if (file.get() < 0) fail(given_, errno);
   if (const std::optional<struct stat> old = status_of(place_)) {
-    // The target of the rename may have changed since the first check.
+    // The target may have changed since the first check.
     require_replaceable(given_, place_);
     const std::optional<struct stat> own = status_of(unfinished_);
     const bool same_owner = own && own->st_uid == old->st_uid && own->st_gid == old->st_gid;
@@ -173,7 +172,7 @@ void OutputFile::move_into_place() {
     }
     if (fchmod(file.get(), old->st_mode & 07777) != 0) fail(given_, errno);
   }
-  // Some file systems report a full disk only when a file is flushed or closed.
+  // Some file systems report a full disk only at flush or close.
   if (fsync(file.get()) != 0 || !file.close()) fail(given_, errno);
   if (rename(unfinished_.c_str(), place_.c_str()) != 0) fail(given_, errno);
   moved_ = true;
@@ -186,6 +185,7 @@ OutputFolder::OutputFolder(const fs::path& folder) : folder_(folder) {
   made_ = fs::create_directories(folder, error);
   if (!error && !fs::is_directory(folder)) error = std::make_error_code(std::errc::not_a_directory);
   if (error) fail(folder, error.message());
+  remove_abandoned(folder);
   const bool empty = fs::is_empty(folder, error);
   if (error) fail(folder, error.message());
   if (!empty) {

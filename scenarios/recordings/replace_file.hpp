@@ -9,15 +9,15 @@
 
 #include "scenarios/recordings/unfinished.hpp"
 
-/// The classes in replace_file.hpp write output atomically: to a temporary file next to the final path, which is then
-/// renamed. The rename replaces only regular files.
+/// replace_file.hpp writes output atomically: to a temporary file next to the final path, which is then renamed. Only
+/// regular files are replaced.
 namespace tumble::scenarios {
 
-/// OutputFile is an unfinished output file next to its final path. The temporary file is removed unless it is moved to
-/// the final path, even if a signal ends the program (unfinished.hpp). After SIGKILL, the temporary file remains until
-/// the next process writes to the folder. OutputFile follows symbolic links. An existing target must be a writable
-/// regular file; its mode and owner are kept. Throws BadInput with the path and the system's reason (missing folder, no
-/// permission, disk full, a device, a pipe).
+/// OutputFile is a temporary output file next to its final path. A temporary file that is not moved to the final path
+/// is removed, even if a signal ends the program (unfinished.hpp). After SIGKILL, it remains until the next process
+/// writes to the folder. OutputFile follows symbolic links. An existing target must be a writable regular file; its
+/// mode and owner are kept. Throws BadInput with the path and the system's reason (missing folder, no permission, disk
+/// full, a device, a pipe).
 class OutputFile {
  public:
   explicit OutputFile(const std::filesystem::path& path);
@@ -28,7 +28,7 @@ class OutputFile {
   /// Returns the path of the temporary file, for libraries that write to a named file.
   const std::filesystem::path& unfinished() const { return unfinished_; }
   void write(std::span<const std::byte> bytes);
-  /// Flushes the file to disk and renames it, so that the final path always has the complete old or new file.
+  /// Flushes the file to disk and renames it. The final path always has the complete old or new file.
   void move_into_place();
 
  private:
@@ -38,9 +38,8 @@ class OutputFile {
 };
 
 /// OutputFolder is a folder for all files of one output. The folder must be missing or empty, so that users do not
-/// mistake old files for new files. Throws BadInput if the folder is not empty. Unless the output is complete, the
-/// content of the folder is removed, even if a signal ends the program. If OutputFolder created the folder, the folder
-/// is also removed.
+/// mistake old files for new ones. Throws BadInput if the folder is not empty. The content of an incomplete output is
+/// removed, even if a signal ends the program. If OutputFolder created the folder, it is removed too.
 class OutputFolder {
  public:
   explicit OutputFolder(const std::filesystem::path& folder);
@@ -63,7 +62,7 @@ class OutputFolder {
 void replace_file(const std::filesystem::path& path, std::span<const std::byte> bytes);
 void replace_file(const std::filesystem::path& path, std::string_view text);
 
-/// Throws BadInput if the output is one of the inputs (equal device and inode), or exists within an input folder.
+/// Throws BadInput if the output is one of the inputs (equal device and inode) or exists in an input folder.
 void require_not_an_input(const std::filesystem::path& output, std::span<const std::filesystem::path> inputs);
 
 }  // namespace tumble::scenarios

@@ -12,12 +12,12 @@ namespace {
 
 constexpr std::int64_t kRaster_ns = 1'000'000, kLongestStep_ns = 4 * kRaster_ns;
 constexpr double kLeastShare = 0.02;
-constexpr std::size_t kLeast = 100;  // minimum number of stamps
+constexpr std::size_t kLeast = 100;  // smallest number of stamps that is tested
 constexpr double kReach_s = 0.5;
 constexpr std::int64_t kStampGap_ns = kLongestStep_ns + 2 * kRaster_ns;  // longer than any regular step
 
-/// StampLine contains prefix sums over a series of stamps: n, i, v, i i, i v, where v is the deviation from a constant
-/// period.
+/// StampLine contains prefix sums over a series of stamps: n, i, v, i i, i v, where v is the deviation of stamp i from
+/// a constant period.
 class StampLine {
  public:
   explicit StampLine(std::span<const std::int64_t> piece) : piece_(piece) {
@@ -32,8 +32,8 @@ class StampLine {
     }
   }
 
-  /// Fits a line to the stamps `first` to `end` - 1, and evaluates it at index k, relative to the first stamp of the
-  /// series.
+  /// Fits a line to the stamps `first` to `end` - 1. Returns the value of the line at index k, relative to the first
+  /// stamp of the series.
   double at_ns(std::size_t first, std::size_t end, std::size_t k) const {
     std::array<double, 4> sum{};
     for (std::size_t s = 0; s < sum.size(); ++s) sum[s] = sums_[end][s] - sums_[first][s];
@@ -82,7 +82,7 @@ bool are_rounded(std::span<const std::int64_t> stamps_ns) {
   const auto least = static_cast<std::size_t>(kLeastShare * static_cast<double>(all)) + 1;
   for (std::size_t n = 1; n + 1 < counts.size(); ++n) {
     if (counts[n] < least || counts[n + 1] < least) continue;
-    // Longer steps count as gaps; a clock with more jitter would also have other step lengths.
+    // Longer steps are gaps. A clock with more jitter would also have other step lengths.
     return static_cast<double>(counts[n] + counts[n + 1]) >= (1.0 - kLeastShare) * static_cast<double>(all);
   }
   return false;

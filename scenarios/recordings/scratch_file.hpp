@@ -10,10 +10,10 @@
 #include <utility>
 #include <vector>
 
-/// The classes in scratch_file.hpp store data temporarily on disk if the data would exceed the memory.
+/// scratch_file.hpp stores data on disk that would exceed the memory.
 namespace tumble::scenarios {
 
-/// Returns the nearest existing folder of an output path, so that temporary data are on the same disk as the output.
+/// Returns the nearest existing parent folder of an output path: temporary data are then on the disk of the output.
 std::filesystem::path scratch_folder_of(const std::filesystem::path& output);
 
 /// ScratchFile is an unnamed temporary file that grows at its end and disappears with the object or the process. Throws
@@ -33,7 +33,7 @@ class ScratchFile {
 
   std::uint64_t bytes() const { return bytes_; }
   void append(std::span<const std::byte> bytes) { write(bytes_, bytes); }
-  /// Writes bytes at an offset within the file or at its end.
+  /// Writes bytes at an offset in the file or at its end.
   void write(std::uint64_t at, std::span<const std::byte> bytes);
   void read(std::uint64_t at, std::span<std::byte> bytes) const;
 
@@ -43,8 +43,8 @@ class ScratchFile {
   std::uint64_t bytes_ = 0;
 };
 
-/// ColumnFile is a column of a recording in a ScratchFile, which is read and written in parts. Without a folder, the
-/// column must remain empty.
+/// ColumnFile is a column of a recording in a ScratchFile, which is read and written in parts. A column without a
+/// folder must stay empty.
 template <class Row>
 class ColumnFile {
  public:
@@ -62,7 +62,7 @@ class ColumnFile {
     read(first, out);
     return out;
   }
-  /// Calls `take(first, rows)` for consecutive parts of `length` rows. The last part may be shorter.
+  /// Calls `take(first, rows)` for consecutive parts of `length` rows; the last part may be shorter.
   template <class Take>
   void for_segments(std::size_t length, Take&& take) const {
     std::vector<Row> rows;

@@ -12,7 +12,7 @@ namespace tumble::scenarios {
 /// ScratchFolder is a temporary folder that is removed with the object, even if a signal ends the program.
 class ScratchFolder {
  public:
-  /// Creates a temporary folder; its name contains the text `use`. Throws std::filesystem::filesystem_error if the
+  /// Creates a temporary folder whose name contains the text `use`. Throws std::filesystem::filesystem_error if the
   /// folder cannot be created.
   explicit ScratchFolder(const std::string& use);
   ~ScratchFolder();

@@ -42,11 +42,10 @@ struct StoredLidarTruth {
   ColumnFile<std::int32_t> surface_id;
 };
 
-/// StoredTruth is a sim::Truth whose rows are in scratch files. Each list of rows is a ColumnFile. The other members
-/// are those of sim::Truth.
+/// StoredTruth is a sim::Truth whose rows are in scratch files (ColumnFile).
 struct StoredTruth {
-  /// Returns the true body states from row `first` to row `last` - 1. The returned truth contains the mountings and
-  /// `p_BG_m`, but neither sensors nor contacts.
+  /// Returns the true body states of the rows `first` to `last` - 1, with the mountings and `p_BG_m`, but without
+  /// sensors and contacts.
   sim::Truth states(std::size_t first, std::size_t last) const;
   std::size_t size() const { return p_WB_m.size(); }
 
@@ -60,7 +59,7 @@ struct StoredTruth {
   std::vector<std::string> surfaces;
   std::vector<StoredImuTruth> imus;
   std::vector<StoredLidarTruth> lidars;
-  std::vector<sim::SeriesTruth> series;  ///< in memory: only few numbers per second
+  std::vector<sim::SeriesTruth> series;  ///< in memory: only a few numbers per second
 };
 
 }  // namespace tumble::scenarios

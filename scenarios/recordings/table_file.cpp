@@ -19,10 +19,10 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// kBlock is the block size of writing [bytes].
+/// Block size for writing [bytes].
 constexpr std::size_t kBlock = 1 << 16;
 
-/// Returns whether a character may separate numbers in a table with blanks, such as a TUM file.
+/// Returns true if a character can separate numbers in a table with blanks, such as a TUM file.
 bool is_separator(char c) {
   return c == '\t' || c == ',' || c == ';';
 }
@@ -33,18 +33,18 @@ std::vector<std::string> split(const std::string& line, char separator) {
   while (begin <= line.size()) {
     std::size_t end = line.find(separator, begin);
     if (end == std::string::npos) end = line.size();
-    // Several consecutive blanks act as one separator.
+    // Consecutive blanks are one separator.
     if (separator != ' ' || end > begin) cells.push_back(line.substr(begin, end - begin));
     begin = end + 1;
   }
   return cells;
 }
 
-/// kLineMax is the longest accepted line; a pose with covariance has less than a thousand bytes. The limit protects the
-/// memory from files without line ends and from endless devices.
+/// Longest accepted line; a pose with covariance has less than a thousand bytes. The limit protects the memory from
+/// files without line ends and endless devices.
 constexpr std::size_t kLineMax = 1 << 20;
 
-/// Reads a line of a file, like std::getline. Throws BadInput for a line longer than kLineMax.
+/// Reads a line of a file, like std::getline. Throws BadInput if the line is longer than kLineMax.
 bool read_line(std::istream& file, const std::filesystem::path& path, int number, std::string& line) {
   line.clear();
   auto& bytes = *file.rdbuf();
@@ -153,7 +153,7 @@ std::int64_t Table::integer(const Row& row, std::size_t column) const {
 }
 
 std::int64_t Table::time_ns(const Row& row, std::size_t column) const {
-  // Seconds since 1970 with nine decimals exceed the precision of a double.
+  // A double cannot represent seconds since 1970 with nine decimals.
   const std::optional<std::int64_t> time_ns = parse_time_ns(row.cells[column], 9);
   if (!time_ns) fail(row, column, "a time in seconds");
   return *time_ns;

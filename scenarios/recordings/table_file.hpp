@@ -12,12 +12,11 @@
 namespace tumble::scenarios {
 
 /// TableWriter writes a text file of numbers, one row per line: TUM (blanks, no header) or CSV (commas, one header
-/// line). Doubles are restored exactly when read. Time stamps are written as integers, or as seconds with nine
-/// decimals.
+/// line). Reading restores doubles exactly. Time stamps are integers, or seconds with nine decimals.
 class TableWriter {
  public:
-  /// Opens a table file; an empty `header` is not written. Throws BadInput if the file cannot be opened. The function
-  /// `close` replaces an existing file with the table. A table that is not closed is discarded.
+  /// Opens a table file; an empty `header` is not written. Throws BadInput if the file cannot be opened. `close`
+  /// replaces an existing file by the table; without `close`, the table is discarded.
   TableWriter(const std::filesystem::path& path, char separator, const std::string& header);
   void integer(std::int64_t value);
   void number(double value);
@@ -30,14 +29,14 @@ class TableWriter {
   void cell(const std::string& text);
   void flush();
   OutputFile file_;
-  std::string text_;  ///< not yet written
+  std::string text_;  ///< text that is not yet written
   char separator_;
   bool row_empty_ = true;
 };
 
-/// Table contains rows of text cells. Every row has the expected number of cells. Empty lines and lines that start with
-/// '#' are skipped. If the separator is a blank, tabs, commas and semicolons also separate cells. Throws BadInput with
-/// path and line number for a wrong number of cells or an invalid value.
+/// Table contains rows of text cells, with equal numbers of cells. Empty lines and lines that start with '#' are
+/// skipped. If the separator is a blank, tabs, commas and semicolons also separate cells. Throws BadInput with path and
+/// line number for a wrong number of cells or an invalid value.
 struct Table {
   struct Row {
     int line;

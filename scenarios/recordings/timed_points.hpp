@@ -5,8 +5,7 @@
 
 namespace tumble::scenarios {
 
-/// Returns whether the points of a lidar have individually measured times. If point times are not measured, they are
-/// derived from the sweep.
+/// Returns true if the times of a lidar's points were measured; otherwise they are derived from the sweep.
 inline bool has_timed_points(const sim::LidarRecord& lidar) {
   return lidar.point_times == sim::PointTimes::measured;
 }

@@ -8,7 +8,7 @@
 #include "scenarios/recordings/recording_fields.hpp"
 #include "sim/recording.hpp"
 
-/// The header truth_fields.hpp lists all truth fields of a recording, for the visitors in recording_fields.hpp.
+/// truth_fields.hpp lists all truth fields of a recording, for the visitors in recording_fields.hpp.
 namespace tumble::scenarios {
 
 namespace hdf5 {
@@ -70,8 +70,8 @@ void series_truth_fields(Archive& archive, Series& series) {
   });
 }
 
-/// Calls the archive with all fields of the truth. The argument `contacts` contains the contacts of the truth as
-/// columns; truth.contacts is not visited.
+/// Calls the archive with all fields of the truth. `contacts` contains the contacts as columns; truth.contacts is not
+/// visited.
 template <class Archive, class Truth, class Contacts>
 void truth_fields(Archive& archive, Truth& truth, Contacts& contacts) {
   archive.value("period_ns", truth.period_ns);

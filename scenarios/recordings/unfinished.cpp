@@ -21,7 +21,7 @@ namespace {
 constexpr std::size_t kPathBytes = 4096;
 constexpr int kPlaces = 64, kDepthMax = 16;
 
-/// Entry is the path of an incomplete output, in static storage. The field `owner` is written last and cleared first.
+/// Entry is the path of an incomplete output. `owner` is written last and cleared first.
 struct Entry {
   std::atomic<bool> taken{false};
   std::atomic<pid_t> owner{0};
@@ -34,10 +34,10 @@ std::array<Entry, kPlaces> entries;
 static_assert(std::atomic<pid_t>::is_always_lock_free && std::atomic<bool>::is_always_lock_free,
               "a signal handler must not wait for a lock");
 
-std::atomic<int> waiting{0}, pending{0};  // number of SignalsWait objects, and the signal received meanwhile
+std::atomic<int> waiting{0}, pending{0};  // number of SignalsWait objects, and signal received during their lifetime
 
-/// Listed is a directory record of the system call getdents64, because readdir allocates memory, which a signal handler
-/// must not do.
+/// Listed is a directory record of the system call getdents64. A signal handler must not allocate memory, but readdir
+/// does.
 struct Listed {
   std::uint64_t inode;
   std::int64_t next;
@@ -87,7 +87,7 @@ extern "C" void remove_and_end(int number) {
     if (entry.owner.load() == getpid()) remove_entry(entry);
   }
   errno = error;
-  // The default effect of the signal occurs after this handler returns and the signal is unblocked.
+  // The signal has its default effect when this handler returns and the signal is unblocked.
   struct sigaction usual = {};
   usual.sa_handler = SIG_DFL;
   sigaction(number, &usual, nullptr);
@@ -98,7 +98,7 @@ extern "C" void remove_and_end(int number) {
 
 Unfinished::Unfinished(const std::filesystem::path& path, Kind kind) {
   std::error_code ignored;
-  // An absolute path is independent of later changes of the working folder.
+  // An absolute path stays valid if the working folder changes.
   const std::string absolute = std::filesystem::absolute(path, ignored).string();
   if (ignored || absolute.size() >= kPathBytes) return;
   for (int place = 0; place < kPlaces; ++place) {

@@ -3,12 +3,11 @@
 
 #include <cstdint>
 
-/// The header whole_seconds.hpp splits time stamps into whole seconds and nanoseconds.
+/// whole_seconds.hpp splits time stamps into whole seconds and nanoseconds.
 namespace tumble::scenarios {
 
 inline constexpr std::int64_t kSecond_ns = 1'000'000'000;
-/// kSecondsMax is the largest number of seconds in a time stamp. The time stamp in nanoseconds must fit in 64 bits (the
-/// year 2255).
+/// Largest number of seconds in a time stamp: in nanoseconds, it must fit in 64 bits (year 2255).
 inline constexpr std::int64_t kSecondsMax = 9'000'000'000;
 
 }  // namespace tumble::scenarios

@@ -7,17 +7,16 @@
 namespace tumble::scenarios {
 
 /// BinnedMetric is a metric over the samples whose quantity `axis` is in [low, high), for example
-/// "rate_error_median_rad_s@clip_depth_rad_s:1:2". The limit `high` may be infinite. Reports plot binned metrics as a
-/// curve over the quantity `axis`; tables omit binned metrics.
+/// "rate_error_median_rad_s@clip_depth_rad_s:1:2". `high` may be infinite. Reports plot binned metrics as a curve over
+/// the quantity; tables omit them.
 struct BinnedMetric {
   std::string base;  ///< "rate_error_median_rad_s"
-  std::string axis;  ///< "clip_depth_rad_s"; ends in its unit, as metrics do
+  std::string axis;  ///< "clip_depth_rad_s"; the name ends in the unit
   double low = 0.0, high = 0.0;
   std::string name() const;
 };
 
-/// Parses the name of a binned metric, such as "rate_error_median_rad_s@clip_depth_rad_s:1:2". Returns nothing if the
-/// text is no binned metric.
+/// Parses the name of a binned metric, such as "rate_error_median_rad_s@clip_depth_rad_s:1:2"; empty for another text.
 std::optional<BinnedMetric> parse_binned(const std::string& metric);
 
 }  // namespace tumble::scenarios

@@ -3,20 +3,20 @@
 
 #include <vector>
 
-/// The functions in consistency.hpp compare estimation errors with reported covariances. Each normalised error is a
-/// squared error divided by its reported variance, with one degree of freedom.
+/// consistency.hpp compares estimation errors with reported covariances. A normalised error is a squared scalar error
+/// divided by its reported variance.
 namespace tumble::scenarios {
 
-/// Returns the squared error divided by its reported variance. For a variance of 0, the result is infinite unless the
-/// error is 0. For a NaN error, the result is NaN.
+/// Returns the squared error divided by its reported variance. For the variance 0, returns 0 if the error is 0, and
+/// otherwise infinity. For a NaN error, returns NaN.
 double squared_over(double error, double variance);
 
-/// Computes the fraction of errors within three standard deviations from the normalised errors `squares`; NaN counts as
+/// Computes from the normalised errors `squares` the fraction of errors within three standard deviations. NaN counts as
 /// outside. Returns false if there are no errors.
 bool share_within_3sigma(const std::vector<double>& squares, double& value);
 
-/// Computes the median of the normalised errors `squares`, divided by the median for a normal variable. A mean would be
-/// dominated by the axis with the smallest variance. Returns false if there are no errors.
+/// Computes the median of the normalised errors `squares`, divided by the median for a normal variable. The axis with
+/// the smallest variance would dominate a mean. Returns false if there are no errors.
 bool normalised_median(const std::vector<double>& squares, double& value);
 
 }  // namespace tumble::scenarios

@@ -7,10 +7,10 @@
 
 namespace tumble::scenarios {
 
-/// Returns the description of the CPU time of an estimate. The results database stores the CPU time like a metric.
+/// Returns the description of an estimate's CPU time, which the results database stores like a metric.
 const MetricInfo& estimate_cost();
 
-/// Returns whether a score is a computing cost. Computing costs differ between identical runs.
+/// Returns true if a score is a computing cost. Computing costs differ between identical runs.
 bool is_cost(std::string_view name);
 
 }  // namespace tumble::scenarios

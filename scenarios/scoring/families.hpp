@@ -5,9 +5,8 @@
 
 #include "scenarios/scoring/score.hpp"
 
-/// The header families.hpp declares all groups of metrics. Each group of metrics has one source file. A new metric
-/// needs a function in the source file of its group and an entry in the list of that file. A new group of metrics is
-/// declared in families.hpp and added in score.cpp.
+/// families.hpp declares all groups of metrics. Each group has one source file, with one function and one list entry
+/// per metric. A new group needs a declaration here and a call in score.cpp.
 namespace tumble::scenarios {
 
 std::vector<Metric> rate_metrics();
@@ -21,14 +20,14 @@ std::vector<Metric> end_pose_metrics();
 std::vector<Metric> map_metrics();
 std::vector<Metric> sweep_border_metrics();
 std::vector<Metric> time_offset_metrics();  ///< for all kinds
-std::vector<Metric> health_metrics();       ///< for all kinds: how well the health detects wrong estimates
+std::vector<Metric> health_metrics();       ///< for all kinds: does the health detect wrong estimates?
 
-/// Returns quantities other than metrics: costs, motion values, or the quantities for binned metrics.
+/// Quantities other than metrics: costs, motion values, quantities for binned metrics.
 std::vector<MetricInfo> cost_quantities();
 std::vector<MetricInfo> motion_quantities();
 std::vector<MetricInfo> binned_rate_quantities();
 
-/// kNormal3Sigma is the probability that a normal variable is within three standard deviations.
+/// Probability that a normal variable is within three standard deviations.
 inline constexpr double kNormal3Sigma = 0.9973;
 
 /// Returns the root mean square of the values, or NaN for an empty list.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The metrics in health_scores.cpp measure whether an estimate is wrong, and whether its health reports the error.
+// The health metrics measure whether an estimate is wrong, and whether its health reports the error.
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
@@ -17,14 +17,13 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr double kWrongDeviations = 5.0;
-// An estimate is wrong, independent of its covariance, if more than half of the samples during motion have an error
-// above a limit. The limits are a rate error of kWrongRateShare times the true rate, and a tilt error of
-// kWrongTilt_rad.
+// Independent of its covariance, an estimate is wrong if more than half of the samples during motion exceed an error
+// limit. The limits are a rate error of kWrongRateShare times the true rate, and a tilt error of kWrongTilt_rad.
 constexpr double kWrongRateShare = 0.2, kWrongTilt_rad = 0.5;
-constexpr double kMoves_rad_s = 1.0;  // smallest true rate of a sample that counts
+constexpr double kMoves_rad_s = 1.0;  // samples with a smaller true rate do not count
 
-/// Errors contains the errors during motion, in standard deviations, and relative to a limit that is independent of the
-/// covariance.
+/// Errors contains the errors during motion: `deviations` in standard deviations; `gross` as relative rate error or
+/// tilt error.
 struct Errors {
   std::vector<double> deviations, gross;
 };
@@ -33,14 +32,14 @@ double deviations_of(const Eigen::VectorXd& error, const Eigen::MatrixXd& covari
   return std::sqrt(error.dot(covariance.ldlt().solve(error)));
 }
 
-/// Returns whether the quantile of the values exceeds the limit. NaN counts as the largest value.
+/// Returns true if the quantile of the values exceeds the limit. NaN counts as the largest value.
 bool quantile_exceeds(double limit, std::vector<double> values, double share) {
   for (double& value : values) value = std::isnan(value) ? HUGE_VAL : value;
   return quantile(values, share) > limit;
 }
 
-/// The function uses the covariances without the increase due to findings (suspected faults). With the increase, an
-/// error that the health reports would not count as wrong.
+/// Findings (suspected faults) increase the covariances. The increase is subtracted here, because with it a reported
+/// error would not count as wrong.
 Errors rate_errors(const ScoredEstimate& scored) {
   const std::vector<Eigen::Matrix3d>& suspect = scored.estimate().suspect_rad2_s2;
   const std::vector<PairedRate>& pairs = paired_rates(scored);
@@ -68,15 +67,14 @@ Errors attitude_errors(const ScoredEstimate& scored) {
   return out;
 }
 
-/// Returns whether a tenth of the errors exceed five standard deviations, or half of the errors exceed the limit that
-/// is independent of the covariance.
+/// Returns true if a tenth of the errors exceed five standard deviations, or half of the errors exceed `gross_limit`.
 bool are_wrong(const Errors& errors, double gross_limit) {
   return quantile_exceeds(kWrongDeviations, errors.deviations, 0.9) || quantile_exceeds(gross_limit, errors.gross, 0.5);
 }
 
-/// Returns whether the error of the last pose exceeds five standard deviations. The error is the normalised error of
-/// the pose if the metric `pose_nees` applies, and otherwise the position error. Returns an empty result for an
-/// estimate without covariances.
+/// Returns true if the error of the last pose exceeds five standard deviations. The error is that of the metric
+/// `pose_nees`, or the position error if this metric does not apply. Returns nothing for an estimate without
+/// covariances.
 std::optional<bool> pose_is_wrong(const ScoredEstimate& scored, Kind kind) {
   double nees = 0.0;
   for (const Metric& metric : metrics()) {

@@ -10,19 +10,19 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr float kToleranceM = 0.25f;     // Deschenes et al.: map points farther from the surface are outliers
-constexpr float kFineToleranceM = 0.1f;  // stricter tolerance for a sharp map
-constexpr double kOutliersMax = 0.15;    // Deschenes et al.: a larger share of outliers is a failed map
-constexpr double kCoverageMin = 0.5;     // a map of less than half of the seen surface is a failed map
+constexpr float kToleranceM = 0.25f;     // map points farther from the surface are outliers (Deschenes et al.)
+constexpr float kFineToleranceM = 0.1f;  // stricter tolerance, for the sharpness of the map
+constexpr double kOutliersMax = 0.15;    // a map with a larger fraction of outliers has failed (Deschenes et al.)
+constexpr double kCoverageMin = 0.5;     // a map that covers a smaller fraction of the seen surface has failed
 constexpr float kSurfaceCellM = 0.1f;    // each cell of the seen surface counts once
-constexpr float kErrorLimitM = 0.5f;     // the distance of outliers is limited to this
+constexpr float kErrorLimitM = 0.5f;     // larger distances of map points are limited to this value
 constexpr float kSamePointM = 1e-3f;     // points in one cell of this size are duplicates
-constexpr double kSeenRangeM = 100.0;    // hits farther from the start are not expected in maps
+constexpr double kSeenRangeM = 100.0;    // surface points farther from the start need not be in the map
 
 static_assert(kErrorLimitM > kToleranceM && kErrorLimitM > kFineToleranceM,
               "an error at the limit must exceed both tolerances");
 
-// Returns the map points in W, after alignment of position and yaw at the start.
+// Returns the map points in W. The estimate's position and yaw are aligned with the truth at the start.
 std::vector<Eigen::Vector3f> map_in_world(const ScoredEstimate& scored) {
   const Estimate& estimate = scored.estimate();
   const Eigen::Isometry3d to_world = paired_track(scored).alignment.transform();
@@ -34,8 +34,8 @@ std::vector<Eigen::Vector3f> map_in_world(const ScoredEstimate& scored) {
   return points;
 }
 
-// Returns the true points at which the rays of all sweeps hit the static world. Hits on the robot's cage are omitted,
-// because they have no surface id.
+// Returns the true points at which rays of all sweeps hit the static world. Hits on the robot's cage have no surface id
+// and are omitted.
 std::vector<Eigen::Vector3f> seen_surface(const sim::Truth& truth) {
   std::vector<Eigen::Vector3f> hits;
   const sim::LidarTruth& lidar = truth.lidars.front();
@@ -46,8 +46,7 @@ std::vector<Eigen::Vector3f> seen_surface(const sim::Truth& truth) {
   return one_per_cell(hits, kSurfaceCellM);
 }
 
-// Returns the distance of each finite map point to the true surface, limited to kErrorLimitM. The true surface must be
-// available.
+// Returns the distance of each finite map point from the true surface, limited to kErrorLimitM.
 std::vector<float> map_distances_m(const ScoredEstimate& scored) {
   std::vector<Eigen::Vector3f> finite;
   for (const Eigen::Vector3f& point : scored.once(map_in_world)) {
@@ -91,8 +90,7 @@ bool unique_share(const ScoredEstimate& scored, double& value) {
   return true;
 }
 
-// Returns the fraction of the surface seen by the lidar that the map covers. Returns nothing without a map or without
-// the true hits.
+// Returns the fraction of the surface seen by the lidar that the map covers; empty without a map or without true hits.
 std::optional<double> covered_share(const ScoredEstimate& scored) {
   if (scored.estimate().map.empty() || scored.truth().lidars.empty()) return std::nullopt;
   const std::vector<Eigen::Vector3f> surface = seen_surface(scored.truth());
@@ -109,8 +107,8 @@ bool map_coverage(const ScoredEstimate& scored, double& value) {
   return share.has_value();
 }
 
-// Computes the metric: 1 for a failed map, otherwise 0. A method without a map counts as failed. A trajectory without
-// sweeps comes from an external program without a map.
+// The metric is 1 for a failed map, and otherwise 0. A method without a map fails, except for a trajectory without
+// sweeps, which comes from an external program.
 bool failed(const ScoredEstimate& scored, double& value) {
   const Estimate& estimate = scored.estimate();
   if (scored.surface() == nullptr || (estimate.sweeps.empty() && estimate.map.empty())) return false;

@@ -31,7 +31,8 @@ std::vector<std::string> metrics_from(Kind kind, Place least) {
   return names;
 }
 
-/// Returns the distance of a value from a target value. Half of the target and twice the target have the same distance.
+/// Returns the distance from a target. If value and target are positive, half and twice the target have equal
+/// distances.
 double distance(double value, double target) {
   return value > 0.0 && target > 0.0 ? std::abs(std::log(value / target)) : std::abs(value - target);
 }

@@ -9,8 +9,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-// Computes the key of a cell with 21 bits per axis: +-1 million cells. Keys of cells farther away repeat; the distance
-// test then rejects wrong cells.
+// Computes the key of a cell with 21 bits per axis: +-1 million cells. Farther cells have repeated keys, which the
+// distance test then rejects.
 std::uint64_t key(std::int64_t x, std::int64_t y, std::int64_t z) {
   constexpr std::uint64_t kMask = (1u << 21) - 1;
   return ((static_cast<std::uint64_t>(x) & kMask) << 42) | ((static_cast<std::uint64_t>(y) & kMask) << 21) |
@@ -66,7 +66,7 @@ bool Nearness::has_neighbour(const Eigen::Vector3f& point_m) const {
 std::vector<Eigen::Vector3f> one_per_cell(std::span<const Eigen::Vector3f> points_m, float cell_m) {
   SpatialHash taken;
   std::vector<Eigen::Vector3f> kept;
-  std::optional<std::uint64_t> last;  // neighbours in a sweep often share a cell
+  std::optional<std::uint64_t> last;  // neighbouring points of a sweep often share a cell
   for (const Eigen::Vector3f& point : points_m) {
     if (!point.allFinite()) continue;
     const std::uint64_t cell = key_of(point, cell_m);

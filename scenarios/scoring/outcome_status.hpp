@@ -8,9 +8,8 @@
 namespace tumble::scenarios {
 
 /// OutcomeStatus describes how a method's run on a recording ended. The method causes `ok`, `diverged` (score.hpp,
-/// `verdict`), `failed` (the method returned an error), `crashed` and `timeout`. The machine causes `killed`: a signal
-/// from outside, no memory, or no process. The status `rejected` means that the scenario cannot be simulated with this
-/// seed.
+/// `verdict`), `failed` (it returned an error), `crashed` and `timeout`. The machine causes `killed`: a signal from
+/// outside, no memory, or no process. `rejected` means that the scenario cannot be simulated with this seed.
 enum class OutcomeStatus { ok, diverged, failed, crashed, timeout, killed, rejected };
 
 std::span<const OutcomeStatus> outcome_statuses();

@@ -10,9 +10,9 @@ namespace tumble::scenarios {
 
 namespace {
 
-// kPathMinM is the shortest path for which a relative error is computed.
+// Shortest path for which a relative error is computed.
 constexpr double kPathMinM = 0.05;
-constexpr double kUnmovedM = 0.02;  // errors before this motion are not scored
+constexpr double kUnmovedM = 0.02;  // errors before the first motion of this size are not scored
 
 bool end_error(const ScoredEstimate& scored, double& value) {
   const std::vector<PairedPose>& poses = paired_track(scored).poses;
@@ -21,9 +21,8 @@ bool end_error(const ScoredEstimate& scored, double& value) {
   return true;
 }
 
-/// Divides the end error by the path length of the body's centre: the centre of a sphere, otherwise the centre of mass.
-/// A sensor that turns around the centre has a longer path. Relative errors in different frames are therefore not
-/// comparable.
+/// Divides the end error by the path length of the body's centre: the centre of a sphere, or else the centre of mass. A
+/// sensor that turns around the centre has a longer path, so relative errors in different frames are not comparable.
 bool end_error_share(const ScoredEstimate& scored, double& value) {
   const std::vector<PairedPose>& poses = paired_track(scored).poses;
   if (poses.empty()) return false;
@@ -40,7 +39,7 @@ bool height_error_max(const ScoredEstimate& scored, double& value) {
   value = 0.0;
   for (const PairedPose& pose : poses) {
     const double error = std::abs(pose.estimate.p_WA_m.z() - pose.truth.p_WA_m.z());
-    // Unlike std::max, this comparison propagates NaN.
+    // Unlike std::max, the negated comparison propagates NaN.
     if (!(error <= value)) value = error;
     if (std::isnan(value)) break;
   }
@@ -67,8 +66,8 @@ bool rest_drift(const ScoredEstimate& scored, double& value) {
   return any;
 }
 
-/// Returns squared position errors divided by their reported variances, from the start of the motion on. The errors are
-/// in the axes of the covariance, which are the axes of the estimate's world.
+/// Returns squared position errors divided by their reported variances, from the start of the motion. The errors are in
+/// the axes of the covariance: those of the estimate's world.
 std::vector<double> normalised_position_errors(const ScoredEstimate& scored) {
   const Estimate& estimate = scored.estimate();
   const PairedTrack& track = paired_track(scored);

@@ -4,7 +4,7 @@
 #include "scenarios/scoring/cost.hpp"
 #include "scenarios/scoring/families.hpp"
 
-/// The file quantities.cpp describes quantities that are stored and displayed like metrics.
+/// The quantities in quantities.cpp are stored and displayed like metrics.
 namespace tumble::scenarios {
 
 std::vector<MetricInfo> cost_quantities() {

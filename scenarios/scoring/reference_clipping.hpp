@@ -7,13 +7,13 @@
 #include <span>
 #include <vector>
 
-/// The functions in reference_clipping.hpp detect the clipped readings of a real gyro with a reference of the rate. The
-/// detection is independent of the detection in the estimator.
+/// reference_clipping.hpp detects the clipped readings of a real gyro by a reference of the rate, independently of the
+/// estimator.
 namespace tumble::scenarios {
 
 /// ReferenceRail is the saturation limit of axis j with sign s, a tilted plane of readings: s y_j = rail + slopes *
 /// (the other two axes, in order). The plane is tilted because sensing elements saturate along their own, slightly
-/// non-orthogonal axes before the calibration of the device.
+/// non-orthogonal axes, before the device calibrates its readings.
 struct ReferenceRail {
   bool found = false;
   double rail_rad_s = 0.0;
@@ -22,17 +22,17 @@ struct ReferenceRail {
 
 /// Estimates the saturation planes of the three axes for both signs.
 ///
-/// A candidate is a sample within 5 % of the extreme reading of the axis and sign, with a known reference rate. The
+/// A candidate is a sample with a known reference rate, within 5 % of the extreme reading of the axis and sign. A
 /// candidate is confirmed if the reference exceeds the reading by more than 2 %. The difference must also exceed four
 /// times the median difference between reading and reference on this axis. A saturation limit exists if at least five
 /// candidates, and at least half of the candidates, are confirmed.
 ///
-/// The saturation plane is the least-squares fit to the confirmed samples, with a prior of 0 +- 0.03 for the cross-axis
+/// The plane is the least-squares fit to the confirmed samples, with a prior of 0 +- 0.03 for the cross-axis
 /// sensitivities and a residual deviation of 0.02 rad/s. A second fit uses only samples within 2 % of the first plane.
-/// Axis j of a sample is clipped if reading and reference both reach 0.98 of the saturation plane. If the reference is
-/// NaN, no axis of the sample counts as clipped.
+/// Axis j of a sample is clipped if reading and reference both reach 0.98 of the plane. If the reference is NaN, no
+/// axis of the sample counts as clipped.
 ///
-/// The lists `reading` and `reference` are parallel, in IMU axes [rad/s]. The cost is O(N).
+/// `reading` and `reference` are parallel, in IMU axes [rad/s]. The cost is O(N).
 std::array<ReferenceRail, 6> reference_rails(std::span<const Eigen::Vector3d> reading,
                                              std::span<const Eigen::Vector3d> reference);
 

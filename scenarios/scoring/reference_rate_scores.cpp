@@ -12,15 +12,15 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// A sample is certainly unclipped if every axis is below the fraction kFarShare of its extreme reading. The body
-/// counts as rotating if the rate exceeds kRotating_rad_s.
+/// A sample is certainly unclipped if every axis is below kFarShare times its extreme reading. The body rotates if the
+/// rate exceeds kRotating_rad_s.
 constexpr double kFarShare = 0.9, kRotating_rad_s = 0.5;
 
 double error_norm(const Eigen::Vector3d& estimate, const Eigen::Vector3d& reference) {
   return (estimate - reference).norm();
 }
 
-/// Returns the error of the rate's norm, which is independent of the axes.
+/// Returns the error of the norm of the rate, which does not depend on the axes.
 double error_speed(const Eigen::Vector3d& estimate, const Eigen::Vector3d& reference) {
   return std::abs(estimate.norm() - reference.norm());
 }
@@ -32,8 +32,8 @@ double error_axis(const Eigen::Vector3d& estimate, const Eigen::Vector3d& refere
 
 using ErrorOf = double (*)(const Eigen::Vector3d&, const Eigen::Vector3d&);
 
-/// Computes a percentile of the estimate's rate error at clipped samples. The metric of a single axis uses only samples
-/// in which this axis is clipped.
+/// Computes a percentile of the rate error at clipped samples. The metric of a single axis uses the samples in which
+/// this axis is clipped.
 template <ErrorOf kError, int kPercent, unsigned kAxes>
 bool clipped_error(const ScoredEstimate& scored, double& value) {
   if (!clipping_truth(scored).is_reference()) return false;
@@ -45,7 +45,7 @@ bool clipped_error(const ScoredEstimate& scored, double& value) {
   return quantile_of(errors, 0.01 * kPercent, value);
 }
 
-/// Computes a percentile of the difference between reference and gyro, at samples without clipping during rotation.
+/// Computes a percentile of the difference between reference and gyro, at unclipped samples during rotation.
 template <ErrorOf kError, int kPercent>
 bool reference_error(const ScoredEstimate& scored, double& value) {
   const ClippingTruth& truth = clipping_truth(scored);
@@ -62,9 +62,8 @@ bool reference_error(const ScoredEstimate& scored, double& value) {
   return quantile_of(errors, 0.01 * kPercent, value);
 }
 
-/// Returns the variance of the reference rate for each axis. The variance follows from the interquartile range of the
-/// difference between reference and unclipped gyro. The difference between reference and gyro is assumed to be normally
-/// distributed.
+/// Returns the variance of the reference rate per axis. The standard deviation is 1.4826 times the median absolute
+/// difference between reference and unclipped gyro, which is assumed to be normally distributed.
 Eigen::Vector3d reference_variance(const ScoredEstimate& scored, const ClippingTruth& truth) {
   const auto& reading = scored.sensors().imus.front().gyro_rad_s;
   Eigen::Vector3d variance = Eigen::Vector3d::Zero();
@@ -80,8 +79,7 @@ Eigen::Vector3d reference_variance(const ScoredEstimate& scored, const ClippingT
   return variance;
 }
 
-/// Computes the coverage with the error of the reference added to the covariance, unlike rate_coverage_3sigma. Rates
-/// without a covariance are left out.
+/// Computes the coverage like rate_coverage_3sigma, but adds the variance of the reference to the covariance.
 bool reference_coverage(const ScoredEstimate& scored, double& value) {
   const ClippingTruth& truth = clipping_truth(scored);
   if (!truth.is_reference()) return false;
@@ -108,7 +106,7 @@ bool called_measured(const ScoredEstimate& scored, double& value) {
     for (unsigned j = 0; j < 3; ++j) {
       if ((pair.clipped_axes() & (1u << j)) == 0) continue;
       axes += 1.0;
-      // A method may mark a whole sample as suspect without detecting a clipped axis.
+      // A method may mark a whole sample as suspect although it detects no clipped axis.
       const bool doubted = rate.clipped_axes == 0 && rate.source != RateSource::measured;
       missed += (rate.clipped_axes & (1u << j)) == 0 && !doubted ? 1.0 : 0.0;
     }
@@ -142,7 +140,7 @@ void add_pair(const std::string& name, const std::string& doc, std::vector<Metri
                  clipped_error<kError, 90, kAxes>});
 }
 
-/// Metrics about the reference describe the reference and no method, so they are not ranked.
+/// Metrics that describe the reference and not the method are not ranked.
 template <ErrorOf kError>
 void add_reference(const std::string& name, const std::string& doc, std::vector<Metric>& all) {
   all.push_back({{"rate_" + name + "_median_rad_s", Unit::rad_s, "median " + doc, Sense::none},

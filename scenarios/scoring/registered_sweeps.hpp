@@ -8,8 +8,8 @@
 
 namespace tumble::scenarios {
 
-/// kStartSweep is the number of the registered sweep, counted from 1, at which the end error starts (Deschenes et al.).
-/// The count includes the first sweep, which starts the map.
+/// The end error starts at this registered sweep, counted from 1 (Deschenes et al.). The first sweep, which starts the
+/// map, counts.
 inline constexpr std::size_t kStartSweep = 6;
 
 /// Returns the indices of the sweeps that were not rejected.

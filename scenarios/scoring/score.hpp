@@ -12,45 +12,43 @@
 
 namespace tumble::scenarios {
 
-/// Score is the value of one metric for one outcome; the metric's name ends in its unit (docs/design.md, "Methods and
+/// Score is the value of one metric for one outcome. The metric's name ends in its unit (docs/design.md, "Methods and
 /// scores").
 struct Score {
   std::string metric;
   double value;
 };
 
-/// Returns the score of the metric with this name, or null.
+/// Returns the score of `metric`, or null.
 const Score* find_score(std::span<const Score> scores, const std::string& metric);
-/// Returns the value of the metric with this name, or NaN.
+/// Returns the value of `metric`, or NaN.
 double value_of(std::span<const Score> scores, const std::string& metric);
 
-/// Metric is a registered metric: its description and the function that computes it. Each metric has one line in the
-/// source file of its group.
+/// Metric is a registered metric: its description, and the function that computes it.
 struct Metric {
   MetricInfo info;
   Kind kind;
-  /// Computes `value`; returns false if there is nothing to score, for example no clipped sample or no map.
+  /// Computes `value`. Returns false if the metric does not apply, for example without a clipped sample or a map.
   bool (*compute)(const ScoredEstimate& scored, double& value);
 };
 
 std::span<const Metric> metrics();
 
-/// Computes the scores of all metrics that apply to a kind of method, in order of registration. For efficiency, a
-/// caller should pass the same ScoredEstimate to `score` and `verdict`.
+/// Computes the scores of all metrics that apply to a kind of method, in order of registration. The same ScoredEstimate
+/// for `score` and `verdict` saves time.
 std::vector<Score> score(Kind kind, const ScoredEstimate& scored);
 std::vector<Score> score(Kind kind, const Estimate& estimate, const ScoringInput& input);
 
-/// Returns whether an estimate is usable: `ok` or `diverged`. An estimate counts as `diverged` in any of the following
-/// cases.
+/// Returns `ok` for a usable estimate, and `diverged` in each of these cases:
 /// - The estimate is not finite.
 /// - The estimate has a gap longer than a fifth of the recording, or rates for less than nine tenths of the samples.
 /// - The end error exceeds the path length (or 1 m for shorter paths).
-/// - The estimate reports sweeps but registered fewer than six sweeps.
+/// - The estimate reports sweeps, but fewer than six sweeps are registered.
 OutcomeStatus verdict(Kind kind, const ScoredEstimate& scored);
 OutcomeStatus verdict(Kind kind, const Estimate& estimate, const ScoringInput& input);
 
-/// Returns whether a trajectory is finite and its end error is below the length of its path. Unlike `verdict`, this
-/// function does not test for gaps.
+/// Returns true if a trajectory is finite and its end error is below its path length. Unlike `verdict`, gaps are not
+/// tested.
 bool trajectory_holds(const ScoredEstimate& scored);
 
 }  // namespace tumble::scenarios

@@ -10,16 +10,15 @@
 
 namespace tumble::scenarios {
 
-/// ScoringInput contains the parts of a recording that scoring needs. The pointer `surface` may be null; map scores are
-/// then omitted.
+/// ScoringInput contains the parts of a recording that scoring needs. If `surface` is null, map scores are omitted.
 struct ScoringInput {
   const sim::Sensors* sensors = nullptr;
   const sim::Truth* truth = nullptr;
   const sim::Surface* surface = nullptr;
 };
 
-/// ScoredEstimate contains an estimate and its recording, with a cache of results that several metrics share, such as
-/// paired poses and map distances. ScoredEstimate stores references to its inputs. ScoredEstimate is not thread-safe.
+/// ScoredEstimate refers to an estimate and its recording, and caches results that several metrics share, such as
+/// paired poses and map distances. ScoredEstimate is not thread-safe.
 class ScoredEstimate {
  public:
   /// Throws BadInput if the sensors or the truth are missing.
@@ -30,8 +29,8 @@ class ScoredEstimate {
   const sim::Truth& truth() const { return *input_.truth; }
   const sim::Surface* surface() const { return input_.surface; }
 
-  /// Computes `make(*this)` at the first call, and returns the cached result at later calls. The function `make` must
-  /// depend only on this ScoredEstimate and may call once(). If `make` throws, nothing is cached.
+  /// Returns `make(*this)`, which is computed at the first call and then cached. `make` must depend only on this
+  /// ScoredEstimate and may call once(). If `make` throws, nothing is cached.
   template <typename Made>
   const Made& once(Made (*make)(const ScoredEstimate&)) const {
     const auto key = reinterpret_cast<void (*)()>(make);  // used as a key, never called
@@ -43,7 +42,7 @@ class ScoredEstimate {
  private:
   const Estimate* estimate_;
   ScoringInput input_;
-  mutable std::map<void (*)(), std::shared_ptr<const void>> made_;  ///< keyed by the function that computes the value
+  mutable std::map<void (*)(), std::shared_ptr<const void>> made_;  ///< by the function that computes the value
 };
 
 }  // namespace tumble::scenarios

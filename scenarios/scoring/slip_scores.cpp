@@ -10,21 +10,20 @@
 #include "scenarios/scoring/beside_truth.hpp"
 #include "scenarios/scoring/families.hpp"
 
-/// The metrics in slip_scores.cpp compare the slip and slide events that a position method detects with the true
-/// events.
+/// The slip metrics compare the slip and slide events that a position method detects with the true events.
 ///
-/// A slip event is a time interval with the contact labels slip and slide. The interval may contain up to kBridge_ns of
-/// grip, and up to kHop_ns of air in total, because an unbalanced spinning sphere hops. A true slip event is scored if
-/// it lasts at least kShortest_ns and the contact speed reaches kLeastSpeed_m_s. Shorter or slower true events are
-/// indistinguishable from grip and cause no position error. The scores do not distinguish slip and slide.
+/// A slip event is a time interval with the contact labels slip and slide. A slip event may contain up to kBridge_ns of
+/// grip, and up to kHop_ns of air in total, because an unbalanced spinning sphere hops. A true event is scored if it
+/// lasts at least kShortest_ns and the contact speed reaches kLeastSpeed_m_s. Other true events cannot be distinguished
+/// from grip and cause no position error. The scores do not distinguish slip and slide.
 ///
-/// An estimated slip event is correct if true events cover at least half of it. To test whether an estimated event is
-/// correct, the scores also use weak and short true events, and widen each true event by kMargin_ns. A true slip event
-/// is detected if correct estimated events cover at least half of it.
+/// An estimated event is correct if true events cover at least half of it. For this test, weak and short true events
+/// also count, and each true event is widened by kMargin_ns. A true event is detected if correct estimated events cover
+/// at least half of it.
 ///
-/// The position is lost in a true slip event if the horizontal error grows by more than kLost_m during the event. The
-/// estimate reports the loss if its horizontal standard deviation grows by more than kFlagged_m. To test for the loss
-/// and its report, the event is widened by kMargin_ns on either side.
+/// The position is lost in a true event if the horizontal error grows by more than kLost_m during the event. The
+/// estimate reports the loss if its horizontal standard deviation grows by more than kFlagged_m. For both tests, the
+/// event is widened by kMargin_ns on either side.
 namespace tumble::scenarios {
 
 namespace {
@@ -45,7 +44,7 @@ bool moves(sim::ContactLabel label) {
   return label == sim::ContactLabel::slip || label == sim::ContactLabel::slide;
 }
 
-/// Events joins time intervals with slip or slide to slip events. The contact labels must be in time order.
+/// Events joins intervals of slip or slide to slip events. The contact labels must be in order of time.
 class Events {
  public:
   void add(sim::ContactLabel label, std::int64_t begin_ns, std::int64_t end_ns) {
@@ -60,7 +59,7 @@ class Events {
 
  private:
   std::vector<SlipSpan> spans_;
-  std::int64_t gripped_ns_ = 0;  ///< grip since the last interval
+  std::int64_t gripped_ns_ = 0;  ///< grip since the last interval of slip or slide
 };
 
 std::vector<SlipSpan> true_spans(const sim::Truth& truth) {
@@ -86,8 +85,7 @@ bool counts(const SlipSpan& span, const sim::Truth& truth) {
   return false;
 }
 
-/// Returns the time intervals in which the estimate detects slip. A contact label applies from its time to the time of
-/// the next label.
+/// Returns the intervals in which the estimate detects slip. A contact label applies until the time of the next label.
 std::vector<SlipSpan> claimed_spans(const Estimate& estimate) {
   if (estimate.contacts.size() != estimate.poses.size()) {
     throw BadInput(fmt::format("the estimate has {} contacts for {} poses; their numbers must be equal",
@@ -118,14 +116,14 @@ bool half_covered(const SlipSpan& span, const std::vector<SlipSpan>& by, std::in
 }
 
 struct MatchedEvents {
-  std::vector<SlipSpan> events;  ///< true events that count
+  std::vector<SlipSpan> events;  ///< scored true events
   std::vector<SlipSpan> claimed;
   std::vector<SlipSpan> right;  ///< correct estimated events
 };
 
 std::optional<MatchedEvents> match_events(const ScoredEstimate& scored) {
   const sim::Truth& truth = scored.truth();
-  // The truth of a reference instrument contains only poses, without contact labels.
+  // A reference instrument measures poses, but no contact labels.
   if (scored.estimate().contacts.empty() || truth.label.empty()) return std::nullopt;
   const std::vector<SlipSpan> all = true_spans(truth);
   MatchedEvents out;
@@ -172,17 +170,16 @@ bool delay(const ScoredEstimate& scored, double& value) {
   return true;
 }
 
-/// Passed states for one true slip event whether the position was lost and whether the estimate reported the loss.
+/// Passed states for one true slip event: was the position lost, and did the estimate report the loss?
 struct Passed {
   bool lost = false, flagged = false;
 };
 
-/// Returns the scored true slip events during which the estimate has poses. Returns no event if the estimate has no
-/// covariance.
+/// Returns the scored true slip events during which the estimate has poses; none if it has no covariance.
 std::vector<Passed> passed_events(const ScoredEstimate& scored) {
   const sim::Truth& truth = scored.truth();
   std::vector<Passed> out;
-  if (truth.label.empty()) return out;  // a reference has poses only
+  if (truth.label.empty()) return out;  // a reference has no contact labels
   const std::vector<PairedPose>& poses = paired_track(scored).poses;
   const auto pose_at = [&](std::int64_t time_ns) {
     return std::lower_bound(poses.begin(), poses.end(), time_ns,

@@ -9,11 +9,11 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// OffsetFit fits a time offset by least squares to `behind = offset * change`. The vector `behind` is the error of the
-/// estimate, and `change` is the rate of change of the truth.
+/// OffsetFit fits a time offset by least squares to `behind = offset * change`: `behind` is the error of the estimate,
+/// and `change` is the rate of change of the truth.
 class OffsetFit {
  public:
-  /// Adds a pair of values to the fit, unless a value is unknown.
+  /// Adds a pair of values to the fit if both are known.
   void add(const Eigen::Vector3d& behind, const Eigen::Vector3d& change_per_s) {
     if (!change_per_s.allFinite()) return;
     product_ += change_per_s.dot(behind);
@@ -31,8 +31,7 @@ class OffsetFit {
   double product_ = 0.0, square_ = 0.0;
 };
 
-// Computes the time offset from unclipped samples only. At unclipped samples the gyro measures the rate, so the
-// remaining error is a time offset.
+// At unclipped samples, the gyro measures the rate, so the error of the estimate is a time offset.
 bool rate_offset(const ScoredEstimate& scored, double& value) {
   const ClippingTruth& truth = clipping_truth(scored);
   const std::int64_t period_ns = scored.sensors().imus.front().period_ns;
@@ -48,7 +47,7 @@ bool rate_offset(const ScoredEstimate& scored, double& value) {
   return fit.offset_s(value);
 }
 
-/// Returns the rotation vector from the estimated to the true attitude, in axes of the estimate's frame.
+/// Returns the rotation vector from the estimated to the true attitude, in the estimated axes.
 Eigen::Vector3d lacking_rad(const Eigen::Quaterniond& q_estimate, const Eigen::Quaterniond& q_true) {
   return so3::log(q_estimate.conjugate() * q_true);
 }

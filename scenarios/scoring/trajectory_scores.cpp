@@ -9,8 +9,8 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr double kSegmentM = 1.0;
-// kSegmentStepM is the path length between the starts of two segments. With equal steps along the path, poses at rest
-// do not count many times.
+// Path length between the starts of two segments. Steps along the path do not count the poses of a stationary robot
+// many times.
 constexpr double kSegmentStepM = 0.05;
 
 bool ate(const ScoredEstimate& scored, double& value) {

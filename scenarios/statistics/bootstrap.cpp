@@ -20,9 +20,9 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr std::size_t kValuesMin = 6;  // a 95 % interval of the median needs six values: 2 / 2^5 > 5 %
+constexpr std::size_t kValuesMin = 6;  // smallest number of values for a 95 % interval of the median: 2 / 2^5 > 5 %
 
-// Double precision is sufficient for the ranks, and three times as fast as long double.
+// Double precision suffices for ranks, and is three times as fast as long double.
 using Quick = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
 
 double middle_of(double below, double above) {
@@ -36,12 +36,12 @@ double sorted_median(std::span<const double> sorted) {
 }
 
 /// Computes the acceleration of the BCa interval by the jackknife, equation (S3) of statistics.md. For an even number
-/// of values, the acceleration is zero, because removing one value leaves two possible medians equally often.
+/// of values it is zero: removing one value gives each of two medians equally often.
 double acceleration(std::span<const double> sorted) {
   const std::size_t n = sorted.size(), m = n / 2;
   if (n % 2 == 0) return 0.0;
-  // The list contains the medians after one value is removed, each with its count. The removed value is above the
-  // median, below the median, or the median itself.
+  // Medians after removing one value, each with its count. The removed value is above the median, below it, or the
+  // median.
   const std::array<std::pair<double, double>, 3> left = {{{middle_of(sorted[m - 1], sorted[m]), static_cast<double>(m)},
                                                           {middle_of(sorted[m], sorted[m + 1]), static_cast<double>(m)},
                                                           {middle_of(sorted[m - 1], sorted[m + 1]), 1.0}}};
@@ -61,8 +61,8 @@ double acceleration(std::span<const double> sorted) {
 MedianBootstrap::MedianBootstrap(std::size_t size, std::size_t resamples) : size_(size) {
   if (size == 0) throw BadInput("bootstrap: there are no values; at least one value is needed");
   if (resamples < 100) throw BadInput(fmt::format("bootstrap: resamples is {}; it must be at least 100", resamples));
-  // Equation (S1) of statistics.md gives the lower middle of n uniform random numbers. Equation (S1) also gives the
-  // next larger number, given the lower middle.
+  // Equation (S1) of statistics.md gives the lower middle value of n uniform random numbers, and then the next larger
+  // value.
   sim::Stream stream(size, "statistics.bootstrap");
   const auto n = static_cast<double>(size);
   const std::size_t rank = (size + 1) / 2;

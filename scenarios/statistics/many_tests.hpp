@@ -6,10 +6,10 @@
 
 namespace tumble::scenarios {
 
-/// Corrects p-values for multiple tests, in the order of `chances` (Holm, Scandinavian Journal of Statistics 6:65,
-/// 1979; equation (S8) of statistics.md). If all hypotheses with a corrected p-value below a risk are rejected, the
-/// probability of any false rejection is at most this risk. The bound on false rejections holds for any dependence
-/// between the tests. NaN means that there is no test; NaN is not counted and is returned unchanged.
+/// Corrects the p-values `chances` for multiple tests, in their order (Holm, Scandinavian Journal of Statistics 6:65,
+/// 1979; equation (S8) of statistics.md). Rejecting all hypotheses with a corrected p-value below a risk gives a
+/// probability of at most this risk for any false rejection. The bound holds for any dependence between the tests. A
+/// NaN means that there is no test; it is returned unchanged and not counted.
 std::vector<double> holm(std::span<const double> chances);
 
 }  // namespace tumble::scenarios

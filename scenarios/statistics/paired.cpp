@@ -16,12 +16,12 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// SignedRanks contains the ranks of the non-zero differences, sorted by absolute value. All ranks are doubled, because
+/// SignedRanks contains the ranks of the non-zero differences, sorted by absolute value. Ranks are doubled, because
 /// twice the mean of several ranks is an integer.
 struct SignedRanks {
   std::vector<std::size_t> doubled;
   std::size_t total = 0, positive = 0;  ///< sums of the doubled ranks
-  double ties = 0.0;                    ///< sum of t^3 - t over the ties
+  double ties = 0.0;                    ///< sum of t^3 - t over groups of t equal values
 };
 
 SignedRanks signed_ranks(std::span<const double> differences) {
@@ -46,7 +46,7 @@ SignedRanks signed_ranks(std::span<const double> differences) {
   return out;
 }
 
-/// Returns the exact probability that the rank sum with random signs is at least `sum`.
+/// Returns the exact probability that the rank sum is at least `sum` if all signs are random.
 double exact_chance(const SignedRanks& ranks, std::size_t sum) {
   std::vector<double> chance(ranks.total + 1, 0.0);  // probability of each sum of the positive ranks
   chance[0] = 1.0;
@@ -62,8 +62,8 @@ double exact_chance(const SignedRanks& ranks, std::size_t sum) {
   return std::min(1.0, tail);
 }
 
-/// Returns the approximate probability that the rank sum is at least `sum`, by the normal distribution, equation (S6)
-/// of statistics.md.
+/// Returns the normal approximation of the probability that the rank sum is at least `sum`, equation (S6) of
+/// statistics.md.
 double normal_chance(const SignedRanks& ranks, std::size_t sum) {
   const auto n = static_cast<double>(ranks.doubled.size());
   const double middle = n * (n + 1.0) / 4.0;

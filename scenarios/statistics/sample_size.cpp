@@ -29,7 +29,7 @@ double normal_quantile(double share) {
   return quantile(boost::math::normal(), share);
 }
 
-/// Returns the smallest number of differences that can be significant if all have the same sign: 2 / 2^n <= risk.
+/// Returns the smallest number of differences that are significant if all have the same sign: 2 / 2^n <= risk.
 double fewest(double risk) {
   return std::ceil(1.0 - std::log2(risk));
 }
@@ -40,7 +40,7 @@ double positive_sums(std::vector<double> differences) {
   std::sort(differences.begin(), differences.end());
   double count = 0.0;
   for (auto i = differences.begin(); i != differences.end(); ++i) {
-    // Each difference is paired only with later differences, so that each pair counts once.
+    // Each difference is paired with later differences only, so each pair counts once.
     const auto [first, last] = std::equal_range(i + 1, differences.end(), -*i);
     count += static_cast<double>(differences.end() - last) + 0.5 * static_cast<double>(last - first);
   }

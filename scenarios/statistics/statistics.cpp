@@ -17,7 +17,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr double kTail = 0.025;  // each tail of a 95 % interval
+constexpr double kTail = 0.025;  // probability of each tail of a 95 % interval
 
 std::vector<double> numbers_of(std::span<const double> values) {
   std::vector<double> numbers;
@@ -25,7 +25,7 @@ std::vector<double> numbers_of(std::span<const double> values) {
   return numbers;
 }
 
-/// RankPlace is the position of a quantile in a sorted list: between two neighbouring values, or at one value.
+/// RankPlace is the position of a quantile in a sorted list: at one value, or between two neighbours.
 struct RankPlace {
   RankPlace(double share, std::size_t count) {
     const double place = share * static_cast<double>(count - 1);
@@ -34,7 +34,7 @@ struct RankPlace {
     part = place - static_cast<double>(below);
   }
   double between(double low, double high) const {
-    // An infinite value is returned without interpolation.
+    // No interpolation at an infinite value.
     return part == 0.0 || std::isinf(low) ? low : low + part * (high - low);
   }
   std::size_t below, above;
@@ -48,7 +48,7 @@ double quantile(std::span<const double> values, double share) {
     throw BadInput(fmt::format("quantile: share is {}; it must be within [0, 1]", std::to_string(share)));
   std::vector<double> numbers = numbers_of(values);
   if (numbers.empty()) return kNaN;
-  // The function sorts only two ranks, because reports compute quantiles of millions of values.
+  // A partial sort, because reports compute quantiles of millions of values.
   const RankPlace place(share, numbers.size());
   const auto below = numbers.begin() + static_cast<std::ptrdiff_t>(place.below);
   std::nth_element(numbers.begin(), below, numbers.end());
@@ -70,16 +70,15 @@ bool quantile_of(std::span<const double> values, double share, double& value) {
 
 namespace {
 
-/// Returns the largest rank r, counted from 1, for which P(fewer than r of n values are below the median) <= kTail.
-/// Returns 0 if no rank satisfies this condition.
+/// Returns the largest rank r, counted from 1, with P(fewer than r of n values are below the median) <= kTail, or 0 if
+/// there is none.
 std::size_t tail_rank(std::size_t values) {
   const auto n = static_cast<double>(values);
   const auto exponent = [&](std::size_t k) {
     const auto count = static_cast<double>(k);
     return std::lgamma(n + 1) - std::lgamma(count + 1) - std::lgamma(n - count + 1) - n * std::log(2.0);
   };
-  // The terms of the binomial sum increase up to n / 2. For large n, most of the terms underflow to 0 and can be
-  // skipped.
+  // The terms of the binomial sum increase up to n / 2. For large n, most terms underflow to 0 and are skipped.
   constexpr double kNothing = -750.0;
   std::size_t first = 0;
   for (std::size_t above = values / 2; first < above;) {
@@ -105,7 +104,7 @@ Interval median_interval(std::span<const double> values) {
   std::vector<double> numbers = numbers_of(values);
   Interval interval{kNaN, -kInfinity, kInfinity};
   if (numbers.empty()) return interval;
-  // The function sorts only four ranks, to avoid the cost of a full sort.
+  // A partial sort of four ranks is faster than a full sort.
   const RankPlace middle(0.5, numbers.size());
   const auto begin = numbers.begin(), below = begin + static_cast<std::ptrdiff_t>(middle.below);
   std::nth_element(begin, below, numbers.end());

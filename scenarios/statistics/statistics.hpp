@@ -13,14 +13,13 @@ struct Interval {
   double value, low, high;
 };
 
-/// Returns the sample quantile (Hyndman and Fan type 7) of the values that are not NaN, or NaN if all values are NaN.
-/// Infinite values are ranked like finite values, so that failures count as worst and a quantile may be infinite. The
-/// argument `share` is the probability of the quantile, in [0, 1].
+/// Returns the sample quantile (Hyndman and Fan type 7) of the values other than NaN; NaN if there are none. Infinite
+/// values rank like finite values, so that failures are worst; the quantile may be infinite. `share` is the probability
+/// of the quantile, in [0, 1].
 double quantile(std::span<const double> values, double share);
-/// Returns the quantile of all values; NaN if any value is not finite, or nothing if there are no values.
+/// Returns the quantile of all values. Returns NaN if a value is not finite, and nothing if there are no values.
 std::optional<double> quantile_of_all(std::span<const double> values, double share);
-/// Writes the quantile of the values to `value`. Without values, the function returns false and leaves `value`
-/// unchanged.
+/// Writes the quantile of the values to `value`. Returns false, with `value` unchanged, if there are no values.
 bool quantile_of(std::span<const double> values, double share, double& value);
 
 /// Returns the median of one member over all rows, as `quantile` computes it.
@@ -31,15 +30,15 @@ double median_of(const std::vector<Row>& rows, double Row::*member) {
   return quantile(values, 0.5);
 }
 
-/// Returns the median with its distribution-free confidence interval from order statistics (binomial). The ends of the
-/// interval are infinite if there are too few values.
+/// Returns the median with its distribution-free confidence interval from order statistics (binomial). With too few
+/// values, the ends of the interval are infinite.
 Interval median_interval(std::span<const double> values);
 
 /// Returns the fraction of successes with its exact confidence interval (Clopper and Pearson).
 Interval share_interval(std::int64_t count, std::int64_t total);
 
-/// Returns the values, with one value `worst` added for each failed run. All statistics of a metric use the extended
-/// list of values. If `worst` is NaN, nothing is added (scenarios/scoring/metric.hpp, `worst_value`).
+/// Returns the values, with `worst` appended once for each failed run. Statistics of a metric use this list. If `worst`
+/// is NaN, nothing is appended (scenarios/scoring/metric.hpp, `worst_value`).
 std::vector<double> with_failures(std::vector<double> values, std::size_t failed, double worst);
 
 }  // namespace tumble::scenarios

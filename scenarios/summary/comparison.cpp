@@ -42,8 +42,8 @@ void require_sound(const Summary& summary, const ComparisonOptions& options) {
   require_held(summary, methods, options.metrics);
 }
 
-/// Returns the pairs of values on all simulated runs on which each method has a value or failed. Failed runs are
-/// omitted if the metric has no worst value.
+/// Returns the pairs of values on the simulated runs on which each method has a value or failed. If `worst` is NaN,
+/// failed runs are omitted.
 std::vector<ValuePair> pairs_of(const MetricSummary& own, const MetricSummary& other, double worst) {
   const std::vector<RankedValue> first = ranked_values(own, worst), second = ranked_values(other, worst);
   std::vector<ValuePair> pairs;
@@ -60,7 +60,7 @@ double less(double own, double other) {
   return own == other ? 0.0 : own - other;
 }
 
-/// Returns for each pair how much worse the method is, minus the margin.
+/// Returns how much worse the method is than the reference on each pair, minus the margin.
 std::vector<double> beyond(const Margin& margin, const MetricInfo& info, const std::vector<ValuePair>& pairs) {
   std::vector<double> out;
   for (const ValuePair& pair : pairs) out.push_back(worse_by(info, pair.own, pair.other, margin));
@@ -132,14 +132,15 @@ class Comparing {
       for (double& each : relieved) each = -each;
       row.not_inferior_chance = signed_rank_chance(relieved);
     }
-    // The sign states whether the method tends to be worse, according to the signed-rank test.
+    // 1 if the method tends to be worse by the signed-rank test, -1 if it tends to be better, 0 if the metric is not
+    // ranked.
     tends_.push_back(!contested ? 0.0 : signed_rank_chance(worse_by) < 0.5 ? 1.0 : -1.0);
     differences_.push_back(std::move(contested ? worse_by : raw));
     out_.metrics.push_back(std::move(row));
   }
 
-  /// Compares the failures of two methods on their common simulated runs. The list `seeds` contains all seeds, and the
-  /// list `failed` contains the seeds of failed runs. Both lists are ascending.
+  /// Compares the failures of two methods on their common simulated runs. `seeds` contains all seeds and `failed` the
+  /// seeds of failed runs; both are ascending.
   void add_failures(const Contest& contest, const std::string& what, const std::vector<std::uint64_t>& seeds,
                     const std::vector<std::uint64_t>& failed, const std::vector<std::uint64_t>& other_seeds,
                     const std::vector<std::uint64_t>& other_failed) {
@@ -185,7 +186,7 @@ class Comparing {
     return found->second;
   }
 
-  /// Returns the risk and power for the sample size of one test in a table. The risk is divided by the number of tests
+  /// Returns risk and power for the sample size of one test in a table. The risk is divided by the number of tests
   /// (Holm's bound for the smallest p-value).
   Plan plan(std::size_t tests) const {
     return {options_.risk / static_cast<double>(std::max<std::size_t>(tests, 1)), options_.power};
@@ -222,8 +223,8 @@ class Comparing {
 
   const ComparisonOptions& options_;
   Comparison out_;
-  std::vector<std::vector<double>> differences_;  ///< one list per metric row
-  std::vector<double> tends_;                     ///< 1: tends to be worse, -1: better, 0: not ranked
+  std::vector<std::vector<double>> differences_;  ///< one list per row of the metric table
+  std::vector<double> tends_;                     ///< 1: method tends to be worse, -1: better, 0: metric not ranked
   std::map<std::size_t, MedianBootstrap> bootstraps_;
 };
 

@@ -21,11 +21,11 @@ namespace {
 
 constexpr std::size_t kDrawsPerBin = 8;
 constexpr std::size_t kBinsMax = 6, kBinsMin = 3;
-/// The quantities in kDrawMeasures sort whole simulated runs into bins (scenarios/sweep/motion_values.hpp).
+/// Quantities by which whole simulated runs are sorted into bins (scenarios/sweep/motion_values.hpp).
 constexpr std::array kDrawMeasures = {"motion_clipped_share", "motion_clip_depth_max_rad_s",
                                       "motion_clip_length_max_s"};
 
-/// Run is one outcome with its scores for curves and a flag for failure.
+/// Run is the outcome of one simulated run: the scores for curves, and whether it failed.
 struct Run {
   std::uint64_t seed = 0;
   bool ok = false, failed = false;
@@ -35,8 +35,8 @@ struct Run {
     std::size_t place = 0;
     return find(metric, place);
   }
-  /// Finds the score of a metric. The function first tries the index `place`, because the score of the method's
-  /// previous run had this index, and updates `place`.
+  /// Finds the score of a metric. Tries the index `place` first, where the previous run of the method had this score,
+  /// and updates `place`.
   const double* find(const std::string* metric, std::size_t& place) const {
     if (place < scores.size() && scores[place].metric == metric) return &scores[place].value;
     const auto found = std::find_if(scores.begin(), scores.end(), [&](const auto& s) { return s.metric == metric; });
@@ -111,8 +111,8 @@ PickedRuns all_of(const Runs& runs) {
   return all;
 }
 
-/// Returns whether any method has a value of the metric on the simulated run `seed`. If no method has a value of the
-/// metric, failures on the run are ignored.
+/// Returns true if any method has a value of the metric on the simulated run `seed`. If no method has a value, failures
+/// on this run do not count.
 bool is_scored(const PickedRuns& runs, const std::string* metric, std::uint64_t seed) {
   return std::any_of(runs.begin(), runs.end(), [&](const auto& entry) {
     const auto& own = entry.second;
@@ -165,8 +165,7 @@ void keep(Curve curve, std::vector<Curve>& all) {
   if (!curve.lines.empty()) all.push_back(std::move(curve));
 }
 
-/// Returns the stored copy of a metric's name. If no score has the name, the function adds the name to the stored
-/// names.
+/// Returns the stored copy of a metric's name, which is added if missing.
 const std::string* name_of(const std::string& metric, Names& names) {
   return &*names.insert(metric).first;
 }
@@ -194,12 +193,12 @@ std::string bin_label(const BinnedMetric& bin, double factor) {
   return fmt::format("{:g} – {:g}", bin.low * factor, bin.high * factor);
 }
 
-/// Bins contains bins by quantity and metric, in ascending order. Each bin has the full name of its metric.
+/// Bins by quantity and metric, in ascending order. Each bin has the full name of its metric.
 using Bins =
     std::map<std::pair<std::string, std::string>, std::map<double, std::pair<BinnedMetric, const std::string*>>>;
 
-/// Returns the bins of all quantities for which any run has a value. Bins without samples are included, so that a curve
-/// shows where samples are missing.
+/// Returns the bins of all quantities for which any run has a value. Empty bins are included, so that a curve shows
+/// where samples are missing.
 Bins bins_of(const Runs& runs, Names& names) {
   std::set<const std::string*> metrics;
   for (const auto& [method, own] : runs) {
@@ -238,8 +237,8 @@ void add_sample_curves(const RunsBySetting& plain, Names& names, std::vector<Cur
   }
 }
 
-/// Sorts simulated runs into bins of equal counts by a quantity of the run. Each bin contains the median of the
-/// quantity, and its seeds in ascending order.
+/// Sorts the simulated runs of a scenario by the quantity `measure` into bins of equal counts. Each bin has the median
+/// of the quantity, and its seeds in ascending order.
 std::vector<std::pair<double, std::vector<std::uint64_t>>> bins_of_draws(std::span<const DrawValues> draws,
                                                                          const std::string& scenario,
                                                                          const std::string& measure) {
@@ -247,7 +246,7 @@ std::vector<std::pair<double, std::vector<std::uint64_t>>> bins_of_draws(std::sp
   for (const DrawValues& draw : draws) {
     if (draw.scenario != scenario) continue;
     for (const Score& score : draw.values) {
-      // Runs without clipping have no position on an axis for clipping.
+      // A run without clipping has no position on an axis of clipping.
       if (score.metric == measure && score.value > 0.0) ranked.emplace_back(score.value, draw.seed);
     }
   }

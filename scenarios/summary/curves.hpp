@@ -10,48 +10,47 @@
 #include "scenarios/summary/summary.hpp"
 #include "scenarios/sweep/results.hpp"
 
-/// The functions in curves.hpp compute curves: a metric over a varied number, or over a quantity of the simulated runs.
+/// curves.hpp computes curves: a metric over a varied parameter, or over a quantity of the simulated runs.
 namespace tumble::scenarios {
 
 /// CurvePoint summarises one method at one x value of a curve, over all simulated runs. Failed runs rank worst, so a
-/// quantile may be infinite. Quantiles are NaN if no run has a value.
+/// quantile can be infinite. Quantiles are NaN if no run has a value.
 struct CurvePoint {
   double x = 0.0;
-  std::string label;  ///< label of a bin: "0.5 – 1"; empty for a set number
+  std::string label;  ///< label of a bin: "0.5 – 1"; empty for a varied parameter
   std::int64_t draws = 0, failed = 0;
   Interval failed_share{};  ///< Clopper and Pearson, 95 %
   double quantile_25 = 0.0, median = 0.0, quantile_75 = 0.0;
-  double worst_5 = 0.0;  ///< 95 % quantile; 5 % quantile if higher is better
+  double worst_5 = 0.0;  ///< 95 % quantile, or 5 % quantile if higher values are better
 };
 
 struct CurveLine {
   std::string method;
-  std::vector<CurvePoint> points;  ///< x ascending
+  std::vector<CurvePoint> points;  ///< in ascending order of x
 };
 
 struct Curve {
-  /// Source is the meaning of x: a number that the suite varies, a quantity of binned samples, or a quantity of whole
-  /// simulated runs.
+  /// Source is the meaning of x: a parameter that the suite varies, a quantity of binned samples, or a quantity of
+  /// whole simulated runs.
   enum class Source { set, samples, draws };
   Source source = Source::set;
-  std::string axis;  ///< varied key or name of the measure; ends in its unit
+  std::string axis;  ///< varied parameter or binned quantity; the name ends in the unit
   std::string scenario;
   Kind kind = Kind::rate;
   std::string metric;
   std::vector<CurveLine> lines;  ///< in the order of the registry
-  /// For binned samples, the list `bins` contains the labels of all bins, including empty bins. The point x belongs to
-  /// bins[x -
-  /// 1].
+  /// Labels of all bins of samples, including empty bins. The point with the number x belongs to bins[x - 1].
   std::vector<std::string> bins = {};
 };
 
-/// Computes every curve for which the results contain data. Each scenario and headline metric (first in the report) has
-/// a curve for each varied number. Each quantity with binned metrics (scenarios/scoring/binned_metric.hpp) has a curve.
-/// Each clipping quantity of the simulated runs has a curve with at least three bins of equal counts. In a curve, a run
-/// counts as failed if its status is not `ok` or its map failed. The cost is O(number of scores * log).
+/// Computes every curve for which the results contain data, by scenario and headline metric (first in the report).
+/// There is one curve per varied parameter, and one per quantity with binned metrics
+/// (scenarios/scoring/binned_metric.hpp). Each clipping quantity of whole runs has a curve if it has at least three
+/// bins of equal counts. A run counts as failed if its status is not `ok` or its map failed. The cost is O(number of
+/// scores * log).
 std::vector<Curve> find_curves(const Results& results);
-/// Computes every curve from the results and the motion values `draws`. The function also computes `summary` in the
-/// same pass over the results.
+/// Computes every curve from the results and the motion values `draws`, and `summary` in the same pass over the
+/// results.
 std::vector<Curve> find_curves(const Results& results, std::span<const DrawValues> draws, Summary& summary);
 
 }  // namespace tumble::scenarios

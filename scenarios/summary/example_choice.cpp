@@ -34,7 +34,7 @@ std::vector<ExampleDraw> choose_examples(const Summary& summary, std::span<const
     ExampleDraw draw;
   };
   std::vector<Ranked> ranked;
-  std::map<std::string, std::size_t> taken;  // per robot
+  std::map<std::string, std::size_t> taken;  // number of chosen scenarios per robot
   for (const ExampleCandidate& candidate : candidates) {
     ExampleDraw draw{candidate.scenario, 0};
     if (typical_seed(summary, draw.scenario, draw.seed))

@@ -8,11 +8,11 @@
 
 #include "scenarios/sweep/outcome.hpp"
 
-/// The function motion_map computes the distribution of simulated runs over maximum rate and maximum specific force.
+/// motion_map computes the distribution of simulated runs over their maximum rate and maximum specific force.
 namespace tumble::scenarios {
 
-/// MotionPoint contains the maximum true rate of the body and the maximum unclipped specific force of the primary IMU
-/// in one simulated run.
+/// MotionPoint contains two maxima of one simulated run: the true rate of the body, and the unclipped specific force of
+/// the primary IMU.
 struct MotionPoint {
   double rate_rad_s = 0.0, force_m_s2 = 0.0;
 };
@@ -20,31 +20,31 @@ struct MotionPoint {
 /// MotionCloud contains the points of one scenario's simulated runs.
 struct MotionCloud {
   std::string scenario;
-  std::size_t draws = 0;            ///< runs with both numbers above 0
-  std::vector<MotionPoint> points;  ///< at most `kPointsMax` of them, evenly spaced in draw order
+  std::size_t draws = 0;            ///< number of runs with both maxima above 0
+  std::vector<MotionPoint> points;  ///< at most `kPointsMax` points, evenly spaced over the runs
 };
 
-/// PublishedExtreme contains the maxima that a publication reports; NaN means that a maximum is not reported.
+/// PublishedExtreme contains the maxima in a publication; NaN if a maximum is not reported.
 struct PublishedExtreme {
   std::string campaign, source;
   double rate_rad_s, force_m_s2;
 };
 
-/// MotionMap is the density of all simulated runs over a grid with logarithmic axes, as a kernel density estimate.
+/// MotionMap is the density of all simulated runs on a grid with logarithmic axes, by a kernel density estimate.
 struct MotionMap {
-  static constexpr std::size_t kCells = 48;  ///< per axis
+  static constexpr std::size_t kCells = 48;  ///< number of cells per axis
   static constexpr std::size_t kPointsMax = 500;
-  std::vector<MotionCloud> clouds;         ///< scenarios in the order of the draws
-  std::vector<double> rate_rad_s;          ///< centres of the columns, ascending; empty without draws
+  std::vector<MotionCloud> clouds;         ///< in the order of the scenarios in `draws`
+  std::vector<double> rate_rad_s;          ///< centres of the columns, ascending; empty without runs
   std::vector<double> force_m_s2;          ///< centres of the rows, ascending
   std::vector<double> share;               ///< fraction of the runs per cell, row by row; their sum is 1
   std::vector<PublishedExtreme> extremes;  ///< published values for the plot
 };
 
-/// Computes the density of the runs: counts in cells, smoothed along both axes by a Gaussian of Scott's width in
-/// logarithms (at least half a cell). Scott's width is sigma n^(-1/6) (Multivariate Density Estimation, 1992, section
-/// 6.3). The part of a kernel beyond the grid is distributed over the grid. The maximum rate and the maximum force of a
-/// run may occur at different times. The cost is O(draws + cells^(3/2)).
+/// Computes the density of the runs: counts in cells, smoothed along both logarithmic axes by a Gaussian. The width of
+/// the Gaussian is Scott's sigma n^(-1/6) (Multivariate Density Estimation, 1992, section 6.3), but at least half a
+/// cell. The part of a kernel beyond the grid is distributed over the grid. The two maxima of a run may occur at
+/// different times. The cost is O(draws + cells^(3/2)).
 MotionMap motion_map(std::span<const DrawValues> draws);
 
 }  // namespace tumble::scenarios

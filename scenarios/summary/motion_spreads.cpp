@@ -14,13 +14,13 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Over states from which values a quantity is computed: one value per run, the fraction of runs with a property, or
-/// all clipped samples of all runs.
+/// Over states what the values of a quantity are: one value per run, the fraction of runs with a property, or the
+/// fraction of all clipped samples of all runs.
 enum class Over { draws, share_of_draws, clipped_samples };
 
-/// Quantity is a quantity with published values: the experiment with the tumbling rig (32 tumbles down a hill, ICRA
-/// 2024), and the target of this project. The plot shades the range from `low` to `high`; if both are equal, the plot
-/// shows a line.
+/// Quantity is a quantity of the motion with a published value from the tumbling rig (32 tumbles down a hill, ICRA
+/// 2024), and the target of this project. The plot shades the range from `low` to `high`, or shows a line if both are
+/// equal.
 struct Quantity {
   const char* metric;
   const char* name;
@@ -51,11 +51,11 @@ constexpr std::array kQuantities = {
              Over::share_of_draws},
 };
 
-/// Returns the mean of a metric over the runs, weighted by the number of clipped samples, with its 95 % interval. The
-/// method is the ratio estimator of a cluster sample (Cochran, Sampling Techniques, 1977, section 9A.2), because
-/// samples within a run are correlated.
+/// Returns the mean of a metric over the runs, weighted by their numbers of clipped samples, with its 95 % interval.
+/// Samples within a run are correlated, so the method is the ratio estimator of a cluster sample (Cochran, Sampling
+/// Techniques, 1977, section 9A.2).
 Interval pooled(std::span<const DrawValues* const> draws, const std::string& metric) {
-  std::vector<std::pair<double, double>> weighted;  // number of samples, and fraction with the property
+  std::vector<std::pair<double, double>> weighted;  // clipped samples of a run, and fraction with the property
   double samples = 0.0, hits = 0.0, square = 0.0;
   for (const DrawValues* draw : draws) {
     const double weight = value_of(draw->values, "motion_clipped_samples"), share = value_of(draw->values, metric);
@@ -74,7 +74,7 @@ Interval pooled(std::span<const DrawValues* const> draws, const std::string& met
 }  // namespace
 
 std::vector<Spread> motion_spreads(std::span<const DrawValues> draws) {
-  std::vector<std::string> names;  // in the order of the draws
+  std::vector<std::string> names;  // scenarios, in the order of `draws`
   std::map<std::string, std::vector<const DrawValues*>> by_scenario;
   for (const DrawValues& draw : draws) {
     std::vector<const DrawValues*>& own = by_scenario[draw.scenario];

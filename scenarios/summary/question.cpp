@@ -19,7 +19,7 @@ namespace {
 
 constexpr int kLooksMax = 1000;
 
-/// Returns the kind in the name of a method, for example "rate" for "rate/tumble", or an empty text.
+/// Returns the kind in a method's name, for example "rate" for "rate/tumble"; empty if the name has no kind.
 std::string kind_of(const std::string& name) {
   const std::size_t slash = name.find('/');
   return slash == std::string::npos ? std::string() : name.substr(0, slash);
@@ -69,7 +69,7 @@ AnswerPairs pairs_of(const Results& results, const Question& question, std::uint
   return pairs;
 }
 
-/// Evaluates the interim analyses of one scenario in order, until one of them gives an answer.
+/// Evaluates the interim analyses of one scenario in order, until an analysis gives an answer.
 Answer answer_of(const std::string& scenario, const std::map<std::uint64_t, AnswerPair>& pairs,
                  const Question& question, std::uint64_t last_seed) {
   SequentialSignTest test(question.risk / static_cast<double>(question.scenarios.size()));

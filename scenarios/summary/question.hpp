@@ -9,25 +9,24 @@
 #include "scenarios/summary/comparison.hpp"
 #include "scenarios/sweep/results.hpp"
 
-/// The functions in question.hpp can stop a sweep (many simulated runs of several scenarios) early. During the sweep,
-/// they test whether one method is better than another (docs/maths/statistics.md, "Sequential test").
+/// With question.hpp, a sweep (many simulated runs of several scenarios) can stop early: interim analyses test whether
+/// one method is better than another (docs/maths/statistics.md, "Sequential test").
 namespace tumble::scenarios {
 
-/// kQuestionNote is the key under which the results database stores the question, as text from `describe`.
+/// Key under which the results database stores the question, as text from `describe`.
 inline constexpr const char* kQuestionNote = "until";
 
 /// Question asks whether `method` is better than `against` in `metric` by more than the margin.
 struct Question {
   std::string method, against;  ///< "rate/tumble"; both methods are of one kind
   std::string metric;
-  Margin margin;       ///< 0: any improvement
+  Margin margin;       ///< smallest improvement that counts; 0: any improvement
   double risk = 0.05;  ///< probability of a wrong answer over all scenarios and analyses
-  int looks = 20;      ///< number of interim analyses, after equal parts of the seeds
+  int looks = 20;      ///< number of interim analyses, at equal intervals of the seeds
   std::uint64_t first_seed = 1, last_seed = 1;
   std::vector<std::string> scenarios;
 
-  /// Returns the seeds after which an interim analysis tests the results, ascending. The last interim analysis is after
-  /// the last seed of the sweep.
+  /// Returns the seeds after which the results are analysed, ascending. The last analysis is after the last seed.
   std::vector<std::uint64_t> look_seeds() const;
   /// Returns the question as one line of text. Equal questions give the same line.
   std::string describe() const;
@@ -36,27 +35,25 @@ struct Question {
 /// Answer is the answer to the question for one scenario.
 struct Answer {
   std::string scenario;
-  Finding finding = Finding::undecided;  ///< with a margin, `worse` means not better by the margin
-  std::uint64_t seeds = 0;               ///< seeds at the analysis that answered, or at the last analysis
-  std::int64_t better = 0, worse = 0;    ///< pairs at that analysis; ties count in neither
-  std::int64_t needed = 0;               ///< pairs of one sign that were needed for an answer
+  Finding finding = Finding::undecided;  ///< with a margin, `worse` means "not better by more than the margin"
+  std::uint64_t seeds = 0;               ///< number of seeds at the analysis with the answer, or at the last analysis
+  std::int64_t better = 0, worse = 0;    ///< pairs at that analysis, without ties
+  std::int64_t needed = 0;               ///< pairs of one sign that the analysis required for an answer
 };
 
-/// Throws BadInput for equal methods, methods of two kinds, methods without a full name, or an unranked metric. Throws
-/// BadInput for a margin or risk out of range, or if there is no interim analysis.
+/// Throws BadInput for equal methods, methods of two kinds, methods without a full name, or an unranked metric. Also
+/// throws BadInput for a margin or risk out of range, or if there is no interim analysis.
 void require_sound(const Question& question);
 
-/// Stores the question in the results database, before the first simulated run. Throws BadInput if the database
-/// contains another question or any run, because the risk is valid only for a question asked in advance.
+/// Stores the question in the results database before the first simulated run. Throws BadInput if the database contains
+/// another question or any run, because the risk is only valid if the question precedes the results.
 void claim(Results& results, const Question& question, const std::filesystem::path& database);
 
-/// Computes the answers of the interim analyses up to `last_seed`, in the order of the question's scenarios. All
-/// simulated runs up to `last_seed` must be complete. The answers depend only on the results up to `last_seed`. Failed
-/// runs rank worst.
+/// Computes the answers of the interim analyses up to `last_seed`, in the order of the question's scenarios. All runs
+/// up to `last_seed` must be complete; later runs have no effect. Failed runs rank worst.
 std::vector<Answer> answers(const Results& results, const Question& question, std::uint64_t last_seed);
 
-/// Describes the finding of an answer in words. For example, "not by the margin" means that the method is not better by
-/// more than the margin.
+/// Describes the finding in words; "not by the margin" means that the method is not better by more than the margin.
 const char* finding_text(const Answer& answer, const Question& question);
 
 bool all_answered(const std::vector<Answer>& answers);

@@ -53,7 +53,7 @@ Seeds of_kept(const Seeds& kept, const Seeds& seeds) {
   return out;
 }
 
-/// Copies only the values and failures of the seeds in `kept`, which are usually a small part.
+/// Copies only the values and failures of the seeds in `kept`, usually a small part of all seeds.
 MethodSummary of_kept(const Seeds& kept, const MethodSummary& method) {
   MethodSummary out{method.method,
                     method.needs_truth,

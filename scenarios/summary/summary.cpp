@@ -17,7 +17,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Returns the position of a metric in the list of registered metrics. Unknown metrics come last.
+/// Returns the index of a metric in the list of registered metrics. Unknown metrics come last.
 std::size_t metric_rank(const std::string& name) {
   const auto all = metrics();
   return static_cast<std::size_t>(
@@ -29,8 +29,7 @@ const MethodInfo* registered(Kind kind, const std::string& name) {
   return rank < methods().size() ? &methods()[rank].info : nullptr;
 }
 
-/// Returns the registered baseline if the results contain it, or else the first registered method that does not need
-/// the truth.
+/// Returns the registered baseline if the results contain it, and otherwise the first registered method without truth.
 std::string choose_baseline(Kind kind, const std::vector<MethodSummary>& methods) {
   for (const MethodSummary& method : methods) {
     const MethodInfo* info = registered(kind, method.method);
@@ -42,8 +41,8 @@ std::string choose_baseline(Kind kind, const std::vector<MethodSummary>& methods
   return methods.front().method;
 }
 
-/// Counts the simulated runs on which one method is better than the baseline. If both methods failed on a run, neither
-/// method is better.
+/// Counts the simulated runs on which `own` is better than the baseline. If both methods failed on a run, neither is
+/// better.
 Wins paired_wins(const MetricSummary& own, const MetricSummary& base, const MetricInfo& info) {
   Wins wins;
   if (info.sense == Sense::none) return wins;
@@ -70,7 +69,7 @@ void finish(const std::string& name, MetricSummary& metric) {
   metric.quantile_95 = quantile(ranked, info.sense == Sense::higher ? 0.05 : 0.95);
 }
 
-/// Adds each failed run to every metric for which another method has a value on the same run.
+/// Adds each failed run to every metric for which another method has a value on this run.
 void place_failures(Section& section) {
   std::set<std::string> names;
   for (const MethodSummary& method : section.methods) {
@@ -105,8 +104,7 @@ void sort_by_seed(MetricSummary& metric) {
   }
 }
 
-/// Gathered contains the results of one method on one scenario. The map `places` finds each metric by the pointer to
-/// its name.
+/// Gathered contains the results of one method on one scenario. `places` finds a metric by the pointer to its name.
 struct Gathered {
   MethodSummary summary;
   std::unordered_map<const std::string*, MetricSummary*> places;
@@ -130,7 +128,7 @@ struct Gathered {
 
   MethodSummary sorted() {
     for (std::vector<std::uint64_t>* seeds : {&summary.seeds, &summary.not_ok_seeds}) {
-      // The seeds are usually sorted already, and a check is much cheaper than sorting.
+      // Seeds are usually sorted already; the check is much cheaper than sorting.
       if (!std::is_sorted(seeds->begin(), seeds->end())) std::sort(seeds->begin(), seeds->end());
     }
     for (auto& [name, metric] : summary.metrics) sort_by_seed(metric);
@@ -168,7 +166,7 @@ void finish(Section& section) {
     method.not_ok_share = share_interval(method.not_ok, method.outcomes);
     for (auto& [name, metric] : method.metrics) {
       finish(name, metric);
-      if (!parse_binned(name)) names.insert(name);  // binned metrics appear only as curves
+      if (!parse_binned(name)) names.insert(name);  // binned metrics appear only in curves
     }
   }
   section.metrics.assign(names.begin(), names.end());

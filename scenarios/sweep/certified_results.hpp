@@ -9,11 +9,11 @@
 namespace tumble::scenarios {
 
 /// Returns the certificate of this build (checks of its simulation) if `results` or the store contains it, and copies
-/// it to `results`. The function makes no measurement, so it may return nothing.
+/// it to `results`. Makes no measurement; otherwise returns nothing.
 std::optional<Certificate> known_certificate(Results& results, const CertificateStore& store);
 
-/// Adds the certificate of this build (checks of its simulation) to `results` if it is missing, and returns it. If the
-/// store lacks the certificate, it is measured and saved in the store. If the measurement is interrupted, the returned
+/// Adds the certificate of this build (checks of its simulation) to `results` if it is missing, and returns it. A
+/// certificate that the store lacks is measured and saved in the store. If the measurement is interrupted, the
 /// certificate has no entries and is not saved. Throws the exceptions of measure_certificate.
 Certificate certify_results(Results& results, const CertificateStore& store, const CertificateInput& input,
                             const CertifyOptions& options);

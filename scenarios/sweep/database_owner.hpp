@@ -9,15 +9,14 @@
 namespace tumble::scenarios {
 
 /// DatabaseOwner has exclusive write access to a results database. A second process that tries to write reports the
-/// conflict and exits. The lock (flock) is on the file FILE.lock next to the database. The text of the lock file names
-/// the process that owns the database. The operating system releases the lock when the process ends. A signal that ends
-/// the program removes the lock file (unfinished.hpp); the lock file of a killed program is reused. Processes that only
-/// read the database need no lock. On a shared file system, the lock works between machines if the file system supports
-/// locks.
+/// conflict and exits. Readers need no lock. The lock (flock) is on the file FILE.lock next to the database, whose text
+/// names the owner. The operating system releases the lock when the process ends. A signal that ends the program
+/// removes the lock file (unfinished.hpp); the lock file of a killed program is reused. On a shared file system, the
+/// lock works between machines if the file system supports locks.
 class DatabaseOwner {
  public:
-  /// Locks the database; throws BadInput if another process owns it, or if the lock file cannot be created. The message
-  /// contains the owner's process, machine and start time.
+  /// Locks the database. Throws BadInput if another process owns it, or if the lock file cannot be created. The message
+  /// contains process, machine and start time of the owner.
   explicit DatabaseOwner(const std::filesystem::path& database);
   /// Releases the lock and removes the lock file.
   ~DatabaseOwner();

@@ -11,10 +11,10 @@
 #include "scenarios/sweep/keep.hpp"
 #include "scenarios/sweep/unfinished_folder.hpp"
 
-/// The class DrawFiles writes the files of a simulated run that a sweep keeps.
+/// DrawFiles writes the files of a simulated run that a sweep keeps.
 namespace tumble::scenarios {
 
-/// kDrawCommand is the name of the file with the command that reproduces a kept run.
+/// Name of the file with the command that reproduces a kept run.
 inline constexpr const char* kDrawCommand = "command";
 
 /// Keeping states whether and where the files of a simulated run are kept.
@@ -23,25 +23,24 @@ struct Keeping {
   When when = When::never;
   std::filesystem::path folder;  ///< FOLDER/SCENARIO/SEED
   std::string command;           ///< command that reproduces the run
-  RecordingInfo versions;        ///< versions of the program and the engine, for the recording's metadata
-  bool lidars = false;           ///< any method of the run reads lidars, in this or another task
+  RecordingInfo versions;        ///< versions of program and physics engine, for the metadata of the recording
+  bool lidars = false;           ///< a method of the run reads lidars, in this or in another task
 };
 
-/// DrawFiles writes the recording and the estimates of a simulated run that is kept. A write error does not change the
-/// outcomes of the run.
+/// DrawFiles writes the recording and the estimates of a kept simulated run. A write error does not change the outcomes
+/// of the run.
 class DrawFiles {
  public:
   explicit DrawFiles(const Keeping& keeping);
 
-  /// Returns the folder in which a method must write its estimate, or an empty path if the estimate is not needed.
+  /// Returns the folder in which a method must write its estimate; empty if the estimate is not kept.
   std::filesystem::path estimate(const MethodInfo& method);
-  /// Writes the recording and moves all files to their final folder. After `miss`, or if a file cannot be written, the
-  /// function instead removes all files. Stored estimates of other methods remain if they were computed from equal
-  /// sensor data.
+  /// Writes the recording and moves all files to their final folder. After `miss` or a write error, all files are
+  /// removed instead. Stored estimates of other methods remain if their sensor data were equal.
   void finish(const SimulatedDraw& draw, bool failed);
   /// Records that an estimate could not be written.
   void miss(const std::string& why) { trouble_ = why; }
-  /// Describes the error in one line, or returns an empty text without an error.
+  /// Describes the error in one line; empty if there is no error.
   const std::string& error_code() const { return trouble_; }
 
  private:
@@ -49,7 +48,7 @@ class DrawFiles {
 
   const Keeping& keeping_;
   std::optional<UnfinishedFolder> folder_;
-  std::set<std::filesystem::path> asked_;  ///< folder names of the requested estimates
+  std::set<std::filesystem::path> asked_;  ///< folder names of the estimates in this run
   std::string trouble_;
 };
 

@@ -46,7 +46,7 @@ double peak_mib() {
 }
 
 /// Writes the estimate of a method to the folder of a simulated run. A write error does not change the outcome;
-/// KeptDraws::holds detects the missing file. Returns the error in one line, or an empty text if there is no error.
+/// KeptDraws::holds detects the missing file. Returns the error in one line, or an empty text.
 std::string leave_estimate(const Method& method, const SimulatedDraw& draw, const Estimate& estimate,
                            const std::filesystem::path& folder) {
   if (folder.empty()) return {};
@@ -66,8 +66,8 @@ void run_method_child(const Method& method, const SimulatedDraw& draw, const Sim
   const double before_mib = resident_mib();
   Outcome outcome;
   const Estimate estimate = run_method(method, draw, outcome);
-  // Peak memory is recorded only for built-in methods, because the operating system counts the memory of an external
-  // command from the fork on.
+  // Peak memory is recorded only for built-in methods: for an external command, the operating system also counts the
+  // memory of the forked process.
   const bool own = method.info.version.empty();
   if (own) outcome.scores.push_back({"estimate_peak_mib", std::max(0.0, peak_mib() - before_mib)});
   assess(method, scored, surface, estimate, outcome);
@@ -76,7 +76,7 @@ void run_method_child(const Method& method, const SimulatedDraw& draw, const Sim
   write_all(fd, to_line({outcome, {}}));
 }
 
-// Reads until the process closes its pipe; returns false at the deadline.
+// Reads until the process closes its pipe. Returns false at the deadline.
 bool read_until(Process& process, double deadline_s, std::string& buffer) {
   while (true) {
     const double left_s = deadline_s - now_s();
@@ -87,14 +87,14 @@ bool read_until(Process& process, double deadline_s, std::string& buffer) {
   }
 }
 
-/// Returns whether the method reads lidars. Among built-in methods, only slam methods read lidars. An external method
-/// may read all data that methods of its kind receive.
+/// Returns true if the method reads lidars: a built-in slam method, or an external method of a kind other than rate,
+/// which receives all sensor data.
 bool reads_lidars(const MethodInfo& info) {
   return info.kind == Kind::slam || (info.kind != Kind::rate && !info.version.empty());
 }
 
 /// Returns whether the simulation of a task needs its lidars. Methods of kind `rate` never read a lidar. A kept
-/// recording contains lidars if any method of the run reads lidars.
+/// recording contains lidars if a method of the run reads them.
 Lidars lidars_for(const DrawTask& task, bool recordings_unseen) {
   const bool kept = task.keeping.when != Keeping::When::never && task.keeping.lidars;
   const bool read =
@@ -105,7 +105,7 @@ Lidars lidars_for(const DrawTask& task, bool recordings_unseen) {
   return read ? Lidars::simulated : Lidars::left_out;
 }
 
-/// Given is a simulated run whose sensor data a setting has changed; empty without a setting.
+/// Given is a simulated run whose sensor data a setting has changed; empty if there is no setting.
 struct Given {
   Setting setting;
   std::optional<SimulatedDraw> draw, scored;
@@ -141,8 +141,8 @@ void give_up(const DrawTask& task, OutcomeStatus status, const std::string& mess
   for (const Outcome& outcome : without_answer(task, status, message)) write_all(fd, to_line({outcome, {}}));
 }
 
-/// MadeDraw is a run that was simulated or read from a recording. The member for map scores is the true surface, if a
-/// method builds maps.
+/// MadeDraw is a run that was simulated or read from a recording. If a method builds maps, it also contains the true
+/// surface for map scores.
 struct MadeDraw {
   SimulatedDraw draw;
   std::optional<sim::Surface> surface;
@@ -167,8 +167,8 @@ DrawValues motion_of(const DrawTask& task, const sim::Recording& recording) {
   return values;
 }
 
-/// Simulates the run, or reads it from a recording, and reports its motion values. On failure, the function reports the
-/// reason and returns null.
+/// Simulates the run, or reads it from a recording, and reports its motion values. On failure, reports the reason and
+/// returns null.
 std::unique_ptr<MadeDraw> made_draw(const DataRoot& data, const DrawTask& task, int fd, bool recordings_unseen) {
   try {
     std::unique_ptr<MadeDraw> made = make(data, task, recordings_unseen);
@@ -188,8 +188,8 @@ std::unique_ptr<MadeDraw> made_draw(const DataRoot& data, const DrawTask& task, 
   return nullptr;
 }
 
-/// Runs one method on the sensor data of a run. The argument `given` contains the changed sensor data of the previous
-/// method, which are reused if the settings are equal.
+/// Runs one method on the sensor data of a run. `given` contains the changed sensor data of the previous method, which
+/// are reused if the settings are equal.
 Outcome run_one(const DrawTask& task, const DrawTask::Run& run, const MadeDraw& made, double timeout_s, Given& given,
                 DrawFiles& files) {
   Outcome outcome;
@@ -220,7 +220,7 @@ Outcome run_isolated(const Method& method, const SimulatedDraw& draw, const Simu
                      const sim::Surface* surface, double timeout_s, const std::filesystem::path& folder,
                      std::string* not_kept) {
   const double before_mib = resident_mib();
-  // A killed child process cannot remove its temporary files, so its parent removes them.
+  // A killed child cannot remove its temporary files, so the parent removes them.
   const ScratchFolder temporary("run");
   Process process(
       [&](int fd) {
@@ -262,8 +262,8 @@ std::vector<Outcome> without_answer(const DrawTask& task, OutcomeStatus status, 
 void run_draw(const DataRoot& data, const DrawTask& task, double timeout_s, int fd, bool recordings_unseen) {
   const std::unique_ptr<const MadeDraw> made = made_draw(data, task, fd, recordings_unseen);
   if (!made) return;
-  // The memory that the simulation freed is returned to the operating system. Unreturned memory would hide the memory
-  // use of the method.
+  // Returns the memory that the simulation freed to the operating system; otherwise it would hide the memory use of the
+  // method.
   malloc_trim(0);
   DrawFiles files(task.keeping);
   bool failed = false;

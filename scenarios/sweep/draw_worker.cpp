@@ -12,7 +12,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Returns the next line from the pipe without its newline, or nothing if the other end is closed.
+/// Returns the next line from the pipe without its newline; empty if the other end is closed.
 std::optional<std::string> next_line(int fd, std::string& buffer) {
   char chunk[8192];
   std::size_t newline;
@@ -27,7 +27,7 @@ std::optional<std::string> next_line(int fd, std::string& buffer) {
   return line;
 }
 
-/// Runs in the worker process, and reads one task per line until an empty line.
+/// Main loop of the worker process: reads one task per line until an empty line.
 void serve(const WorkerTerms& terms, int tasks, int fd) {
   limit_memory(terms.memory_mib);
   if (!terms.temporary.empty()) setenv("TMPDIR", terms.temporary.c_str(), 1);
@@ -35,9 +35,8 @@ void serve(const WorkerTerms& terms, int tasks, int fd) {
   while (const std::optional<std::string> line = next_line(tasks, buffer)) {
     if (line->empty()) return;
     run_draw(terms.data, terms.plan.from_line(*line), terms.timeout_s, fd, terms.recordings_unseen);
-    malloc_trim(0);  // An idle worker must not hold memory of its last draw.
-    // The last message of a run is sent after all destructors. If the worker process dies before the last message of a
-    // run, the current task fails.
+    malloc_trim(0);  // an idle worker must not hold the memory of its last run
+    // The last message of a run follows all destructors. If the worker dies before it, the current task fails.
     write_all(fd, to_line({}));
   }
 }
@@ -78,7 +77,7 @@ void DrawWorker::take_up(const Message& message) {
              run.setting == message.outcome->setting;
     });
   } else if (message.rejected) {
-    draw_.runs.clear();  // these methods no longer expect a result
+    draw_.runs.clear();  // methods without a message get no result
   } else if (message.is_last()) {
     busy_ = false;
   }

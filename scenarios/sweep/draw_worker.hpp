@@ -18,15 +18,14 @@ struct WorkerTerms {
   const SweepPlan& plan;
   double timeout_s;                ///< time limit of a method
   double memory_mib;               ///< memory limit of the worker and of each process that it starts
-  bool recordings_unseen = false;  ///< as in SweepOptions
-  /// The folder `temporary` is for temporary files of the worker and its methods, because a killed process cannot
-  /// remove its files.
+  bool recordings_unseen = false;  ///< see SweepOptions
+  /// Folder for temporary files of the worker and its methods. The parent removes it, because a killed process cannot.
   std::filesystem::path temporary = {};
 };
 
-/// DrawWorker is a worker process that executes one simulated run after another. The worker receives tasks and sends
-/// results as lines of text, so that no state of a run remains for the next run. The worker ends after
-/// `kDrawsPerWorker` runs, or after a run in which a child process ended abnormally.
+/// DrawWorker is a worker process that executes one simulated run after another. Tasks and results are lines of text,
+/// so no state of a run remains for the next run. The worker ends after `kDrawsPerWorker` runs, or after a run in which
+/// a child process ended abnormally.
 class DrawWorker {
  public:
   static constexpr int kDrawsPerWorker = 200;
@@ -34,13 +33,13 @@ class DrawWorker {
   /// Throws std::system_error if no process can be started.
   explicit DrawWorker(const WorkerTerms& terms);
 
-  /// Sends a task to the worker, which must be complete by `deadline_s` (a time of now_s()). Returns false if the idle
+  /// Sends a task to the worker, which must complete it by `deadline_s` (a time of now_s()). Returns false if the idle
   /// worker process has died.
   bool give(const DrawTask& task, double deadline_s);
 
   bool is_busy() const { return busy_; }
   bool is_late() const { return busy_ && now_s() > deadline_s_; }
-  /// Returns whether the worker may execute another run.
+  /// Returns true if the worker can execute another run.
   bool is_fresh() const { return !busy_ && !spoilt_ && served_ < kDrawsPerWorker; }
   int read_end() const { return process_.read_end(); }
   /// Returns the current task, without the methods that already have results.

@@ -72,7 +72,7 @@ OutcomeStatus status_of(NoAnswer::Why why) {
   return OutcomeStatus::killed;
 }
 
-/// Returns an empty estimate for a method that gave no result, with the output of its program.
+/// Returns an empty estimate for a method without result, with the output of its program.
 Estimate no_estimate(const std::string& transcript = "") {
   Estimate none;
   none.transcript = transcript;
@@ -81,6 +81,22 @@ Estimate no_estimate(const std::string& transcript = "") {
 }
 
 }  // namespace
+
+void judge_without_truth(const MethodInfo& info, const Estimate& estimate, Outcome& outcome) {
+  outcome.status = OutcomeStatus::ok;
+  outcome.message.clear();
+  if (!estimate.status.ok()) {
+    outcome.status = OutcomeStatus::failed;
+    outcome.message = one_line(estimate.status.message());
+    return;
+  }
+  const std::vector<HealthFinding>& findings = estimate.faults.findings;
+  const auto fault =
+      std::ranges::find_if(findings, [](const HealthFinding& each) { return each.invalidates_estimate(); });
+  if (!info.ours || fault == findings.end()) return;
+  outcome.status = OutcomeStatus::diverged;
+  outcome.message = one_line("health: " + to_text(*fault));
+}
 
 Estimate run_method(const Method& method, const SimulatedDraw& draw, Outcome& outcome) {
   outcome.scenario = draw.scenario;
@@ -96,10 +112,7 @@ Estimate run_method(const Method& method, const SimulatedDraw& draw, Outcome& ou
     OracleInput oracle;
     if (method.info.needs_truth) oracle.truth = &draw.recording.truth;
     estimate = method.run(draw.recording.sensors, {}, oracle);
-    if (!estimate.status.ok()) {
-      outcome.status = OutcomeStatus::failed;
-      outcome.message = one_line(estimate.status.message());
-    }
+    if (!estimate.status.ok()) judge_without_truth(method.info, estimate, outcome);
   } catch (const NoAnswer& error) {
     estimate = no_estimate(error.transcript());
     outcome.status = status_of(error.why());
@@ -141,16 +154,6 @@ void score_estimate(const Method& method, const SimulatedDraw& draw, const sim::
   }
 }
 
-/// A run counts as diverged if the estimate's health reports a fault that invalidates the estimate.
-void judge_by_health(const Estimate& estimate, Outcome& outcome) {
-  for (const HealthFinding& finding : estimate.faults.findings) {
-    if (!finding.invalidates_estimate()) continue;
-    outcome.status = OutcomeStatus::diverged;
-    outcome.message = one_line("health: " + to_text(finding));
-    return;
-  }
-}
-
 }  // namespace
 
 void assess(const Method& method, const SimulatedDraw& draw, const sim::Surface* surface, const Estimate& estimate,
@@ -158,7 +161,7 @@ void assess(const Method& method, const SimulatedDraw& draw, const sim::Surface*
   outcome.estimate_digest = digest(estimate);
   if (outcome.status != OutcomeStatus::ok) return;
   if (draw.has_truth) score_estimate(method, draw, surface, estimate, outcome);
-  if (outcome.status == OutcomeStatus::ok && method.info.ours) judge_by_health(estimate, outcome);
+  if (outcome.status == OutcomeStatus::ok) judge_without_truth(method.info, estimate, outcome);
 }
 
 SimulatedDraw scored_by(const SimulatedDraw& draw, const SimulatedDraw& given) {

@@ -11,7 +11,7 @@
 
 namespace tumble::scenarios {
 
-/// SimulatedDraw is one run, simulated or read from a recording. All outcomes of the run use the same SimulatedDraw.
+/// SimulatedDraw is one run, simulated or read from a recording, on which the methods run.
 struct SimulatedDraw {
   std::string scenario;
   std::uint64_t seed = 0;
@@ -19,11 +19,11 @@ struct SimulatedDraw {
   sim::Recording recording;
   std::string recording_digest;
   double simulate_cpu_s = 0;
-  bool has_truth = true;  ///< recordings without truth are estimated but not scored
+  bool has_truth = true;  ///< a recording without truth is estimated but not scored
 };
 
 /// Lidars states whether the lidars are simulated. The simulation of lidars is slow, and methods of kind `rate` do not
-/// read lidars.
+/// read them.
 enum class Lidars { simulated, left_out };
 
 /// Draws the random numbers of a scenario, builds the situation and simulates it. Without lidars, motion and IMU
@@ -44,20 +44,24 @@ std::vector<MethodPointer> applicable(std::span<const MethodPointer> methods, co
 /// Throws BadInput, with the reason, if a method cannot run on a scenario.
 void require_applies(const Method& method, const Scenario& scenario);
 
-/// Runs a method on the sensor data of `draw`, and returns the estimate. After an exception or an error status, the
-/// status of `outcome` is failed. Without an error, the status of `outcome` is ok, and the estimate can be scored. The
-/// CPU time of the method becomes the first score.
+/// Runs a method on the sensor data of `draw` and returns the estimate. The status of `outcome` is failed after an
+/// exception or an error status. Without an error, the status is ok, and the estimate can be scored. The CPU time of
+/// the method is the first score.
 Estimate run_method(const Method& method, const SimulatedDraw& draw, Outcome& outcome);
 
-/// Adds the status and the scores of a completed estimate to the outcome. The pointer `surface` may be null.
+/// Sets status and message of the outcome without comparison with the truth. The status is failed after an error,
+/// diverged if the health of one of our methods reports a fault that invalidates the estimate, and otherwise ok.
+void judge_without_truth(const MethodInfo& info, const Estimate& estimate, Outcome& outcome);
+
+/// Adds status and scores of a completed estimate to the outcome. `surface` may be null.
 void assess(const Method& method, const SimulatedDraw& draw, const sim::Surface* surface, const Estimate& estimate,
             Outcome& outcome);
 
-/// Returns the original simulated run `draw` with the IMU time stamps of `given`. With the time stamps of `given`, each
-/// estimate is compared with the truth of its IMU sample, even if time stamps were changed.
+/// Returns the original run `draw` with the IMU time stamps of `given`. Each estimate is then compared with the truth
+/// of its IMU sample, even if time stamps were changed.
 SimulatedDraw scored_by(const SimulatedDraw& draw, const SimulatedDraw& given);
 
-/// Returns the CPU time of this process and of its finished children [s].
+/// Returns the CPU time of this process and of its finished child processes [s].
 double process_cpu_s();
 
 }  // namespace tumble::scenarios

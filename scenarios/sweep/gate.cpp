@@ -35,8 +35,8 @@ double margin_of(const MetricInfo& info, const GatePolicy& policy) {
   return info.unit == Unit::time_offset ? policy.time_margin_s : policy.share_margin;
 }
 
-/// Returns the change of a metric from the accepted value `before` to the new value `now`. The description of the
-/// metric states whether the change is a log ratio or a difference.
+/// Returns the change of a metric from the accepted value `before` to the new value `now`: a log ratio or a difference,
+/// as the metric states.
 double difference(const MetricInfo& info, double before, double now) {
   if (before == now) return 0.0;
   if (by_difference(info)) return now - before;
@@ -45,8 +45,8 @@ double difference(const MetricInfo& info, double before, double now) {
   return std::log(now / before);
 }
 
-/// Converts a value of a metric to a badness, for the check of the worst run (`GatePolicy::worst`). For a fraction, the
-/// badness is one minus the value. For a signed value, the badness is the distance from the target.
+/// Converts a value to a badness, for the check of the worst run (`GatePolicy::worst`). For a fraction, it is one minus
+/// the value. For a signed value, it is the distance from the target.
 double badness(const MetricInfo& info, double value) {
   if (!by_difference(info)) return value;
   return info.unit == Unit::share ? 1.0 - value : std::abs(value - info.target);
@@ -57,9 +57,8 @@ struct GatePair {
   double before = 0.0, now = 0.0;  ///< infinite (worst) if the run was not ok
 };
 
-/// GatePairs contains pairs of accepted and new values of a metric, on the same simulated runs. Runs without an
-/// accepted value are omitted. The count `lost` is the number of runs that are ok in both results, but have no new
-/// value.
+/// GatePairs contains the accepted and the new value of a metric on the same runs. Runs without an accepted value are
+/// omitted. `lost` contains the seeds of runs that are ok in both results but have no new value.
 struct GatePairs {
   std::vector<GatePair> pairs;
   std::vector<std::uint64_t> lost;
@@ -77,7 +76,7 @@ GatePairs pairs_of(const GateRun& all, const MethodRun& before, const MethodRun&
     GatePair pair{all.seeds[k], value_at(before, info.name, k), value_at(now, info.name, k)};
     if (was_ok && std::isnan(pair.before)) continue;
     if (was_ok && is_ok && std::isnan(pair.now)) out.lost.push_back(pair.seed);
-    // Runs that are not ok rank worst, regardless of their values.
+    // A run that is not ok ranks worst, even if it has a value.
     if (!was_ok) pair.before = worst_value(info);
     if (!is_ok) pair.now = worst_value(info);
     if (!std::isnan(pair.before) && !std::isnan(pair.now)) out.pairs.push_back(pair);
@@ -91,8 +90,8 @@ double chance_beyond(std::vector<double> differences, double margin) {
   return signed_rank_chance(differences);
 }
 
-/// Checks that no new value is worse than the worst accepted value times `GatePolicy::worst`. The fault message names
-/// the failing run.
+/// Checks that no new value is worse than `GatePolicy::worst` times the worst accepted value. The fault names the
+/// failing run.
 void hold_worst_draw(const MetricInfo& info, const std::vector<GatePair>& pairs, const GatePolicy& policy,
                      GateResult& result) {
   if (pairs.empty()) return;
@@ -110,9 +109,9 @@ void hold_worst_draw(const MetricInfo& info, const std::vector<GatePair>& pairs,
                              three_digits(now.now), now.seed, three_digits(before.before));
 }
 
-/// Tests whether the median change of a metric exceeds the margin, and adds the change and any fault to the result.
-/// Each metric counts as one statistical test. For a two-sided metric, the p-value is twice the smaller one-sided
-/// p-value.
+/// Tests whether the median change of a metric exceeds the margin, and adds the change and a fault, if any, to the
+/// result. Each metric counts as one statistical test: for a two-sided metric, the p-value is twice the smaller
+/// one-sided p-value.
 void hold_middle(const std::vector<GatePair>& pairs, const MetricInfo& info, const GatePolicy& policy,
                  std::size_t tests, GateResult& result) {
   result.draws = pairs.size();
@@ -155,8 +154,7 @@ GateResult hold_metric(const GatePairs& found, const MethodRun& before, const Me
   return result;
 }
 
-/// Returns whether a pass-fail metric is 1 (a failure) on a run. A pass-fail metric that was 0 in the accepted results
-/// must remain 0.
+/// Returns true if a pass-fail metric is 1 (a failure) on a run.
 bool is_condemned(const MethodRun& run, const MetricInfo& verdict, std::size_t draw) {
   return value_at(run, verdict.name, draw) > 0.0;
 }
@@ -203,7 +201,7 @@ MethodRun without_outcomes(const MethodRun& like) {
   return none;
 }
 
-/// Pooled contains one metric of a method, over all scenarios that have the metric.
+/// Pooled contains the pairs of one metric of a method, over all scenarios with this metric.
 struct Pooled {
   Kind kind = Kind::rate;
   std::string method;
@@ -214,7 +212,7 @@ struct Pooled {
   }
 };
 
-/// Returns the metrics that more than one scenario has, in the order of the accepted results.
+/// Returns the metrics that occur in more than one scenario, in the order of the accepted results.
 std::vector<Pooled> pooled_metrics(const GateRun& accepted) {
   std::vector<Pooled> seen, out;
   const auto has = [](const std::vector<Pooled>& list, const MethodRun& run, const MetricInfo& info) {

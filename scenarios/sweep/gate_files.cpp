@@ -19,7 +19,7 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr std::array kKinds = {Kind::rate, Kind::attitude, Kind::position, Kind::slam};
-constexpr std::size_t kKeyCells = 4;  // scenario, kind, method, metric
+constexpr std::size_t kKeyCells = 4;  // cells of the key of a row: scenario, kind, method, metric
 constexpr const char* kStatusRow = "status";
 
 std::string number_text(double value) {
@@ -73,7 +73,7 @@ Kind read_kind(const GateLine& line) {
   line.fail("unknown kind '" + line.cells[1] + "'" + suggestion(line.cells[1], known));
 }
 
-/// Throws BadInput unless the method is built in or described by a file.
+/// Throws BadInput if the method is neither built in nor in `described`.
 void require_method(const GateLine& line, const MethodRun& run, std::span<const MethodPointer> described) {
   if (std::any_of(described.begin(), described.end(), [&](const MethodPointer& method) {
         return method->info.kind == run.kind && method->info.name == run.method;

@@ -30,8 +30,8 @@ sim::ImuRecord& primary(sim::Sensors& sensors, const sim::Truth& truth) {
   return sensors.imus.front();
 }
 
-/// Shifts the calibrated centre of mass, and thereby the lever arm of every sensor. The mountings of the sensors
-/// relative to each other are unchanged. The shift replaces the random lever-arm error of the primary IMU.
+/// Shifts the calibrated centre of mass, and thus the lever arm of every sensor. The mountings of the sensors relative
+/// to each other are unchanged. The shift replaces the random lever-arm error of the primary IMU.
 void lever_arm(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situation& situation, double size) {
   const Eigen::Vector3d given_m = primary(sensors, truth).T_BI.translation();
   const Eigen::Vector3d shift_m =
@@ -51,7 +51,7 @@ void extrinsic_rotation(sim::Sensors& sensors, const sim::Truth& truth, const si
   sensors.lidars.front().T_BL.linear() = R_BI_given * R_IL_true * error.toRotationMatrix();
 }
 
-/// Shifts the clock of the primary IMU without changing its jitter. The shift replaces the random time offset of the
+/// Shifts the clock of the primary IMU; its jitter is unchanged. The shift replaces the random time offset of the
 /// clock.
 void time_offset(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situation& situation, double size) {
   const double own_s = situation.sensors.front().values.at("time_offset_s");
@@ -59,7 +59,7 @@ void time_offset(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situ
   for (std::int64_t& time_ns : primary(sensors, truth).time_ns) time_ns += shift_ns;
 }
 
-/// Increases the calibrated radius of the sphere by the size of the error.
+/// Adds the size of the error to the calibrated radius of the sphere.
 void radius(sim::Sensors& sensors, const sim::Truth&, const sim::Situation&, double size) {
   if (!(sensors.sphere_radius_m > 0.0))
     throw BadInput("the recording states no sphere radius, but this error needs a recording of a sphere");
@@ -76,8 +76,8 @@ void state_no_rail(sim::ImuRecord& imu) {
   for (std::uint8_t& flags : imu.clip_flags) flags = static_cast<std::uint8_t>(flags & ~kGyroClipFlags);
 }
 
-/// Replaces clipped readings by unclipped readings with a constant error per clipping interval, and removes all clip
-/// flags. The changed readings simulate the output of a rate method with a constant error.
+/// Replaces clipped readings by unclipped readings plus an error that is constant in each clipping interval, and
+/// removes all clip flags. The changed readings simulate a rate method with a constant error.
 void rate_error(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situation& situation, double size) {
   const ClippingTruth clipping(sensors, truth);
   sim::ImuRecord& imu = primary(sensors, truth);
@@ -93,15 +93,15 @@ void rate_error(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situa
   state_no_rail(imu);
 }
 
-/// Sets the measurement range of the IMU relative to the true saturation level. The function also removes the clip
-/// flags of the device, which would reveal the true level.
+/// Sets the measurement range of the IMU relative to the true saturation limit. Removes the clip flags of the device,
+/// which would reveal the true limit.
 void stated_rail(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situation& situation, double size) {
   sim::ImuRecord& imu = primary(sensors, truth);
   imu.stated_gyro_range_rad_s = situation.sensors.front().values.at("gyro_rail_rad_s") * (1.0 + size);
   for (std::uint8_t& flags : imu.clip_flags) flags = static_cast<std::uint8_t>(flags & ~kGyroClipFlags);
 }
 
-/// Sets the parameter for the saturation level, in methods that have such a parameter.
+/// Sets the saturation limit in the parameters of methods that have such a parameter.
 void report_rail(std::span<const sim::Parameter> known, double size, sim::Values& given) {
   for (const sim::Parameter& parameter : known) {
     if (parameter.name != "saturation_point_rad_s") continue;

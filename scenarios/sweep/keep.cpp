@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 constexpr std::size_t kCountMax = 1000;
 constexpr std::string_view kWorst = "worst:";
 
-/// Returns the first metric of a kind that ranks runs, or an empty text.
+/// Returns the first metric of a kind that ranks runs; empty if there is none.
 std::string ranking_metric(Kind kind) {
   for (const std::string& name : headline_metrics(kind)) {
     const MetricInfo& info = metric_info(name);
@@ -50,7 +50,7 @@ std::optional<double> badness(const OutcomeView& row, const std::string& metric)
   return std::nullopt;
 }
 
-/// Worst contains the worst runs of one scenario and method, up to a maximum number.
+/// Worst contains the worst runs of one scenario and method, at most a given number.
 class Worst {
  public:
   void add(double badness, std::uint64_t seed, std::size_t count) {
@@ -60,7 +60,7 @@ class Worst {
   const std::set<std::pair<double, std::uint64_t>>& draws() const { return draws_; }
 
  private:
-  std::set<std::pair<double, std::uint64_t>> draws_;  // the worst first, then by seed
+  std::set<std::pair<double, std::uint64_t>> draws_;  // sorted from worst to best, then by seed
 };
 
 std::set<DrawName> worst_draws(const Results& results, std::size_t count) {

@@ -10,7 +10,7 @@
 namespace tumble::scenarios {
 
 /// Computes statistics of a simulated motion (scenarios/scoring/motion_summary.hpp) as named numbers for the results
-/// database. Without an IMU, the list of numbers is empty. The motion values have the following names and meanings.
+/// database. Without an IMU, the list is empty. The names are:
 ///
 /// - `motion_moving_s` is the time between first and last movement, and `motion_path_m` is the path length of the
 ///   centre of mass.
@@ -30,8 +30,8 @@ namespace tumble::scenarios {
 /// - `motion_accel_clipped_share` is the fraction of the samples during motion with a clipped accelerometer axis.
 DrawValues motion_values(const std::string& scenario, std::uint64_t seed, const sim::Recording& recording);
 
-/// Computes the motion values that a real recording allows: the peak rate of the readings, `motion_peak_rate_rad_s`. If
-/// reference rates exist, the values include `motion_clips`, `motion_clipped_share`, `motion_clipped_samples` and
+/// Computes the motion values that a real recording allows: the peak rate of the readings (`motion_peak_rate_rad_s`).
+/// With reference rates, also `motion_clips`, `motion_clipped_share`, `motion_clipped_samples` and
 /// `motion_clip_depth_max_rad_s`.
 DrawValues recorded_motion_values(const std::string& scenario, std::uint64_t seed, const sim::Recording& recording);
 

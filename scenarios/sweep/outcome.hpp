@@ -11,8 +11,8 @@
 
 namespace tumble::scenarios {
 
-/// Setting is one value of a number that a suite varies for a curve (variation.hpp): key and value. An empty key means
-/// an unmodified scenario and unmodified methods.
+/// Setting is one value of a parameter that a suite varies for a curve (variation.hpp): key and value. An empty key
+/// means an unmodified scenario and unmodified methods.
 struct Setting {
   std::string key;
   double value = 0.0;
@@ -21,14 +21,14 @@ struct Setting {
   auto operator<=>(const Setting&) const = default;
 };
 
-/// Outcome is one row of the results: the result of one method on one simulated run.
+/// Outcome is one row of the results: status and scores of one method on one simulated run.
 struct Outcome {
   std::string scenario;
   std::uint64_t seed = 0;
   Kind kind = Kind::rate;
   std::string method;
   OutcomeStatus status = OutcomeStatus::failed;
-  std::string message;  ///< one line if not ok
+  std::string message;  ///< reason in one line if the status is not ok
   std::vector<Score> scores;
   std::string recording_digest;
   std::string estimate_digest;  ///< digest of the estimate's numbers, 32 hexadecimal digits
@@ -44,19 +44,18 @@ struct DrawValues {
   Setting setting = {};
 };
 
-/// Returns whether the method completed: its status is ok, diverged or failed.
+/// Returns true if the method completed: its status is ok, diverged or failed.
 bool was_scored(OutcomeStatus status);
 
-/// Returns whether `status` contains more information about the method than `other`. A completed run contains most
-/// information, followed by crashed and timeout, then by killed.
+/// Returns true if `status` states more about the method than `other`. The order is: a completed run (most), crashed
+/// and timeout, killed (least).
 bool outranks(OutcomeStatus status, OutcomeStatus other);
 
-/// Returns whether a sweep may repeat a method that ended with this status: crashed, timeout or killed.
+/// Returns true if a sweep may repeat a method with this status: crashed, timeout or killed.
 bool may_run_again(OutcomeStatus status);
 
-/// RejectedDraw is a scenario and a seed with which the simulation is impossible on any machine. In the database, a
-/// RejectedDraw has an empty kind and method. If a process dies instead, the status of its methods is crashed, timeout
-/// or killed.
+/// RejectedDraw is a scenario with a seed whose simulation is impossible on any machine. In the database, it has an
+/// empty kind and method. If instead a process dies, the status of its methods is crashed, timeout or killed.
 struct RejectedDraw {
   std::string scenario;
   std::uint64_t seed = 0;

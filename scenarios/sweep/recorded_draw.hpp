@@ -8,8 +8,8 @@
 
 #include "scenarios/sweep/evaluate.hpp"
 
-/// The functions in recorded_draw.hpp handle the recordings in a suite. Each recording counts as one simulated run,
-/// with the file's name as scenario and seed 1.
+/// recorded_draw.hpp handles the recordings in a suite. Each recording counts as one simulated run, with the file's
+/// name as scenario and with seed 1.
 namespace tumble::scenarios {
 
 inline constexpr std::uint64_t kRecordingSeed = 1;
@@ -20,21 +20,20 @@ struct RecordedDraw {
   std::filesystem::path path;
   Subject subject;
   std::string digest;      ///< digest of sensors and truth
-  bool simulated = false;  ///< simulated recordings have the truth that oracles need
+  bool simulated = false;  ///< a simulated recording has the truth that oracles need
   bool has_truth = false;
 };
 
-/// Finds the recordings that match the file patterns, each recording once, sorted by name. A pattern has the syntax of
-/// glob(7) and is relative to `folder` unless absolute. Throws BadInput for a pattern without a match, for two files
-/// with the same name, and for unreadable files.
+/// Finds the recordings that match the file patterns, each once, sorted by name. A pattern has the syntax of glob(7); a
+/// relative pattern starts in `folder`. Throws BadInput for a pattern without a match, two files with the same name, or
+/// an unreadable file.
 std::vector<RecordedDraw> find_recordings(std::span<const std::string> patterns, const std::filesystem::path& folder);
 
-/// Returns the methods that can run on a recording, in the order of `methods`. The recording must have the sensors and,
-/// if known, the robot that the method needs. Methods that need the truth need a simulated recording.
+/// Returns the methods that can process a recording, in the order of `methods`. The recording must have the sensors
+/// that a method needs, and its robot if known. Methods that need the truth need a simulated recording.
 std::vector<MethodPointer> applicable(std::span<const MethodPointer> methods, const RecordedDraw& recording);
 
-/// Reads a recording in the form of a simulated run. Throws BadInput if the digest of the recording has changed since
-/// the call of find_recordings.
+/// Reads a recording as a simulated run. Throws BadInput if its digest has changed since find_recordings.
 SimulatedDraw read_draw(const RecordedDraw& recording);
 
 }  // namespace tumble::scenarios

@@ -16,7 +16,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-// SQLite has no NaN, so NaN is stored as null.
+// SQLite has no NaN; null represents it.
 void bind_value(SQLite::Statement& statement, int index, double value) {
   if (std::isnan(value))
     statement.bind(index);

@@ -28,13 +28,13 @@ inline std::uint64_t read_seed(std::int64_t stored) {
   return std::bit_cast<std::uint64_t>(stored);
 }
 
-/// Impl is an open results database, shared by results_reading.cpp (reading) and results.cpp (writing).
+/// Impl is an open results database; results_reading.cpp reads it, and results.cpp writes it.
 struct Results::Impl {
   std::filesystem::path path;
   SQLite::Database database;
-  bool in_transaction = false;  ///< a transaction of the caller
+  bool in_transaction = false;  ///< the caller has an open transaction
 
-  /// Transaction opens a transaction unless the caller already has an open transaction.
+  /// Transaction opens a transaction if the caller has none.
   class Transaction {
    public:
     explicit Transaction(Impl& impl) {
@@ -50,19 +50,19 @@ struct Results::Impl {
 
   Impl(const std::filesystem::path& file, Mode mode)
       : path(file),
-        // Only one thread uses the connection, so SQLite needs no lock for each value.
+        // One thread uses the connection, so SQLite needs no locks.
         database(file.string(),
                  SQLite::OPEN_NOMUTEX |
                      (mode == Mode::read_only ? SQLite::OPEN_READONLY : SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE),
                  kBusyTimeoutMs) {
-    // With a rollback journal, the database is one file and is readable in a read-only folder. Each stored row is on
-    // disk before the call returns.
+    // With a rollback journal, the database is one file and can be read in a read-only folder. Each row is on disk when
+    // the call returns.
     if (mode == Mode::read_only) return;
     database.exec("PRAGMA synchronous = FULL");
     database.exec(mode == Mode::join ? "PRAGMA foreign_keys = OFF" : "PRAGMA foreign_keys = ON");
   }
 
-  // Calls a function and converts SQLite errors to a one-line BadInput with the path.
+  // Calls `action` and converts SQLite errors to a one-line BadInput with the path.
   template <typename Action>
   auto guarded(Action&& action) const {
     try {

@@ -21,7 +21,7 @@ namespace {
 
 constexpr const char* kDraw = " WHERE scenario = ? AND seed = ? AND varied = ? AND setting = ? AND kind ";
 
-/// ShardRow is a row of the table `outcomes` in the source database (the shard). The texts in a ShardRow are valid
+/// ShardRow is a row of the table `outcomes` in the source database (the shard). The texts of a ShardRow are valid
 /// until the next row is read.
 struct ShardRow {
   std::int64_t id, seed;
@@ -29,9 +29,9 @@ struct ShardRow {
   double setting;
 };
 
-/// Joining copies the rows of a source database (the shard) to another database with prepared statements. Joining reads
-/// outcomes and scores in parallel, sorted by the number of the outcome. The new numbers of the outcomes have the same
-/// order as the old numbers, so that scores are only appended.
+/// Joining copies the rows of a source database (the shard) to another database. Joining reads outcomes and scores in
+/// parallel, sorted by the outcome's number. New numbers have the order of the old numbers, so scores are only
+/// appended.
 class Joining {
  public:
   Joining(SQLite::Database& into, const SQLite::Database& shard, const std::filesystem::path& path, bool mixed,
@@ -140,7 +140,7 @@ class Joining {
     throw BadInput(path_.string() + ": unknown kind '" + name + "'");
   }
 
-  /// Inserts a row; returns false if a row with the same key exists.
+  /// Inserts a row. Returns false if a row with the same key exists.
   bool insert(const ShardRow& row) {
     insert_.bindNoCopy(1, row.scenario);
     insert_.bind(2, row.seed);
@@ -155,8 +155,8 @@ class Joining {
     return run(insert_) == 1;
   }
 
-  /// Inserts a row, or replaces the existing row with the same key. Returns true if the row was stored; `id` then
-  /// contains its number.
+  /// Inserts a row, or replaces the existing row with the same key. Returns true if the row was stored; `id` is then
+  /// its number.
   bool take(const ShardRow& row, std::int64_t& id) {
     require_kind(row.kind);
     const OutcomeStatus own = status(row.status);
@@ -177,7 +177,7 @@ class Joining {
     return true;
   }
 
-  /// Removes the existing row if the status of the new row outranks the status of the existing row.
+  /// Removes the existing row if the new status outranks it.
   bool replaces_held(const ShardRow& row, OutcomeStatus own) {
     scores_into_.flush();
     held_.bindNoCopy(1, row.scenario);
@@ -203,8 +203,8 @@ class Joining {
     }
     if (outranks(known, own) || mixed_ || !was_scored(known)) return false;
     if (own != known || estimate != row.estimate_digest ||
-        // If only rate methods run, lidars are not simulated, which changes the digest of the recording. The digests of
-        // recordings are therefore not compared for the kind rate.
+        // For the kind rate, digests of recordings are not compared: without lidars, which are not simulated if only
+        // rate methods run, the digest differs.
         (std::string(to_string(Kind::rate)) != row.kind && recording != row.recording_digest))
       complain(row, status_text, estimate);
     require_same_scores(row, id);
@@ -253,7 +253,7 @@ class Joining {
                     path_.string(), words(row), metric, here, elsewhere));
   }
 
-  /// Visits the scores of a row in the source database, sorted by name. The caller must request the rows in order.
+  /// Visits the scores of a row in the source database, sorted by name. Rows must be requested in order.
   template <typename Visit>
   void each_score(const ShardRow& row, const Visit& visit) {
     while (more_scores_ && scores_.getColumn(0).getInt64() < row.id) more_scores_ = next(scores_);
@@ -287,7 +287,7 @@ class Joining {
                           "SELECT id, status, recording_digest, estimate_digest FROM outcomes WHERE scenario = ? AND "
                           "seed = ? AND kind = ? AND method = ? AND varied = ? AND setting = ?"};
   SQLite::Statement held_scores_{into_, "SELECT metric, value FROM score_values WHERE outcome = ?"};
-  // In Mode::join, the database does not delete the scores of a deleted outcome automatically.
+  // In Mode::join, the database does not delete the scores of a deleted outcome itself.
   SQLite::Statement remove_scores_{into_, "DELETE FROM score_values WHERE outcome = ?"};
   SQLite::Statement remove_{into_, "DELETE FROM outcomes WHERE id = ?"};
   SQLite::Statement forget_{into_, std::string("DELETE FROM outcomes") + kDraw + "= ''"};

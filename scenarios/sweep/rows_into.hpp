@@ -11,10 +11,10 @@
 #include <string_view>
 #include <vector>
 
-/// The class RowsInto inserts many rows into a results database at a low cost per row.
+/// RowsInto inserts many rows into a results database at a low cost per row.
 namespace tumble::scenarios {
 
-// Binds a number to a statement; NaN becomes null, because SQLite has no NaN.
+// Binds a number to a statement. SQLite has no NaN; null represents it.
 inline void bind_number(double value, SQLite::Statement& to, int index) {
   if (std::isnan(value))
     to.bind(index);
@@ -74,8 +74,8 @@ struct DrawValue {
   }
 };
 
-/// RowsInto inserts rows in order, with many rows per SQL statement. Many rows per statement reduce the fixed cost,
-/// which is as large as the cost of a row.
+/// RowsInto inserts rows in order, with many rows per SQL statement, because the fixed cost of a statement is as large
+/// as the cost of a row.
 template <typename Row>
 class RowsInto {
  public:
@@ -85,7 +85,7 @@ class RowsInto {
     rows_.push_back(row);
     if (rows_.size() == kMany) flush();
   }
-  /// Writes the rows that are not written yet. The caller must call flush() before the rows are read.
+  /// Writes the remaining rows. The caller must call flush() before the rows are read.
   void flush() {
     if (rows_.size() == kMany) {
       for (std::size_t i = 0; i < kMany; ++i) rows_[i].bind(many_, static_cast<int>(i) * Row::kColumns);

@@ -16,12 +16,12 @@
 
 namespace tumble::scenarios {
 
-/// RunResult contains the recording of one run, and the estimate and outcome of each method.
+/// RunResult contains the recording of one run, and the estimate and the outcome of each method.
 struct RunResult {
   std::string scenario;
   std::uint64_t seed = 0;
   std::optional<sim::BuiltSituation> built;     ///< the simulated situation
-  std::shared_ptr<const sim::Surface> surface;  ///< reference surface of the map scores; null if no method maps
+  std::shared_ptr<const sim::Surface> surface;  ///< true surface for map scores; null if no method builds a map
   sim::Recording recording;
   std::string recording_digest;
   double simulate_cpu_s = 0;
@@ -30,10 +30,10 @@ struct RunResult {
   std::vector<Outcome> outcomes;    ///< parallel to methods
 };
 
-/// Draws and simulates one situation, then runs and scores each method, all in this process. Methods that do not apply
-/// to the robot are skipped. With a `setting`, the run is one point of a curve (variation.hpp), and the recording
-/// contains the sensor data that the methods receive. Throws BadInput, sim::InvalidSituation or sim::SimulationFailure
-/// if the simulation is impossible.
+/// Draws and simulates one situation, then runs and scores each method, in this process. Methods for other robots are
+/// skipped. With a `setting`, the run is one point of a curve (variation.hpp), and the recording contains the sensor
+/// data that the methods receive. Throws BadInput, sim::InvalidSituation or sim::SimulationFailure if the simulation is
+/// impossible.
 RunResult run_situation(const DataRoot& data, const Scenario& scenario, std::uint64_t seed,
                         std::span<const MethodPointer> methods, int threads, Lidars lidars = Lidars::simulated,
                         const Setting& setting = {});

@@ -39,7 +39,7 @@ void read_seeds(const YamlNode& node, Suite& suite) {
 /// Splits a text such as "a + b" into its keys.
 std::vector<std::string> keys_of(const std::string& text, const YamlNode& node) {
   std::vector<std::string> keys;
-  std::stringstream stream(text + "+");  // a trailing separator must give an empty key, which is rejected later
+  std::stringstream stream(text + "+");  // a trailing "+" gives an empty key, which is rejected later
   for (std::string key; std::getline(stream, key, '+');) {
     std::erase(key, ' ');
     if (key.empty() || std::find(keys.begin(), keys.end(), key) != keys.end()) {
@@ -165,12 +165,12 @@ void read_draws(const DataRoot& data, const YamlNode& root, const std::map<std::
   read_scenarios(data, fields.at("scenarios"), suite);
 }
 
-/// Resolves the relative path of an external method against the folder of the suite.
+/// Returns the path of an external method relative to the folder of the suite, or the name of a built-in method.
 std::string method_name(const std::string& text, const std::filesystem::path& folder) {
   return is_method_file(text) ? (folder / text).string() : text;
 }
 
-// Throws BadInput if the text is a scenario file instead of a suite file.
+// Throws BadInput if the text is that of a scenario file.
 void require_no_scenario(const YamlNode& root) {
   if (!root.is_map()) return;
   for (const auto& [key, value] : root.entries()) {

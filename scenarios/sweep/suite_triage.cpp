@@ -20,10 +20,9 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr char kBetween = '\t';  // separates the input's name from its outcome; no name contains a tab
+constexpr char kBetween = '\t';  // separates an input's name from its outcome; names contain no tab
 
-/// Runs the triage in the process of a simulated run. The function writes each result as a line, then an empty line or
-/// an error.
+/// Runs the triage of one simulated run in its process. Writes each result as a line, then an empty line or an error.
 void report_rows(const DataRoot& data, const Scenario& scenario, std::uint64_t seed, const Method& method,
                  const SuiteTriageOptions& options, int fd) {
   const auto report_trouble = [&](const std::string& why) {
@@ -50,7 +49,7 @@ std::string doc_of(const std::string& input) {
   return "unchanged recording";
 }
 
-/// Reads the triage results that a process wrote; returns false if the process did not complete.
+/// Reads the triage results that a process wrote. Returns false if the process did not complete.
 bool read_rows(const std::string& text, const Failure& failure, DrawTriage& out) {
   std::size_t begin = 0;
   for (std::size_t end; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1) {
@@ -71,8 +70,8 @@ bool read_rows(const std::string& text, const Failure& failure, DrawTriage& out)
 }
 
 struct Worker {
-  std::size_t index;  ///< of the draw
-  double deadline_s;  ///< time of now_s()
+  std::size_t index;  ///< index of the simulated run
+  double deadline_s;  ///< deadline as a time of now_s()
   Process process;
   std::string said;
 };
@@ -85,7 +84,7 @@ void conclude(Worker& worker, bool late, const Failure& failure, DrawTriage& dra
   draw.error_code = late ? "the draw did not end within its time limit" : "the draw's process " + end.describe();
 }
 
-/// Starts the process of a simulated run; returns false if another process must end first.
+/// Starts the process of a simulated run. Returns false if another process must end first.
 bool begin(std::list<Worker>& workers, std::size_t index, double deadline_s, const std::function<void(int)>& work) {
   try {
     workers.push_back({index, deadline_s, Process(work, true), {}});

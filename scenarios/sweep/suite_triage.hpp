@@ -13,36 +13,36 @@
 #include "scenarios/sweep/sweep.hpp"
 #include "scenarios/sweep/triage.hpp"
 
-/// The functions in suite_triage.hpp run the triage for many simulated runs, to find which true input helps most over a
+/// suite_triage.hpp runs the triage of many simulated runs, to find which true input improves a method most over a
 /// suite.
 namespace tumble::scenarios {
 
-/// DrawTriage is the triage result of one simulated run: outcomes with true inputs.
+/// DrawTriage is the triage result of one simulated run: outcomes with and without true inputs.
 struct DrawTriage {
   DrawName draw;
-  std::vector<TriageRow> rows;  ///< rows of triage(); the first is the unmodified run
-  std::string error_code;       ///< why rows are missing: simulation impossible, process died or timed out
+  std::vector<TriageRow> rows;  ///< rows of triage(); the first is the outcome without true inputs
+  std::string error_code;       ///< reason for missing rows: simulation impossible, process died or timed out
 };
 
-/// Returns the scenarios and seeds of the suite whose robots the method supports. The order of the runs is that of a
-/// sweep, with seeds as the outer loop. Throws BadInput if the seeds are invalid.
+/// Returns the scenarios and seeds of the suite whose robots the method supports, in the order of a sweep: seeds are
+/// the outer loop. Throws BadInput if the seeds are invalid.
 std::vector<DrawName> draws_of(const DataRoot& data, const Suite& suite, const Method& method);
 
-/// Returns the unmodified simulated runs in `results` on which the method failed.
+/// Returns the unmodified runs in `results` on which the method failed.
 std::set<DrawName> failed_draws(const Results& results, const Method& method, const Failure& failure);
 
 struct SuiteTriageOptions {
   TriageOptions triage;                  ///< `on_run` and `on_row` are not called
-  int jobs = 1;                          ///< processes
-  double memory_mib = kWorkerMemoryMib;  ///< memory limit (RLIMIT_DATA) of each process of a run
+  int jobs = 1;                          ///< number of processes
+  double memory_mib = kWorkerMemoryMib;  ///< memory limit (RLIMIT_DATA) of each process
   const std::atomic<bool>* stop = nullptr;
-  std::function<void(const DrawTriage&)> on_draw;  ///< called after each draw
+  std::function<void(const DrawTriage&)> on_draw;  ///< called after each simulated run
 };
 
 /// Runs the triage of each simulated run in a separate process. The time limit of the process is that of its method
-/// runs plus two further runs, and its memory limit is `memory_mib`. If the process of a run dies or times out, its
-/// results so far are kept, with an error. The results are in the order of `draws`; the list is shorter if the triage
-/// was stopped. Throws BadInput for an unreadable scenario, an invalid memory limit, or if no process can be started.
+/// runs plus two further runs; its memory limit is `memory_mib`. If the process dies or times out, its results so far
+/// are kept, with an error. The results are in the order of `draws`; if the triage was stopped, the last ones are
+/// missing. Throws BadInput for an unreadable scenario, an invalid memory limit, or if no process can be started.
 std::vector<DrawTriage> triage_draws(const DataRoot& data, std::span<const DrawName> draws, const Method& method,
                                      const SuiteTriageOptions& options);
 

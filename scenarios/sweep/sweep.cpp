@@ -41,7 +41,7 @@ void claim(Results& results, const DataRoot& data, const Suite& suite, const std
   if (!suite.recordings.empty()) results.set_note("source", kRecordingsSource);
 }
 
-/// The stored paths are absolute, so that each run can be repeated from any folder (run_again.hpp).
+/// Stores absolute paths of the descriptions, so that each run can be repeated from any folder (run_again.hpp).
 void note_descriptions(Results& results, const Suite& suite) {
   for (const std::string& name : suite.methods) {
     if (!is_method_file(name)) continue;
@@ -51,7 +51,7 @@ void note_descriptions(Results& results, const Suite& suite) {
   }
 }
 
-/// Throws BadInput if the results would contain two versions of an external method under the same name.
+/// Throws BadInput if the results contain another version of an external method.
 void claim_methods(Results& results, std::span<const MethodPointer> methods) {
   for (const MethodPointer& method : methods) {
     if (method->info.version.empty()) continue;
@@ -115,7 +115,7 @@ class Sweep {
 
   bool stopped() const { return options_.stop != nullptr && options_.stop->load(); }
 
-  /// Runs until all tasks are complete, or until the sweep is stopped.
+  /// Runs until all tasks are complete or the sweep is stopped.
   void work(const NextDraw& next) {
     std::optional<DrawTask> waiting = next();
     while (!stopped()) {
@@ -128,7 +128,7 @@ class Sweep {
       }
       report();
     }
-    // Messages that workers sent before they were stopped are also stored.
+    // Messages that a worker sent before it was stopped are stored too.
     for (DrawWorker& worker : workers_) {
       const bool busy = worker.is_busy();
       hear(worker);
@@ -156,7 +156,7 @@ class Sweep {
     return std::nullopt;
   }
 
-  /// Passes the task to an idle or new worker; returns false if no worker is available.
+  /// Passes the task to an idle or new worker. Returns false if no worker is available.
   bool give(const DrawTask& task) {
     if (busy() >= options_.jobs) return false;
     const double deadline_s = now_s() + suite_.timeout_s * (static_cast<double>(task.runs.size()) + kSimulateTimeouts);
@@ -188,7 +188,7 @@ class Sweep {
     poll(waiting.data(), waiting.size(), kPollMs);
   }
 
-  /// Stores the messages of a worker; returns true if the worker died during a task.
+  /// Stores the messages of a worker. Returns true if the worker died during a task.
   bool serve(DrawWorker& worker) {
     if (!worker.is_busy()) return false;
     const bool open = hear(worker);
@@ -206,7 +206,7 @@ class Sweep {
     return true;
   }
 
-  /// Reads the messages of a worker; returns false if the worker has ended.
+  /// Reads the messages of a worker. Returns false if the worker has ended.
   bool hear(DrawWorker& worker) {
     std::vector<Message> said;
     const bool open = worker.hear(said);
@@ -220,7 +220,7 @@ class Sweep {
     return open;
   }
 
-  // The process of a task died, so the remaining methods of the task get an outcome without a result.
+  // The process of a task died: each of its remaining methods gets an outcome without scores.
   void account_for_death(const DrawTask& draw, bool late, const Process::End& end) {
     const std::string what =
         late ? "the draw did not end within its time limit" : "the draw's process " + end.describe();
@@ -238,8 +238,8 @@ class Sweep {
     if (outcome.status != OutcomeStatus::ok) ++progress_.failures[outcome.status];
   }
 
-  /// Updates the folder of kept runs to match the results: repeats missing runs and removes runs that the rule no
-  /// longer selects. A file system error does not stop the sweep.
+  /// Updates the folder of kept runs to match the results: repeats missing runs, and removes runs that the rule does
+  /// not select. A file system error does not stop the sweep.
   void update_kept() {
     updating_kept_ = true;
     const std::set<DrawName> wanted = draws_to_keep(results_, options_.keep);
@@ -299,12 +299,12 @@ class Sweep {
   double started_s_;
   SweepPlan plan_;
   KeptDraws kept_;
-  const ScratchFolder temporary_{"sweep"};  ///< removed after the workers
+  const ScratchFolder temporary_{"sweep"};  ///< removed after the workers have ended
   WorkerTerms terms_;
   std::list<DrawWorker> workers_;
   SweepProgress progress_;
   std::uint64_t done_before_ = 0;
-  bool updating_kept_ = false;  ///< runs are only reproduced for their files
+  bool updating_kept_ = false;  ///< runs are repeated only to write their files
 };
 
 }  // namespace

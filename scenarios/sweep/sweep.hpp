@@ -21,30 +21,29 @@
 
 namespace tumble::scenarios {
 
-/// DrawClass is a named class of simulated runs, for example "mild". Each run of the class has a scenario and a seed.
+/// DrawClass is a named class of simulated runs, for example "mild"; each run has a scenario and a seed.
 struct DrawClass {
   std::string name;
   std::vector<std::pair<std::string, std::uint64_t>> draws;
 };
 
 /// Suite is the content of a suite file, scenarios/suites/NAME.yaml. A suite runs methods on scenarios with several
-/// seeds, repeated for each point of each curve, or on recordings (recorded_draw.hpp).
+/// seeds, once per point of each curve, or on recordings (recorded_draw.hpp).
 struct Suite {
   std::string name;
   std::string doc;
   std::vector<std::string> scenarios;
   std::uint64_t first_seed = 1, last_seed = 1;
   std::vector<std::string> methods;         ///< names for find_methods
-  double timeout_s = 300;                   ///< limit for one method on one draw
+  double timeout_s = 300;                   ///< time limit of one method on one run
   std::vector<std::string> recordings;      ///< file patterns, instead of scenarios and seeds
-  std::filesystem::path recordings_folder;  ///< base folder of the patterns; default: the suite file's
-  std::vector<DrawClass> classes;           ///< key `draws`: restricts scenarios x seeds to these runs; empty: all
+  std::filesystem::path recordings_folder;  ///< base folder of the patterns; default: folder of the suite file
+  std::vector<DrawClass> classes;           ///< key `draws`: only these runs of scenarios x seeds; empty: all
   std::vector<std::string> shown_metrics;   ///< key `metrics`: shown by `bench`; empty: the headline metrics
   std::vector<Variation> curves;            ///< key `vary`: {KEY: [values]}; "+" joins keys that change together
 
   bool has_draw(const std::string& scenario, std::uint64_t seed) const;
-  /// Returns the number of unmodified simulated runs with seeds from `first_seed` to `last_seed`. The seeds may be a
-  /// part of the suite's seeds.
+  /// Returns the number of unmodified simulated runs from `first_seed` to `last_seed`.
   std::uint64_t draw_count() const;
 };
 
@@ -53,38 +52,36 @@ void require_seeds(const Suite& suite);
 
 std::vector<std::string> suite_names(const DataRoot& data);
 /// Loads a suite by its name, from a suite file, or from the name of a scenario. The name of a scenario gives a suite
-/// of all methods on this scenario; a named case uses its seed. Throws BadInput if the name is unknown or the file is
-/// invalid.
+/// of all methods on this scenario. A named case is used with its own seed. Throws BadInput if the name is unknown or
+/// the file is invalid.
 Suite load_suite(const DataRoot& data, const std::string& name);
 
 struct SweepProgress {
   std::uint64_t draws_done = 0, draws_total = 0;
   std::uint64_t outcomes = 0, rejected = 0;
   std::map<OutcomeStatus, std::uint64_t> failures;  ///< outcomes that are not ok, by status
-  std::uint64_t kept = 0, to_keep = 0;              ///< kept runs at the end, and how many should be kept
-  std::string not_kept;                             ///< last error of keeping a run
+  std::uint64_t kept = 0, to_keep = 0;              ///< kept runs, and runs that should be kept; set at the end
+  std::string not_kept;                             ///< latest error when keeping a run
   double elapsed_s = 0, left_s = 0;
-  double peak_mib = 0;  ///< largest resident size of any finished process
+  double peak_mib = 0;  ///< largest resident memory of any finished process
   std::uint64_t not_ok() const;
 };
 
-/// kWorkerMemoryMib is the default memory limit of a worker, which equals the limit of an external command
-/// (processes/command.hpp).
+/// Default memory limit of a worker; equal to the limit of an external command (processes/command.hpp).
 inline constexpr double kWorkerMemoryMib = 8192.0;
 /// Throws BadInput if the memory limit of a worker is too small or too large.
 void require_worker_memory(double mib);
 
 struct SweepOptions {
   int jobs = 1;                             ///< number of workers
-  double memory_mib = kWorkerMemoryMib;     ///< limit (RLIMIT_DATA) of a worker and of each of its methods
+  double memory_mib = kWorkerMemoryMib;     ///< memory limit (RLIMIT_DATA) of a worker and of its child processes
   const std::atomic<bool>* stop = nullptr;  ///< set to stop after storing completed results
   std::function<void(const SweepProgress&)> on_progress;
-  std::vector<OutcomeStatus> again;  ///< repeat rows with these statuses: crashed, timeout, killed
-  Keep keep;                         ///< which runs are kept next to the database; none: kept files are unchanged
-  RecordingInfo versions;            ///< versions of program and engine, for kept recordings
-  /// If `recordings_unseen` is true, the simulation omits lidars, provided that the built-in methods of the suite read
-  /// no lidar. Without lidars, estimates and scores are unchanged, but the digest of the recording differs. The option
-  /// recordings_unseen cannot be combined with `keep`.
+  std::vector<OutcomeStatus> again;  ///< statuses of rows to repeat: crashed, timeout, killed
+  Keep keep;                         ///< rule for kept runs; `none` leaves kept files unchanged
+  RecordingInfo versions;            ///< versions of program and physics engine, for kept recordings
+  /// true: lidars are not simulated if the methods of a task do not read them, although the recording would contain
+  /// them. Estimates and scores are unchanged, but the digest of the recording differs. Not allowed with `keep`.
   bool recordings_unseen = false;
 };
 
@@ -95,18 +92,17 @@ void require_sound(const Suite& suite, const SweepOptions& options);
 /// belongs to another suite, build, models or scenarios.
 Results open_results(const DataRoot& data, const Suite& suite, const std::filesystem::path& database);
 
-/// Executes the runs of the suite that the database does not contain yet. Workers (draw_worker.hpp) run each method in
-/// a separate process. After a crash, time-out or memory failure of a method, the outcome is crashed, timeout or
-/// killed, and the sweep continues. Outcomes are stored as they complete. Simulated runs are planned one at a time, so
-/// the memory use is independent of their number.
+/// Executes the runs of the suite that the database lacks. Workers (draw_worker.hpp) run each method in a separate
+/// process. If a method crashes, times out or exceeds its memory, its outcome is crashed, timeout or killed, and the
+/// sweep continues. Each outcome is stored when it is complete. Simulated runs are planned one at a time, so memory use
+/// does not depend on their number.
 ///
-/// At the end of the sweep, the folder of kept runs matches the keep rule. Returns the final progress of the sweep. If
-/// the sweep was stopped, draws_done is below draws_total. Throws BadInput if the results of a recording were computed
-/// from other data (another digest), or if no method applies to any scenario.
+/// At the end, the folder of kept runs matches the keep rule. Returns the final progress; if the sweep was stopped,
+/// draws_done is below draws_total. Throws BadInput if the results of a recording come from other data (another
+/// digest), or if no method can run on any scenario.
 SweepProgress sweep(const DataRoot& data, const Suite& suite, const DatabaseOwner& database,
                     const SweepOptions& options);
-/// Executes the sweep, and locks the database during the sweep. Throws BadInput if another process has locked the
-/// database.
+/// Locks the database and executes the sweep. Throws BadInput if another process has locked the database.
 SweepProgress sweep(const DataRoot& data, const Suite& suite, const std::filesystem::path& database,
                     const SweepOptions& options);
 

@@ -4,28 +4,27 @@
 #include <string>
 #include <vector>
 
-/// The header sweep_notes.hpp lists keys and values of the notes that a sweep stores in its results
-/// (Results::set_note).
+/// sweep_notes.hpp lists keys and values of the notes that a sweep stores in its results (Results::set_note).
 namespace tumble::scenarios {
 
-/// kRecordingsSource is the value of the note `source` if the results come from recordings. Recordings cannot be
-/// simulated again.
+/// Value of the note `source` if the results come from recordings, which cannot be simulated again.
 inline constexpr const char* kRecordingsSource = "recordings";
 
-/// kMixedBuilds is the value of the note `build` if results of several builds were merged, which only reports accept.
+/// Value of the note `build` if results of several builds were merged; only reports accept such results.
 inline constexpr const char* kMixedBuilds = "mixed";
 
-/// kCommandNote is the key of the note with the commands that produced the results. The note has one line per sweep,
-/// with suite, seeds and methods, quoted for a shell.
+/// Key of the note with the commands that produced the results: one line per sweep with suite, seeds and methods,
+/// quoted for a shell.
 inline constexpr const char* kCommandNote = "command";
 
 /// Returns the non-empty lines of a note with commands.
 std::vector<std::string> commands_of(const std::string& note);
 
-/// Adds the lines of `more` that are missing in `note`, and returns the result.
+/// Returns `note` with the lines of `more` that it lacks.
 std::string with_commands(const std::string& note, const std::string& more);
 
-/// Returns `text` as one word of a POSIX shell, in quotes if it contains anything but letters, digits and `_-./:=,+@%`.
+/// Returns `text` as one word of a POSIX shell. The word is quoted if it contains anything but letters, digits and
+/// `_-./:=,+@%`.
 std::string shell_word(const std::string& text);
 
 }  // namespace tumble::scenarios

@@ -17,8 +17,8 @@ namespace {
 
 using nlohmann::json;
 
-// An external command receives the fraction kOwnShare of the time limit of its method. The process that started the
-// command can then end the command before its deadline.
+// Fraction of a method's time limit that an external command receives. The parent process can then end the command
+// before its own deadline.
 constexpr double kOwnShare = 0.9;
 
 }  // namespace
@@ -50,7 +50,7 @@ SweepPlan::SweepPlan(const DataRoot& data, const Suite& suite, const SweepOption
     throw BadInput(fmt::format(
         "suite {}: none of the suite's methods applies to its scenarios; add a method for this robot", suite.name));
   }
-  // If no situation can be drawn from a scenario, the caller gets an exception instead of an outcome.
+  // A scenario from which no situation can be drawn must cause an exception, not an outcome.
   for (const Planned& each : scenarios_) draw(data, each.scenario, suite.first_seed);
   next_.seed = suite.first_seed;
   next_.past_seeds = scenarios_.empty();
@@ -170,8 +170,7 @@ DrawTask SweepPlan::again(const DrawName& draw, const Results& results) const {
   return task;
 }
 
-/// Returns whether any method reads lidars on the scenario and seed, in this sweep or in an earlier sweep. The test
-/// considers both the remaining and the completed methods.
+/// Returns true if a method reads lidars on this scenario and seed, in this or in an earlier sweep.
 bool SweepPlan::read_lidars(const Planned& planned, const std::vector<Outcome>& held) const {
   const auto reads = [](Kind kind) { return kind != Kind::rate; };
   return std::any_of(planned.methods.begin(), planned.methods.end(),

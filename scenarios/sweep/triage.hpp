@@ -10,33 +10,33 @@
 
 namespace tumble::scenarios {
 
-/// TrueInput is one input of a method, with a function that replaces the input by its true value. Each input has one
-/// line in a table of true_inputs.cpp.
+/// TrueInput is one input of a method, with a function that replaces it by its true value. The table in true_inputs.cpp
+/// lists the inputs.
 struct TrueInput {
   std::string name;
   std::string doc;
-  /// Replaces the input in the sensor data `sensors`, which belong to `truth`, by its true value. Returns false if the
-  /// recording lacks this input or if the input is already exact.
+  /// Replaces the input in `sensors`, which belong to `truth`, by its true value. Returns false if the recording lacks
+  /// the input or it is already exact.
   bool (*replace)(sim::Sensors& sensors, const sim::Truth& truth);
 };
 
 /// Returns all inputs that can be replaced by their true values; the last entry replaces all at once.
 std::span<const TrueInput> true_inputs();
 
-/// Returns whether the score states that the run failed (for example `map_failed`). Verdicts without a better direction
-/// only describe the run.
+/// Returns true if the score is a verdict that the run failed (for example `map_failed`). Unranked verdicts only
+/// describe the run.
 bool is_failed_verdict(const Score& score);
 
 /// Failure contains the criteria of a failure: a status other than ok, a failing verdict (`map_failed`), or a metric
-/// beyond a limit.
+/// worse than a limit.
 struct Failure {
-  std::string metric;  ///< empty: status and verdicts only
-  double limit = 0.0;  ///< upper limit, or lower limit if higher is better
+  std::string metric;  ///< empty: only status and verdicts count
+  double limit = 0.0;  ///< upper limit, or lower limit if higher values are better
   bool holds(const Outcome& outcome) const;
 };
 
 struct TriageRow {
-  std::string input;  ///< replaced input; "none" for the unmodified outcome
+  std::string input;  ///< replaced input; "none" for the outcome without true inputs
   std::string doc;
   Outcome outcome;
   bool fails = false;
@@ -44,15 +44,15 @@ struct TriageRow {
 
 struct TriageOptions {
   Failure failure;
-  double timeout_s = 300.0;  ///< limit of one run
+  double timeout_s = 300.0;  ///< time limit of one run
   std::function<void(const std::string& input)> on_run;
   std::function<void(const TriageRow&)> on_row;  ///< called after each row
 };
 
-/// Runs a method on the unmodified sensor data, then with each input replaced by its true value, in separate processes.
-/// All runs are scored against the same truth and the original sensor data. The first result belongs to the unmodified
-/// sensor data. If no true input prevents a failure, its cause is the method or the scenario. Throws the exceptions of
-/// simulate_draw, and BadInput if the method does not apply to the scenario.
+/// Runs a method on the original sensor data, then with each input replaced by its true value, in separate processes.
+/// All runs are scored against the same truth. The first result is that of the original sensor data. If no true input
+/// prevents a failure, the cause is the method or the scenario. Throws the exceptions of simulate_draw, and BadInput if
+/// the method cannot run on the scenario.
 std::vector<TriageRow> triage(const DataRoot& data, const Scenario& scenario, std::uint64_t seed, const Method& method,
                               const TriageOptions& options);
 

@@ -14,7 +14,7 @@ namespace {
 using Readings = std::vector<Eigen::Vector3d>;
 
 constexpr std::uint8_t kAccelClipFlags = 0b111000;
-constexpr std::uint32_t kInstant_ns = 1000;  // short enough for no motion, but stamps still differ, as mappers require
+constexpr std::uint32_t kInstant_ns = 1000;  // too short for motion, but time stamps still differ, as mappers require
 
 double largest(const Readings& readings) {
   double largest = 0.0;
@@ -43,7 +43,7 @@ bool replace_accel(sim::ImuRecord& imu, const Readings& readings) {
   return true;
 }
 
-/// Applies `replace(record, truth)` to each IMU, and returns whether any IMU changed.
+/// Applies `replace(record, truth)` to each IMU. Returns true if an IMU changed.
 template <typename Replace>
 bool each_imu(sim::Sensors& sensors, const sim::Truth& truth, Replace&& replace) {
   bool changed = false;
@@ -93,8 +93,7 @@ bool exact_mounting(sim::Sensors& sensors, const sim::Truth& truth) {
   return changed;
 }
 
-/// Sets the time stamp of each sample to the true end of its averaging window. The samples of the recording must be
-/// complete.
+/// Sets each time stamp to the true end of the averaging window. The recording must contain all samples.
 bool exact_stamps(sim::Sensors& sensors, const sim::Truth& truth) {
   bool changed = false;
   const std::int64_t end_ns = static_cast<std::int64_t>(truth.q_WB.size() - 1) * truth.period_ns;
@@ -109,7 +108,7 @@ bool exact_stamps(sim::Sensors& sensors, const sim::Truth& truth) {
   return changed;
 }
 
-/// Returns the true pose of the first lidar at a given time. The track must belong to the frame of the first lidar.
+/// Returns the true pose of the first lidar at `time_ns`. `track` must be that of the first lidar.
 Eigen::Isometry3d pose_of(const TruthTrack& track, std::int64_t time_ns) {
   const PoseState pose = track.pose(std::min(time_ns, track.last_ns()));
   Eigen::Isometry3d T_WL = Eigen::Isometry3d::Identity();
@@ -134,8 +133,8 @@ bool exact_ranges(sim::Sensors& sensors, const sim::Truth& truth) {
   return !lidar.range_m.empty();
 }
 
-/// Removes the motion distortion of the sweeps with the true poses. All points are transformed to the sensor pose at
-/// the last point, with times within a microsecond. The range errors of the points remain.
+/// Removes the motion distortion of the sweeps: the true poses move all points to the sensor pose at the last point,
+/// with times within a microsecond. The range errors remain.
 bool unbent_sweeps(sim::Sensors& sensors, const sim::Truth& truth) {
   if (sensors.lidars.empty() || truth.lidars.empty()) return false;
   sim::LidarRecord& lidar = sensors.lidars.front();
@@ -172,8 +171,8 @@ bool exact_series(sim::Sensors& sensors, const sim::Truth& truth) {
   return changed;
 }
 
-/// Range errors are corrected first, because this correction needs the time of each point. The removal of the motion
-/// distortion deletes the times of the points.
+/// Range errors are corrected first: the correction needs the time of each point, which the removal of distortion
+/// deletes.
 bool everything(sim::Sensors& sensors, const sim::Truth& truth) {
   bool changed = false;
   for (const auto& replace :

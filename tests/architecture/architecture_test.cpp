@@ -196,7 +196,7 @@ TEST(Architecture, CheckerRefusesForbiddenIncludes) {
   EXPECT_NE(broken_rule("estimator/src/mapping/x.cpp", "pcl/point_types.h"), "");
   EXPECT_NE(broken_rule("estimator/src/mapping/x.cpp", "tumble/odometry/tumbling_odometry.hpp"), "");
   EXPECT_NE(broken_rule("estimator/src/attitude/x.cpp", "../mapping/tracking.hpp"), "");
-  EXPECT_EQ(broken_rule("estimator/src/attitude/x.cpp", "../common/state_bytes.hpp"), "");
+  EXPECT_EQ(broken_rule("estimator/src/attitude/x.cpp", "../common/dense.hpp"), "");
   EXPECT_EQ(broken_rule("estimator/src/pcl/x.cpp", "pcl/point_types.h"), "");
 }
 

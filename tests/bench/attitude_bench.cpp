@@ -9,9 +9,7 @@
 
 #include "scenarios/baselines/attitude/autogain.hpp"
 #include "scenarios/baselines/attitude/complementary.hpp"
-#include "scenarios/baselines/attitude/eskf.hpp"
 #include "scenarios/baselines/attitude/madgwick.hpp"
-#include "scenarios/baselines/attitude/mahony.hpp"
 #include "tumble/attitude/strapdown.hpp"
 #include "tumble/attitude/tumble_attitude.hpp"
 #include "tumble/attitude/vqf.hpp"
@@ -56,10 +54,8 @@ void filter(benchmark::State& state) {
 BENCHMARK(filter<tumble::Strapdown>)->Name("integrate");
 BENCHMARK(filter<tumble::baselines::Madgwick>)->Name("madgwick");
 BENCHMARK(filter<tumble::baselines::Complementary>)->Name("complementary");
-BENCHMARK(filter<tumble::baselines::Mahony>)->Name("mahony");
 BENCHMARK(filter<tumble::baselines::Autogain>)->Name("autogain");
 BENCHMARK(filter<tumble::Vqf>)->Name("vqf");
-BENCHMARK(filter<tumble::baselines::Eskf>)->Name("eskf");
 BENCHMARK(filter<tumble::TumbleAttitude>)->Name("tumble");
 
 void rolling_sphere(benchmark::State& state) {

@@ -76,7 +76,7 @@ bool parse(int count, char** words, Request& request) {
   request.scenario = plain[0];
   request.first = std::strtoull(plain[1].c_str(), nullptr, 10);
   request.last = std::strtoull(plain[2].c_str(), nullptr, 10);
-  if (request.methods.empty()) request.methods = {"integrate", "madgwick", "vqf", "tumble", "tumble_batch", "oracle"};
+  if (request.methods.empty()) request.methods = {"integrate", "madgwick", "vqf", "tumble"};
   return true;
 }
 

@@ -197,7 +197,7 @@ bool parse(int count, char** words, Request& request) {
       return false;
     }
   }
-  if (request.methods.empty()) request.methods = {"rate/interpolate", "rate/carried", "rate/tumble"};
+  if (request.methods.empty()) request.methods = {"rate/interpolate", "rate/tumble"};
   return true;
 }
 

@@ -12,7 +12,6 @@
 #include <ctime>
 #include <vector>
 
-#include "estimator/src/common/state_bytes.hpp"
 #include "tests/estimator/mapping/endless_corridor.hpp"
 #include "tests/estimator/mapping/synthetic_room.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
@@ -71,32 +70,6 @@ void sweep_of_28800_points(benchmark::State& state) {
   state.counters["added"] = static_cast<double>(report.map_points_added);
 }
 BENCHMARK(sweep_of_28800_points)->Arg(25)->Arg(50)->Unit(benchmark::kMillisecond)->ArgName("voxel_cm");
-
-/// Measures saving and loading the state of an odometry.
-void map_saved_and_loaded(benchmark::State& state) {
-  const LidarInertialOdometry::Params params;
-  const Saved saved(params);
-  const bool loads = state.range(0) != 0;
-  std::vector<std::byte> bytes;
-  for (auto _ : state) {
-    if (loads) state.PauseTiming();
-    bytes.clear();
-    tumble::StateWriter out(bytes);
-    saved.odometry.save(out);
-    if (!loads) continue;
-    LidarInertialOdometry other(params);
-    state.ResumeTiming();
-    tumble::StateReader in(bytes);
-    other.load(in);
-    if (!in.status().ok()) {
-      state.SkipWithError("the state was refused");
-      break;
-    }
-  }
-  state.counters["bytes"] = static_cast<double>(bytes.size());
-  state.counters["points"] = static_cast<double>(saved.odometry.map().size());
-}
-BENCHMARK(map_saved_and_loaded)->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond)->ArgName("load");
 
 /// Returns the elapsed processor time, which other processes on the machine do not lengthen.
 double since_ms(std::clock_t start) {

@@ -4,19 +4,17 @@
 // The program measures a gyro at its saturation level of RAIL rad/s on AXIS (x, y, z), and prints a line per file. The
 // columns are the share of rows that repeat the readings before; the share of the gyro's own readings at the saturation
 // level; how long they stay there; the true rate there; and the scatter of the readings of one sign within segments,
-// before and after the fit of a plane. FILE is a simulated recording (.h5) or one of RepoIMU (.csv), whose rate is that
-// of the cameras. The program is no test.
+// before and after the fit of a plane. FILE is a recording with true rates (.h5). The importer of RepoIMU
+// removes repeated readings. The program is no test.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
-#include <fstream>
 #include <string>
 #include <vector>
 
-#include "scenarios/recordings/import.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 #include "scenarios/statistics/statistics.hpp"
 
@@ -39,7 +37,7 @@ double repeated(const std::vector<Row>& rows) {
   return rows.size() < 2 ? 0.0 : static_cast<double>(count) / static_cast<double>(rows.size() - 1);
 }
 
-Readings simulated(const std::string& file) {
+Readings readings_of(const std::string& file) {
   const sim::ImuRecord imu = scenarios::read_sensors(file).imus.at(0);
   const std::vector<Vector3d> rate = scenarios::read_truth(file).imus.at(0).rate_rad_s;
   Readings out;
@@ -51,32 +49,6 @@ Readings simulated(const std::string& file) {
     out.gyro.push_back(imu.gyro_rad_s[k]);
     out.rate.push_back(rate.at(k));
   }
-  return out;
-}
-
-/// The import omits repeated readings, and the file states their number.
-Readings real(const std::string& file) {
-  constexpr int kAccel = 5, kGyro = 8, kMagnetometer = 11;  // indices of columns
-  std::ifstream stream(file);
-  std::vector<std::string> accel, gyro;
-  std::string line;
-  for (int row = 0; std::getline(stream, line); ++row) {
-    if (row < 2) continue;
-    std::vector<std::size_t> starts = {0};
-    for (std::size_t i = 0; i < line.size(); ++i) {
-      if (line[i] == ';') starts.push_back(i + 1);
-    }
-    accel.push_back(line.substr(starts.at(kAccel), starts.at(kGyro) - starts[kAccel]));
-    gyro.push_back(line.substr(starts[kGyro], starts.at(kMagnetometer) - starts[kGyro]));
-  }
-  const scenarios::Imported imported = scenarios::import_repoimu(file, true);
-  const sim::ImuRecord& imu = imported.sensors.imus.at(0);
-  Readings out;
-  out.gyro_repeats = repeated(gyro);
-  out.accel_repeats = repeated(accel);
-  for (const std::int64_t time_ns : imu.time_ns) out.time_s.push_back(1e-9 * static_cast<double>(time_ns));
-  out.gyro = imu.gyro_rad_s;
-  out.rate = imported.reference.value().imus.at(0).rate_rad_s;
   return out;
 }
 
@@ -203,8 +175,7 @@ int main(int argc, char** argv) {
   try {
     for (int i = 3; i < argc; ++i) {
       const std::string file = argv[i];
-      print(file, file.ends_with(".csv") ? real(file) : simulated(file), static_cast<int>(axes.find(argv[1])),
-            std::atof(argv[2]));
+      print(file, readings_of(file), static_cast<int>(axes.find(argv[1])), std::atof(argv[2]));
     }
   } catch (const std::exception& error) {
     std::fprintf(stderr, "rail_measures: %s\n", error.what());

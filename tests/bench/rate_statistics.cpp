@@ -72,7 +72,7 @@ bool parse(int count, char** words, Request& request) {
   request.scenario = plain[0];
   request.first = std::strtoull(plain[1].c_str(), nullptr, 10);
   request.last = std::strtoull(plain[2].c_str(), nullptr, 10);
-  if (request.methods.empty()) request.methods = {"raw", "saave", "reject", "tumble", "tumble_lag", "oracle"};
+  if (request.methods.empty()) request.methods = {"raw", "saave", "tumble", "tumble_lag", "oracle"};
   return true;
 }
 

@@ -29,7 +29,7 @@ SUITE = """name: small
 doc: Enough for a page.
 scenarios: [roll]
 seeds: {first: 1, last: 4}
-methods: [position/rolling, position/observer, position/tumble]
+methods: [position/rolling, position/autogain_fusion, position/tumble]
 timeout_s: 60
 """
 HOSTILE = "</script><img src=x onerror=alert(1)><b>\"'&amp;"
@@ -48,8 +48,8 @@ def make_hostile(small: pathlib.Path, database: pathlib.Path) -> None:
     subprocess.run([sys.executable, SYNTHETIC, small, WORK / "big", "--outcomes", "120"], check=True, stdout=subprocess.DEVNULL)
     shutil.copy(WORK / "big" / "shard_1.db", database)
     with sqlite3.connect(database) as rows:
-        rows.execute("UPDATE outcomes SET status = 'failed', message = ? WHERE method = 'observer' AND seed % 4 = 0", (HOSTILE,))
-        rows.execute("UPDATE outcomes SET method = ? WHERE method = 'observer'", (HOSTILE,))
+        rows.execute("UPDATE outcomes SET status = 'failed', message = ? WHERE method = 'autogain_fusion' AND seed % 4 = 0", (HOSTILE,))
+        rows.execute("UPDATE outcomes SET method = ? WHERE method = 'autogain_fusion'", (HOSTILE,))
         for table in ("outcomes", "draw_values"):
             rows.execute(f"UPDATE {table} SET scenario = ?", (HOSTILE,))
         rows.execute("UPDATE notes SET text = ? WHERE key = 'suite'", (HOSTILE,))

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // fuzz_make_seeds FOLDER writes the smallest valid file of each kind into FOLDER/READER/, if the readers' own writers
 // can create it; tests/fuzz/README.md lists the sources of the other seeds.
-#include <hdf5.h>
 #include <zstd.h>
 
 #include <cmath>
@@ -20,6 +19,7 @@
 #include "scenarios/recordings/bags/bag.hpp"
 #include "scenarios/recordings/clouds/cloud_file.hpp"
 #include "scenarios/recordings/export.hpp"
+#include "tests/fuzz/saved_runs.hpp"
 #include "tests/scenarios/recordings/fixture_recording.hpp"
 #include "tests/scenarios/recordings/mcap_file.hpp"
 #include "tests/tree.hpp"
@@ -64,53 +64,6 @@ std::string packed_by_zstd(const std::string& plain) {
   return out;
 }
 
-std::string row(const char* format, double t) {
-  char line[256];
-  std::snprintf(line, sizeof line, format, t, 0.001 * std::sin(t), 0.5 * std::sin(3.0 * t), 0.3 * std::cos(2.0 * t));
-  return line;
-}
-
-std::string tables(const std::string& header, const char* format, int rows) {
-  std::string text = header;
-  for (int k = 0; k < rows; ++k) text += row(format, 0.01 * k);
-  return text;
-}
-
-void write_broad(const path& file) {
-  const hid_t out = H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
-  constexpr hsize_t kRows = 40;
-  for (const auto& [name, columns] : {std::pair{"imu_gyr", 3}, std::pair{"imu_acc", 3}, std::pair{"imu_mag", 3},
-                                      std::pair{"opt_quat", 4}, std::pair{"opt_pos", 3}}) {
-    std::vector<double> values(kRows * static_cast<hsize_t>(columns), 0.0);
-    for (hsize_t i = 0; i < kRows; ++i) {
-      const hsize_t at = i * static_cast<hsize_t>(columns);
-      values[columns == 4 ? at : at + 2] = columns == 4 ? 1.0 : std::string(name) == "imu_acc" ? 9.8 : 0.01;
-    }
-    const hsize_t shape[2] = {kRows, static_cast<hsize_t>(columns)};
-    const hid_t space = H5Screate_simple(2, shape, nullptr);
-    const hid_t set = H5Dcreate2(out, name, H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
-    H5Dwrite(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
-    H5Dclose(set);
-    H5Sclose(space);
-  }
-  const double rate_hz = 285.714;
-  for (const char* place : {"dataset", "attribute"}) {
-    const hid_t space = H5Screate(H5S_SCALAR);
-    if (std::string(place) == "dataset") {
-      const hid_t set =
-          H5Dcreate2(out, "sampling_rate", H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
-      H5Dwrite(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, &rate_hz);
-      H5Dclose(set);
-    } else {
-      const hid_t attribute = H5Acreate2(out, "sampling_rate", H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, H5P_DEFAULT);
-      H5Awrite(attribute, H5T_NATIVE_DOUBLE, &rate_hz);
-      H5Aclose(attribute);
-    }
-    H5Sclose(space);
-  }
-  H5Fclose(out);
-}
-
 /// Writes bags in the program's format and in other formats, without checksums, which would reject most inputs of a
 /// fuzzer.
 void write_mcaps(const path& folder, const sim::Recording& recording) {
@@ -151,9 +104,8 @@ void write_recordings(const path& folder, const path& scratch) {
   export_csv(longer.sensors, nullptr, scratch / "csv");
   std::filesystem::copy_file(scratch / "csv" / "imu.csv", in(folder, "imu_csv") / "own");
   put_text(in(folder, "imu_csv") / "short",
-           tables("sec,nsec,wx,wy,wz,ax,ay,az\n", "1,%.0f,0.01,0.02,0.03,0.1,0.2,9.8\n", 0) +
-               "1,0,0.01,0.02,0.03,0.1,0.2,9.8\n1,10000000,0.01,0.02,0.03,0.1,0.2,9.8\n"
-               "1,20000000,0.01,0.02,0.03,0.1,0.2,9.8\n");
+           "sec,nsec,wx,wy,wz,ax,ay,az\n1,0,0.01,0.02,0.03,0.1,0.2,9.8\n"
+           "1,10000000,0.01,0.02,0.03,0.1,0.2,9.8\n1,20000000,0.01,0.02,0.03,0.1,0.2,9.8\n");
   put_text(in(folder, "imu_csv") / "logger",
            "#timestamp [ns];w_RS_S_x [rad s^-1];w_RS_S_y [rad s^-1];w_RS_S_z [rad s^-1];\"ax\";ay;az;temp\n"
            "1403636579758555392;0.01;0.02;0.03;0.1;0.2;9.8;25\n1403636579763555392;0.01;0.02;0.03;0.1;0.2;9.8;25\n"
@@ -178,23 +130,7 @@ void write_texts(const path& folder) {
   put_text(in(folder, "pcd_cloud") / "text",
            "VERSION 0.7\nFIELDS x y z intensity\nSIZE 4 4 4 4\nTYPE F F F F\nCOUNT 1 1 1 1\nWIDTH 2\nHEIGHT 1\n"
            "VIEWPOINT 0 0 0 1 0 0 0\nPOINTS 2\nDATA ascii\n1 2 3 0.5\n4 5 6 1\n");
-  const auto edits = [](char kind, std::initializer_list<unsigned char> bytes) {
-    return kind + std::string(bytes.begin(), bytes.end());
-  };
-  put_text(in(folder, "saved_states") / "tumbling", edits('T', {1, 0, 0, 0, 0, 0, 1, 0x88, 0x13, 0, 0, 0}));
-  put_text(in(folder, "saved_states") / "rolling", edits('R', {1, 0x28, 0x23, 0, 0, 0}));
-  put_text(in(folder, "saved_states") / "refused_of_other_parameters", edits('T', {2, 0, 0, 0, 0, 8}));
-  put_text(in(folder, "saved_states") / "refused_cut", edits('R', {3, 0x20, 0x4e, 0, 0, 3}));
-  put_text(in(folder, "saved_states") / "tumbling_as_told", edits('t', {1, 0x88, 0x13, 0, 0, 0}));
-  put_text(in(folder, "saved_states") / "rolling_as_told", edits('r', {1, 0x28, 0x23, 0, 0, 0}));
-  for (const auto& [letter, name] : {std::pair{'R', "rate"}, std::pair{'G', "regime"}, std::pair{'C', "carried"},
-                                     std::pair{'L', "live"}, std::pair{'F', "filter"}, std::pair{'S', "smoother"}}) {
-    const path place = in(folder, "saved_streams");
-    put_text(place / name, edits(letter, {1, 0x88, 0x13, 0, 0, 0, 1, 0x28, 0x23, 0, 0, 0}));
-    const char small = static_cast<char>(letter - 'A' + 'a');
-    put_text(place / (name + std::string("_as_told")), edits(small, {1, 0x88, 0x13, 0, 0, 0}));
-    put_text(place / ("refused_" + std::string(name) + "_cut"), edits(letter, {3, 0x88, 0x13, 0, 0, 3}));
-  }
+  for (const auto& [name, bytes] : saved_run_seeds()) put_text(in(folder, "saved_run") / name, bytes);
   put_text(in(folder, "vtk_cloud") / "small",
            "# vtk DataFile Version 3.0\nFile created by libpointmatcher\nASCII\nDATASET POLYDATA\nPOINTS 3 float\n"
            "1 2 3\n4 5 6\n7 8 9\nVERTICES 3 6\n1 0\n1 1\n1 2\nPOINT_DATA 3\nSCALARS intensity float\n"
@@ -209,22 +145,6 @@ void write_texts(const path& folder) {
            "1690309709,485205504,map,0.87,-0.12,0.03,0,-0.6,0,0.8,[0. 0.]\n");
   const float points[8] = {1, 2, 3, 0.5f, 4, 5, 6, 1};
   put_text(in(folder, "kitti_cloud") / "small", std::string(reinterpret_cast<const char*>(points), sizeof points));
-  std::string wand =
-      "Time;Vicon Orientation;;;;IMU Acceleration;;;IMU Gyroscope;;;IMU Magnetometer;;\n"
-      "s;W;X;Y;Z;X;Y;Z;X;Y;Z;X;Y;Z\n";
-  for (int k = 0; k < 150; ++k) {  // it swings about x, with consistent readings
-    const double t = 0.01 * k, angle_rad = 0.5 * std::sin(6.0 * t);
-    char line[256];
-    std::snprintf(line, sizeof line, "%.3f;%.6f;%.6f;0;0;0.1;%.4f;%.4f;%.5f;0.01;0.02;0.1;0.2;0.3\n", t,
-                  std::cos(0.5 * angle_rad), std::sin(0.5 * angle_rad), 9.8 * std::sin(angle_rad),
-                  9.8 * std::cos(angle_rad), 3.0 * std::cos(6.0 * t));
-    wand += line;
-  }
-  put_text(in(folder, "repoimu") / "small", wand);
-  put_text(in(folder, "airbrakes") / "small",
-           tables("state_letter,timestamp_seconds,raw_acceleration_x_gs,raw_acceleration_y_gs,raw_acceleration_z_gs,"
-                  "raw_angular_rate_x_deg_per_s,raw_angular_rate_y_deg_per_s,raw_angular_rate_z_deg_per_s\n",
-                  "S,%.4f,%.4f,0,1,%.4f,%.4f,2\n", 12));
 }
 
 void write_documents(const path& folder, const path& scratch) {
@@ -282,7 +202,6 @@ int main(int argc, char** argv) {
     write_recordings(folder, scratch);
     write_texts(folder);
     write_documents(folder, scratch);
-    write_broad(in(folder, "broad") / "small");
     std::filesystem::remove_all(scratch);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "fuzz_make_seeds: %s\n", error.what());

@@ -24,7 +24,7 @@
 #include "scenarios/sweep/gate.hpp"
 #include "scenarios/sweep/sweep.hpp"
 #include "sim/parameters.hpp"
-#include "tests/fuzz/saved_states.hpp"
+#include "tests/fuzz/saved_runs.hpp"
 #include "tests/tree.hpp"
 
 namespace tumble::fuzz {
@@ -57,19 +57,6 @@ BagReading some_bag() {
 
 void imu_csv(const path& file) {
   import_imu_csv(file, some_imu());
-}
-void repoimu(const path& file) {
-  import_repoimu(file, false);
-  try {
-    import_repoimu(file, true);
-  } catch (const BadInput&) {  // the motion is too small for the alignment
-  }
-}
-void airbrakes(const path& file) {
-  import_airbrakes(file);
-}
-void broad(const path& file) {
-  import_broad(file);
 }
 void ros1_bag(const path& file) {
   import_ros1_bag(file, some_bag());
@@ -198,9 +185,6 @@ void bench_results(const path& file) {
 constexpr std::array kReaders = {
     Reader{"recording", "a.h5", recording},
     Reader{"imu_csv", "a.csv", imu_csv},
-    Reader{"repoimu", "a.csv", repoimu},
-    Reader{"airbrakes", "a.csv", airbrakes},
-    Reader{"broad", "a.hdf5", broad},
     Reader{"ros1_bag", "a.bag", ros1_bag},
     Reader{"ros2_bag", "a.db3", ros2_bag},
     Reader{"ros2_bag_packed", "a.db3.zstd", ros2_bag},
@@ -224,8 +208,7 @@ constexpr std::array kReaders = {
     Reader{"estimate_tum", "a.tum", estimate_tum},
     Reader{"estimate_rates", "rates.csv", estimate_rates},
     Reader{"estimate_json", "estimate.json", estimate_json},
-    Reader{"saved_states", "edits", saved_states},
-    Reader{"saved_streams", "edits", saved_streams},
+    Reader{"saved_run", "run", saved_run},
     Reader{"description", "a.yaml", description},
     Reader{"bench_results", "a.jsonl", bench_results},
 };

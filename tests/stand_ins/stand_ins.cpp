@@ -20,11 +20,8 @@ namespace {
 using Writer = void (*)(const fs::path&);
 
 const std::map<std::string, Writer>& writers() {
-  static const std::map<std::string, Writer> all = {{"airbrakes", write_airbrakes},
-                                                    {"broad", write_broad},
-                                                    {"norlab", write_norlab},
-                                                    {"repoimu", write_repoimu},
-                                                    {"sphere_log", write_sphere_log}};
+  static const std::map<std::string, Writer> all = {
+      {"broad", write_broad}, {"norlab", write_norlab}, {"repoimu", write_repoimu}, {"sphere_log", write_sphere_log}};
   return all;
 }
 
@@ -60,11 +57,6 @@ std::vector<DataFolder> data_folders(const std::string& source) {
   return folders;
 }
 
-std::vector<fs::path> published_folders(const std::string& source) {
-  const DataFolder last = data_folders(source).back();
-  return last.real ? std::vector{last.path} : std::vector<fs::path>();
-}
-
 fs::path written(const DataFolder& folder) {
   if (folder.real || fs::exists(folder.path)) return folder.path;
   fs::create_directories(folder.path);
@@ -77,8 +69,6 @@ namespace {
 scenarios::fixture::Wand stand_in_wand() {
   scenarios::fixture::Wand wand;
   wand.duration_s = 120.0;
-  wand.delay_s = 0.0;
-  wand.q_IV = wand.q_VW = Eigen::Quaterniond::Identity();
   const WandRail rail;
   wand.rail_rad_s = rail.distance_rad_s;
   wand.rail_offset_rad_s = rail.offset_rad_s;

@@ -20,11 +20,9 @@ struct DataFolder {
   bool real = false;
 };
 
-/// Returns the folders of a source ("broad", "norlab", "repoimu", "airbrakes", "sphere_log"): always the simulated one,
+/// Returns the folders of a source ("broad", "norlab", "repoimu", "sphere_log"): always the simulated one,
 /// and after it the real one where it is available. The function writes no files; `written` does.
 std::vector<DataFolder> data_folders(const std::string& source);
-/// Returns only the real folder, where it is available.
-std::vector<std::filesystem::path> published_folders(const std::string& source);
 /// FolderName names a test's parameter: "stand_in", "real".
 struct FolderName {
   template <class Info>
@@ -45,7 +43,6 @@ inline constexpr std::size_t kStandInTrialSamples = 25714;
 /// kStandInWand is a wand whose gyro is saturated about x at the tilted saturation plane that TStick_Test05 of RepoIMU
 /// shows.
 inline constexpr const char* kStandInWand = "TStick_StandIn.csv";
-inline constexpr const char* kStandInFlight = "stand_in_flight.csv";
 inline constexpr const char* kSphereLogFile = "orientation_all.csv";
 inline constexpr std::size_t kStandInSphereSamples = 3751;
 /// kStandInSphereNet_m is the distance between the first and the last position of the simulated rolling sphere.

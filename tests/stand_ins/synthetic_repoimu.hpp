@@ -15,17 +15,11 @@ namespace tumble::scenarios::fixture {
 struct Wand {
   double duration_s = 40.0;
   double log_hz = 100.0;
-  double gyro_hz = 0.0;   ///< rate of a sensor slower than the log; 0: rate of the log
-  double accel_hz = 0.0;  ///< the same for the accelerometer
   double rail_rad_s = 7.3;
   double rail_tilt = -0.02;   ///< tilt of the x saturation limit, per rad/s of z
   double rail_y_slope = 0.0;  ///< tilt of the x saturation limit, per rad/s of y
   double rail_offset_rad_s = 0.0;
-  double delay_s = 0.012;  ///< delay of the reference relative to the IMU
-  Eigen::Quaterniond q_IV = Eigen::Quaterniond(Eigen::AngleAxisd(0.07, Eigen::Vector3d(0.2, -0.5, 0.8).normalized()));
-  Eigen::Quaterniond q_VW = Eigen::Quaterniond(Eigen::AngleAxisd(0.05, Eigen::Vector3d(1.0, 0.3, 0.0).normalized()));
   std::vector<double> flips_s;  ///< starts of intervals of 0.15 s in which markers are confused
-  int decimals = 4;             ///< decimals of the time stamps
 
   static Eigen::Vector3d rate(double t) {
     const double twirl = 11.0 * std::pow(std::max(0.0, std::sin(0.9 * t)), 8.0) * std::sin(3.1 * t);
@@ -62,31 +56,23 @@ inline Eigen::Vector3d clipped(const Wand& wand, Eigen::Vector3d w) {
   return w;
 }
 
-/// Returns the last instant at which a sensor of that rate has given a reading.
-inline double held(double t, double rate_hz) {
-  return rate_hz > 0.0 ? std::floor(t * rate_hz + 1e-9) / rate_hz : t;
-}
-
-inline constexpr const char* kRepoimuHeader =
-    "Time (s);Vicon Orientation;;;;IMU Acceleration;;;IMU Gyroscope;;;IMU Magnetometer;;;\n"
-    ";W;X;Y;Z;X;Y;Z;X;Y;Z;X;Y;Z;\n";
-
 inline std::string repoimu_text(const Wand& wand) {
   const WandAttitude attitude(wand.duration_s);
-  std::string text = kRepoimuHeader;
+  std::string text =
+      "Time (s);Vicon Orientation;;;;IMU Acceleration;;;IMU Gyroscope;;;IMU Magnetometer;;;\n"
+      ";W;X;Y;Z;X;Y;Z;X;Y;Z;X;Y;Z;\n";
   const int rows = static_cast<int>(wand.duration_s * wand.log_hz);
   for (int k = 0; k < rows; ++k) {
     const double t = k / wand.log_hz;
-    Eigen::Quaterniond q = wand.q_VW * attitude.at(t - wand.delay_s) * wand.q_IV;
+    Eigen::Quaterniond q = attitude.at(t);
     for (const double flip : wand.flips_s) {
       if (t >= flip && t < flip + 0.15) q = q * Eigen::Quaterniond(0.0, 0.7071, 0.7071, 0.0);
     }
-    const double gyro_s = held(t, wand.gyro_hz), accel_s = held(t, wand.accel_hz);
-    const Eigen::Vector3d w = clipped(wand, Wand::rate(gyro_s));
-    const Eigen::Vector3d f = attitude.at(accel_s).conjugate() * Eigen::Vector3d(0.0, 0.0, 9.80665);
+    const Eigen::Vector3d w = clipped(wand, Wand::rate(t));
+    const Eigen::Vector3d f = attitude.at(t).conjugate() * Eigen::Vector3d(0.0, 0.0, 9.80665);
     char line[400];
-    std::snprintf(line, sizeof line, "%.*f;%.5f;%.5f;%.5f;%.5f;%.5g;%.5g;%.5g;%.5g;%.5g;%.5g;0.4;0.2;-0.9\n",
-                  wand.decimals, t, q.w(), q.x(), q.y(), q.z(), f.x(), f.y(), f.z(), w.x(), w.y(), w.z());
+    std::snprintf(line, sizeof line, "%.4f;%.5f;%.5f;%.5f;%.5f;%.5g;%.5g;%.5g;%.5g;%.5g;%.5g;0.4;0.2;-0.9\n", t, q.w(),
+                  q.x(), q.y(), q.z(), f.x(), f.y(), f.z(), w.x(), w.y(), w.z());
     text += line;
   }
   return text;

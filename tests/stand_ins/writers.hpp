@@ -12,9 +12,6 @@ namespace tumble::test {
 void write_broad(const std::filesystem::path& folder);
 /// Writes a RepoIMU recording: two minutes of a wand that is twirled about x beyond its gyro's saturation level.
 void write_repoimu(const std::filesystem::path& folder);
-/// Writes an AirbrakesV2 flight: a rocket that spins up to 38.9 rad/s; ten rows repeat a stamp, and seven come long
-/// before the flight.
-void write_airbrakes(const std::filesystem::path& folder);
 /// Writes norlab's example: six sweeps of a lidar that glides and turns in a room, VTK as text, with reference poses
 /// and an odometry that errs by 5 mm.
 void write_norlab(const std::filesystem::path& folder);

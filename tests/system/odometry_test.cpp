@@ -189,6 +189,30 @@ TEST(Odometry, WritesAllFilesOfABagThatNeedsARepair) {
   EXPECT_THAT(found("pose of the lidar"), HasSubstr("stated"));
 }
 
+// `run` calls such an estimate diverged, and so do all other verbs
+TEST(Odometry, AnEstimateThatItsHealthInvalidatesIsDiverged) {
+  const fs::path folder = test_folder();
+  const Fault half = {"accelerometer reads half", "", "",
+                      [](sim::ImuRecord& imu, sim::LidarRecord&) { scale(imu.accel_m_s2, 0.5); }};
+  const std::string bag = bag_of(folder / "bag", "fast-lio", &half).string(), out = (folder / "out").string(),
+                    recording = (folder / "r.h5").string(), rates = (folder / "rates").string();
+  const Ended odometry = run_program({"odometry", bag, "-o", out, "--json"});
+  EXPECT_EQ(odometry.status, 0) << odometry.err;
+  EXPECT_EQ(json_of(odometry)["status"], "diverged");
+  EXPECT_THAT(json_of(odometry)["summary"]["health"].get<std::string>(), HasSubstr("diverged: "));
+  EXPECT_THAT(json_of(odometry)["message"].get<std::string>(), HasSubstr("health: "));
+  EXPECT_THAT(odometry.err, HasSubstr("probably because of a wrong unit or scale of the accelerometer"));
+
+  sim::Sensors sensors = scenarios::read_sensors(short_stroll());
+  const sim::Truth truth = scenarios::read_truth(short_stroll());
+  scale(sensors.imus.front().accel_m_s2, 0.5);
+  scenarios::write_recording(recording, scenarios::read_info(short_stroll()), sensors, &truth);
+  const Ended estimate = run_program({"estimate", recording, "--method", "rate/tumble_lag", "-o", rates, "--json"});
+  EXPECT_EQ(estimate.status, 0) << estimate.err;
+  EXPECT_EQ(json_of(estimate)["status"], "diverged");
+  EXPECT_EQ(json_of(run_program({"score", rates, recording, "--json"}))["status"], "diverged");
+}
+
 TEST(Odometry, RefusesARecordingWithoutALidarAndOptionsThatExcludeEachOther) {
   const fs::path folder = test_folder();
   std::ofstream table(folder / "imu.csv");

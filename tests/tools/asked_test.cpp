@@ -54,10 +54,10 @@ TEST(ParseQuestion, RefusesWhatIsNone) {
       EXPECT_THAT(error.what(), HasSubstr(what)) << text;
     }
   };
-  for (const char* text : {"", ":", "a:b", "a:b:", "a:b:c:d:e", "a::c", "position/rolling:position/observer:"})
+  for (const char* text : {"", ":", "a:b", "a:b:", "a:b:c:d:e", "a::c", "position/rolling:position/oracle:"})
     refused(text, "write A:B:METRIC");
   refused("position/roling:position/rolling:position_end_error_share", "did you mean 'position/rolling'");
-  refused("position/observer:position/rolling:position_end_error_share", "method of the suite");
+  refused("position/oracle:position/rolling:position_end_error_share", "method of the suite");
   refused("position/rolling:position/rolling:position_end_error_share", "is compared with itself");
   refused("position/rolling:position/autogain_fusion:position_end_error", "is unknown");
   refused(std::string(kAsked) + ":-1", "write a number of at least 0");

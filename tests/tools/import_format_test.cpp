@@ -39,13 +39,19 @@ TEST_F(ImportFormat, TheContentCountsWithoutAnEndingOrAgainstIt) {
   EXPECT_EQ(format("run.db3"), "mcap");
   EXPECT_EQ(format("other"), "rosbag2");
   EXPECT_EQ(format("table"), "csv");
+  write("xsens.txt", "// Start Time: Unknown\n\nPacketCounter\tSampleTimeFine\tAcc_X\n1\t2\t3\n");
+  write("poses.txt", "# poses\n1 0 0 0 0 0 0 1\n");
+  EXPECT_EQ(format("xsens.txt"), "csv");
+  EXPECT_EQ(format("poses.txt"), "tum");
 }
 
 TEST_F(ImportFormat, AFolderOfBagsIsOneBagInParts) {
   write("parts/run_0.bag", ""), write("parts/run_1.bag", "");
   EXPECT_EQ(format("parts"), "rosbag1");
-  write("loose/run_0.mcap", "");
-  EXPECT_THAT(format("loose"), testing::HasSubstr("import one file at a time, for example run_0.mcap"));
+  write("loose/run_0.mcap", ""), write("loose/run_1.mcap", "");
+  EXPECT_EQ(format("loose"), "rosbag2");
+  write("loose/run_0.bag", "");
+  EXPECT_THAT(format("loose"), testing::HasSubstr("this folder contains files of the formats"));
 }
 
 }  // namespace

@@ -57,6 +57,16 @@ TEST(TroublePlace, NamesTheLongestGap) {
   EXPECT_EQ(place_in(sensors), "right has no readings between 0.490 and 2.500 s");
 }
 
+TEST(TroublePlace, NamesTheSizeOfSweepsWithoutMap) {
+  sim::Sensors sensors = sound();
+  sim::LidarRecord& lidar = sensors.lidars.emplace_back();
+  lidar.name = "points";
+  lidar.sweep_start_ns = {0, 100, 200};
+  lidar.sweep_first = {0, 96, 100, 900};
+  EXPECT_EQ(trouble_place({ErrorCode::too_few, "lidar.sweeps_registered", 0.0, 1.0}, sensors),
+            "the sweeps of points have 96 points (median); a map needs sweeps with at least 100 points");
+}
+
 TEST(TroublePlace, OfWhatIsNoReadingIsNone) {
   EXPECT_EQ(trouble_place({ErrorCode::out_of_range, "median step of imu time_ns", 1.0, 2.0}, sound()), "");
   EXPECT_EQ(trouble_place({ErrorCode::non_finite, "specific_force_m_s2", 1.0, 2.0}, sound()), "") << "none has it";

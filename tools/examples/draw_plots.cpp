@@ -17,8 +17,8 @@ using scenarios::Kind;
 
 constexpr std::size_t kPathPointsMax = 600;
 
-/// Returns the index of the gyro axis with the most samples that the estimates flag as clipped; -1 if no sample is
-/// flagged.
+/// Returns the index of the gyro axis with the most clipped samples according to the estimates; -1 if no sample is
+/// clipped.
 int most_clipped_axis(const std::vector<RateState>& rates) {
   std::array<int, 3> count = {0, 0, 0};
   for (const RateState& rate : rates) {
@@ -140,7 +140,7 @@ Plot rate_plot(const scenarios::RunResult& run) {
     plot.lines.push_back(estimated_rate(run.methods[i]->info, run.estimates[i].rates, axis, span));
     plot.lines.back().colour = colour++;
   }
-  // Plots the recorded gyro if the run has no baseline of kind rate, because the gyro shows the clipping.
+  // Without a baseline of kind rate, the recorded gyro shows the clipping.
   if (!gyro) {
     plot.lines.push_back(sampled_rate("gyro reading", 1.6, imu.time_ns, imu.gyro_rad_s, axis, span));
     plot.lines.back().colour = colour;

@@ -7,15 +7,14 @@
 #include <utility>
 #include <vector>
 
-/// An example is one simulated run with pictures and plots. A sweep over scenarios creates examples and stores them
-/// next to its results database; the report displays them without further computation.
+/// An example is one simulated run with pictures and plots. A sweep (many simulated runs) creates examples next to its
+/// results database, and the report displays them.
 namespace tumble::tools {
 
-/// kTruthColour is the colour index of the truth. All other indices select the colour of a method
-/// (pictures/colours.hpp).
+/// Colour index of the truth; other indices select the colour of a method (pictures/colours.hpp).
 inline constexpr int kTruthColour = -1;
 
-/// PlotLine is one line of a plot. The lists `x` and `y` are parallel; NaN marks a gap.
+/// PlotLine is one line of a plot. `x` and `y` are parallel; NaN marks a gap.
 struct PlotLine {
   std::string name;
   int colour = kTruthColour;
@@ -32,7 +31,7 @@ struct Plot {
   bool equal_scales = false;                      ///< both axes have equal scales, for a path seen from above
   bool from_zero = false;                         ///< the y axis includes 0
   bool over_time = false;                         ///< hovering shows all lines at the same x
-  bool wide = true;                               ///< the plot has a row of its own; otherwise two plots share a row
+  bool wide = true;                               ///< true: the plot has its own row; false: two plots share a row
   std::vector<std::pair<double, double>> shaded;  ///< shaded intervals of x
   std::vector<PlotLine> lines;
 };
@@ -47,17 +46,17 @@ struct ExamplePicture {
 struct Example {
   std::string scenario;
   std::uint64_t seed = 0;
-  std::string motion;       ///< kind of motion of this draw: "tumble" or "roll"
-  std::string choice;       ///< one sentence that states why this draw was chosen
-  bool of_failure = false;  ///< the draw is shown with the failures, with one picture and a replay
+  std::string motion;       ///< kind of motion of the run: "tumble" or "roll"
+  std::string choice;       ///< reason why this run was chosen, in one sentence
+  bool of_failure = false;  ///< true: shown with the failures, with one picture and a replay
   std::string recording_digest, digest_without_lidars;
   std::string made_of;  ///< digest of the rows of the results that the example shows
   std::vector<ExamplePicture> pictures;
   std::vector<Plot> plots;
-  std::vector<std::uint8_t> moving;  ///< animated WebP of a part of the draw; empty if absent
+  std::vector<std::uint8_t> moving;  ///< animated WebP of a part of the run; empty if absent
   std::string moving_caption;        ///< for example "2.5 s of it at half speed"
   std::string replay;                ///< file name of the replay in the folder of examples; empty if absent
-  std::string replay_page;           ///< HTML of the replay page; only written, never read back
+  std::string replay_page;           ///< HTML of the replay page; written only
 };
 
 /// Returns the folder for the examples of a results database: FILE.db.files.
@@ -67,7 +66,7 @@ std::filesystem::path examples_folder(const std::filesystem::path& database);
 std::string to_json(const Example& example);
 
 /// Writes the files of an example to FOLDER/.unfinished: pictures SCENARIO-SEED-NAME.png, the animation
-/// SCENARIO-SEED-moving.webp and the replay SCENARIO-SEED-replay.html. `write_examples` moves these files to FOLDER.
+/// SCENARIO-SEED-moving.webp and the replay SCENARIO-SEED-replay.html. `write_examples` later moves them to FOLDER.
 /// Throws BadInput if a file cannot be written.
 void write_pictures(const std::filesystem::path& folder, const Example& example);
 
@@ -77,19 +76,18 @@ void discard_unfinished(const std::filesystem::path& folder);
 /// Returns the file name of the replay of an example.
 std::string replay_file(const Example& example);
 
-/// Joins the JSON texts of examples to the list in the folder, and moves the unfinished files into place. The function
-/// then removes files that the previous list named and the new list does not name. Throws BadInput if a file cannot be
-/// written.
+/// Writes the list of examples, from their JSON texts, and moves their files from FOLDER/.unfinished to FOLDER. Then
+/// removes files that only the previous list names. Throws BadInput if a file cannot be written.
 void write_examples(const std::filesystem::path& folder, const std::vector<std::string>& examples);
 
 enum class Pictures { read, left_out };
 struct FoundExamples {
   std::vector<Example> examples;        ///< in the order of the list
-  std::vector<std::string> unreadable;  ///< path and reason for each part of the list that cannot be read
+  std::vector<std::string> unreadable;  ///< path and reason for each unreadable part of the list
 };
-/// Reads the examples of a folder; the result is empty if the folder has no list. An unreadable example does not affect
-/// other examples. The result reports each error: a list with a wrong format or without its end, a missing picture, or
-/// a name that leads out of the folder.
+/// Reads the examples of a folder; empty if the folder has no list. An unreadable example does not affect other
+/// examples. Errors are a list with a wrong format or without its end, a missing picture, or a file name outside the
+/// folder.
 FoundExamples read_examples(const std::filesystem::path& folder, Pictures pictures);
 
 /// Copies a damaged list to examples.json.damaged, so that the next list does not overwrite it. Returns the path of the

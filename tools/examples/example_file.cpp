@@ -77,7 +77,7 @@ std::string picture_file(const Example& example, const ExamplePicture& picture) 
   return file_of(example, picture.name + ".png");
 }
 
-/// Returns the folder for files that are not yet in a list.
+/// Folder for files that no list names yet.
 fs::path unfinished(const fs::path& folder) {
   return folder / ".unfinished";
 }
@@ -92,7 +92,7 @@ std::vector<std::uint8_t> read_bytes(const fs::path& path) {
   }
 }
 
-/// The list may come from an untrusted source, so only files in the list's folder are read or removed.
+/// Returns a file name from the list. The list may be untrusted, so only files in its folder are read or removed.
 std::string file_name(const std::string& name, const char* ending, const char* what) {
   if (name.empty() || fs::path(name).filename() != name || name.starts_with('.') || !name.ends_with(ending))
     throw BadInput(fmt::format("'{}' must be the name of a {} in the same folder", name, what));
@@ -103,7 +103,7 @@ std::string file_name(const json& picture) {
   return file_name(picture.at("file"), ".png", "picture");
 }
 
-/// Returns the file name of the replay; "" if the example has no replay, for example in a file of an earlier version.
+/// Returns the file name of the replay; empty if there is none, for example in a list of an earlier version.
 std::string replay_name(const json& example) {
   const std::string name = example.value("replay", "");
   return name.empty() ? name : file_name(name, ".html", "replay");
@@ -111,8 +111,7 @@ std::string replay_name(const json& example) {
 
 constexpr const char* kMovingEnding = "moving.webp";
 
-/// Returns the file name of the animation; "" if the example has no animation, for example in a file of an earlier
-/// version.
+/// Returns the file name of the animation; empty if there is none, for example in a list of an earlier version.
 std::string moving_name(const json& example) {
   if (!example.contains("moving")) return "";
   return file_name(example.at("moving").at("file"), ".webp", "moving picture");
@@ -135,7 +134,7 @@ Example read_example(const fs::path& folder, const json& from, Pictures pictures
   example.seed = from.at("seed");
   example.motion = from.at("motion");
   example.choice = from.at("choice");
-  example.of_failure = from.value("of_failure", false);  // lists written by earlier versions lack this field
+  example.of_failure = from.value("of_failure", false);  // missing in lists of earlier versions
   example.recording_digest = from.at("recording_digest");
   example.digest_without_lidars = from.at("digest_without_lidars");
   example.made_of = from.at("made_of");
@@ -163,7 +162,7 @@ json read_list(const fs::path& folder) {
   return list;
 }
 
-/// Returns the examples of a truncated list that end before the cut.
+/// Returns the complete examples in a truncated list.
 json whole_examples(const fs::path& folder) {
   constexpr int kDepth = 2;  // nesting depth: list, array, example
   json whole = json::array();
@@ -172,7 +171,7 @@ json whole_examples(const fs::path& folder) {
       if (depth == kDepth && event == json::parse_event_t::object_end) whole.push_back(parsed);
       return true;
     };
-    // The JSON is complete, so the list was rejected because its content has another format.
+    // The JSON is complete, so the list was rejected for its format.
     if (!json::parse(read_bytes(list_file(folder)), keep, false).is_discarded()) return json::array();
   } catch (const BadInput&) {  // the path is a folder
   }
@@ -190,8 +189,7 @@ std::set<std::string> files_of(const json& examples) {
   return files;
 }
 
-/// Returns the files that a list names. If the list is unreadable or truncated, the files are kept, because the copied
-/// list still names them.
+/// Returns the files that the list names; empty if the list is damaged, because its copy still names them.
 std::set<std::string> files_before(const fs::path& folder) {
   try {
     const json list = read_list(folder);

@@ -22,8 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kPollMs = 200;
-/// kOtherTimeouts is the time limit for simulation and rendering in addition to the methods, in units of one method's
-/// time limit.
+/// Time limit for simulation and rendering, in addition to the methods, in time limits of one method.
 constexpr double kOtherTimeouts = 3.0;
 constexpr const char* kTypical = "The draw with the median score of its scenario";
 constexpr const char* kFailed = "The draw on which most methods failed";
@@ -31,8 +30,8 @@ constexpr const char* kAlsoFailed = "A draw on which methods failed";
 
 enum class Extent { whole, of_failure };
 
-/// Making is an example that a process is generating. Only the first example has an animation, because a report shows
-/// only one animation. The member `text` is the output of the process so far, or the text of an existing example.
+/// Making is an example that a process generates. Only the first example has an animation, because a report shows only
+/// one. `text` is the output of the process so far, or the text of an existing example.
 struct Making {
   scenarios::ExampleDraw draw;
   scenarios::Scenario scenario;
@@ -46,7 +45,7 @@ struct Making {
   bool done = false;
 };
 
-/// Returns the methods of this build in the order of the registry, then the methods that the suite declares in files.
+/// Returns the methods of this build in the order of the registry, then the external methods of the suite.
 std::vector<scenarios::MethodPointer> methods_of(const std::vector<scenarios::Outcome>& rows,
                                                  const scenarios::Suite& suite) {
   std::vector<scenarios::MethodPointer> all, found;
@@ -63,13 +62,13 @@ std::vector<scenarios::MethodPointer> methods_of(const std::vector<scenarios::Ou
   return found;
 }
 
-/// Returns the rows to show for a run with failures: the failed methods, and tumble's methods of these kinds.
+/// Returns the rows to show for a run with failures: the failed methods, and tumble's methods of the same kinds.
 std::vector<scenarios::Outcome> rows_of_failure(std::vector<scenarios::Outcome> rows) {
   std::set<scenarios::Kind> kinds;
   for (const scenarios::Outcome& row : rows) {
     if (row.status != scenarios::OutcomeStatus::ok) kinds.insert(row.kind);
   }
-  // The method of tumble is called `tumble` in each kind (docs/design.md, "Methods and scores").
+  // In each kind, the method of tumble is called `tumble` (docs/design.md, "Methods and scores").
   std::erase_if(rows, [&](const scenarios::Outcome& row) {
     return row.status == scenarios::OutcomeStatus::ok && (row.method != "tumble" || !kinds.contains(row.kind));
   });
@@ -89,7 +88,7 @@ std::vector<Making> plan(const scenarios::DataRoot& data, const scenarios::Suite
   const auto add = [&](const scenarios::ExampleDraw& draw, const char* choice, Extent extent) {
     if (std::any_of(makings.begin(), makings.end(), [&](const Making& making) { return making.draw == draw; })) return;
     std::vector<scenarios::Outcome> rows = scenarios::rows_to_show(results, draw);
-    // Lidars are simulated only if the sweep simulated them, so that the digest of the recording agrees with the rows.
+    // Lidars are simulated only if the sweep simulated them; the digest of the recording then agrees with the rows.
     const bool lidars = std::ranges::any_of(rows, [](const auto& row) { return row.kind != scenarios::Kind::rate; });
     if (extent == Extent::of_failure) rows = rows_of_failure(std::move(rows));
     const auto scenario = std::find_if(all.begin(), all.end(), [&](const auto& s) { return s.name == draw.scenario; });
@@ -115,8 +114,8 @@ std::vector<Making> plan(const scenarios::DataRoot& data, const scenarios::Suite
 }
 
 /// Keeps existing examples that show the rows of the results. Returns the text of examples of scenarios outside the
-/// suite, which other sweeps stored in this database. Reports examples that cannot be read; unreadable examples of the
-/// suite are generated again.
+/// suite, which come from other sweeps in this database. Reports unreadable examples; those of the suite are generated
+/// again.
 std::vector<std::string> keep_known(const scenarios::DataRoot& data, const fs::path& folder,
                                     const scenarios::Suite& suite, const LeaveOptions& options,
                                     std::vector<Making>& makings) {
@@ -145,8 +144,8 @@ std::vector<std::string> keep_known(const scenarios::DataRoot& data, const fs::p
   return others;
 }
 
-/// Generates the example in a separate process, so that a crash affects only this example. The process writes the
-/// example, or the reason why there is no example, to `fd`.
+/// Generates the example in a separate process, so that a crash affects only this example. Writes the example, or the
+/// reason why there is none, to `fd`.
 void make(const scenarios::DataRoot& data, const fs::path& folder, const Making& making, int fd) {
   try {
     const scenarios::RunResult run =
@@ -166,7 +165,7 @@ class Makers {
   Makers(const scenarios::DataRoot& data, const fs::path& folder, double timeout_s, const LeaveOptions& options)
       : data_(data), folder_(folder), timeout_s_(timeout_s), options_(options) {}
 
-  /// Generates the examples in parallel; returns false if the generation was stopped.
+  /// Generates the examples in parallel. Returns false if the generation was stopped.
   bool run(std::vector<Making>& makings) {
     auto next = makings.begin();
     while (true) {
@@ -207,7 +206,7 @@ class Makers {
     poll(waiting.data(), waiting.size(), kPollMs);
   }
 
-  /// Reads the output of a worker; returns true when the worker has ended.
+  /// Reads the output of a worker. Returns true if the worker has ended.
   bool serve(Worker& worker) {
     const bool open = worker.process.read_available(worker.making->text);
     const bool late = open && scenarios::now_s() > worker.deadline_s;
@@ -237,7 +236,7 @@ class Makers {
   std::list<Worker> workers_;
 };
 
-/// Unfinished removes unfinished files, and the folder if it is empty.
+/// Unfinished removes unfinished files, and then their folder if it is empty.
 class Unfinished {
  public:
   explicit Unfinished(const fs::path& folder) : folder_(folder) { discard_unfinished(folder_); }

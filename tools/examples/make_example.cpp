@@ -23,7 +23,7 @@ bool is_sphere(const scenarios::RunResult& run) {
   return run.recording.sensors.sphere_radius_m > 0.0;
 }
 
-/// Adds the map of the first method that has a map and fulfils `wanted`; adds nothing if there is no such method.
+/// Adds the map of the first method with a map for which `wanted` is true, if there is one.
 void add_map(const scenarios::RunResult& run, const sim::Surface& surface, bool (*wanted)(const scenarios::MethodInfo&),
              std::vector<ErrorMap>& maps) {
   for (std::size_t i = 0; i < run.methods.size(); ++i) {
@@ -36,7 +36,7 @@ void add_map(const scenarios::RunResult& run, const sim::Surface& surface, bool 
   }
 }
 
-/// Shows the map of the baseline next to the map of tumble's method.
+/// Adds the maps of the baseline and of tumble's method, next to each other.
 void add_maps(const scenarios::RunResult& run, Example& example) {
   if (!run.surface) return;
   std::vector<ErrorMap> maps;
@@ -60,7 +60,7 @@ void add_maps(const scenarios::RunResult& run, Example& example) {
        sim::png_bytes(map_picture(maps, run.recording.truth, 640, 480))});
 }
 
-/// kMoving_s is the length of the animation [s]: long enough to see the robot turn, and a few hundred kB.
+/// Length of the animation [s]: long enough to see the robot turn, and a few hundred kB.
 constexpr double kMoving_s = 2.0;
 
 void add_moving(const Scene& scene, Example& example) {

@@ -20,7 +20,7 @@ using scenarios::Kind;
 
 constexpr std::int64_t kSpeedHalf_ns = 25'000'000;
 constexpr std::size_t kPointsMax = 700;
-constexpr std::int64_t kBridge_ns = 20'000'000;  // intervals with a smaller gap are shaded as one
+constexpr std::int64_t kBridge_ns = 20'000'000;  // intervals with a shorter gap are shaded as one
 
 double five_decimals(double value) {
   return std::round(value * 1e5) / 1e5;
@@ -41,8 +41,8 @@ struct ShownPath {
   Path path;
 };
 
-/// Returns the truth and, for each value of MethodInfo::source, the first position method that does not need the truth.
-/// Further paths would hide each other. Each path ends where it leaves the surroundings of the truth.
+/// Returns the true path, and for each value of MethodInfo::source the path of the first position method without truth;
+/// more paths would hide each other. A path ends where it leaves the surroundings of the truth.
 std::vector<ShownPath> shown_paths(const scenarios::RunResult& run) {
   const sim::Recording& recording = run.recording;
   std::vector<ShownPath> all = {{"truth", kTruthColour, 3.5, true_path(recording.sensors, recording.truth, 4)}};
@@ -62,7 +62,7 @@ std::size_t stride_of(const Path& path) {
   return path.points_W_m.size() / kPointsMax + 1;
 }
 
-/// Returns the intervals [s] in which the truth reports slip or slide.
+/// Returns the intervals [s] with true slip or slide.
 std::vector<std::pair<double, double>> slip_spells(const sim::Truth& truth) {
   std::vector<std::pair<double, double>> spells;
   std::int64_t begin_ns = -1, end_ns = -1;
@@ -91,7 +91,7 @@ Plot plot_of(const char* name, const char* caption, const char* x_title, const c
   return plot;
 }
 
-/// Returns the longest interval in which the body is stationary.
+/// Returns the longest interval in which the body is at rest.
 std::optional<Span> longest_rest(const scenarios::TruthTrack& track, std::int64_t step_ns) {
   std::optional<Span> longest;
   std::optional<Span> now;
@@ -107,7 +107,7 @@ std::optional<Span> longest_rest(const scenarios::TruthTrack& track, std::int64_
   return longest;
 }
 
-/// Returns the direction in which unit vectors vary most about their mean.
+/// Returns the direction in which the unit vectors vary most about their mean.
 Eigen::Vector3d liveliest(const std::vector<std::pair<std::int64_t, Eigen::Vector3d>>& up,
                           const Eigen::Vector3d& mean) {
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();

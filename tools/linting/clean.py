@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Stores which sources passed the check, so that later runs skip unchanged sources.
 
-A source is identified by a digest of everything that its check depends on: its text, the headers of this tree that it includes,
-its compiler arguments, the checks, the version of Clang, and the versions of all installed packages with headers. A library header
-that changes without a new package version is not detected.
+A digest of everything on which the check of a source depends identifies the source: its text, the headers of this tree that it
+includes, its compiler arguments, the checks, the version of Clang, and the versions of all installed packages with headers. A
+library header that changes without a new package version is not detected.
 """
 import hashlib
 import pathlib
@@ -14,18 +14,18 @@ _INCLUDE = re.compile(r'^\s*#\s*include\s*["<]([^">]+)[">]', re.MULTILINE)
 
 
 def surroundings(root: pathlib.Path) -> bytes:
-    """Returns the data that every check depends on: the list of checks, and the versions of Clang and of packages with headers."""
+    """Returns the data on which every check depends: the list of checks, and the versions of Clang and of packages with headers."""
     said = [subprocess.run(command, check=True, capture_output=True).stdout
             for command in (["clang-tidy", "--version"], ["dpkg-query", "-W", "-f", "${Package} ${Version}\n", "*-dev"])]
     return b"\0".join([(root / ".clang-tidy").read_bytes(), *said])
 
 
 class Clean:
-    """Sources that passed the check, stored as empty files in `folder` whose names are digests."""
+    """The sources that passed the check, stored in `folder` as empty files whose names are the digests."""
 
     def __init__(self, root: pathlib.Path, folder: pathlib.Path, headers: list[str], depends_on: bytes):
         self._root, self._folder, self._depends_on = root, folder, depends_on
-        # an include names the end of a header's path. If the paths of two headers have this end, the source depends on both
+        # An include names the end of a header's path. If two headers match, the source depends on both.
         self._ending: dict[str, list[str]] = {}
         for name in headers:
             parts = pathlib.PurePath(name).parts

@@ -3,8 +3,8 @@
 
 Most of the time of a check is spent in the headers of Eigen, GoogleTest and JSON, which clang-tidy also checks. A joint file
 therefore contains all includes first, then the sources one after the other. If two sources have equal names in unnamed
-namespaces, the second name is changed. Clang's messages about a joint file are only hints, because names may clash in other
-ways. The caller therefore checks the suspected sources separately.
+namespaces, the second name is changed. Names may clash in other ways, so Clang's messages about a joint file are only hints.
+The caller therefore checks the sources with messages separately.
 """
 import dataclasses
 import pathlib
@@ -25,8 +25,8 @@ class Source:
     name: str
     text: str
     words: list[str]  # arguments of the source's compilation
-    own: set[str]     # names in its unnamed namespaces, which other sources may also use
-    tests: set[str]   # names of its tests, which no other source of a group may use
+    own: set[str]     # names in its unnamed namespaces; other sources may have the same names
+    tests: set[str]   # names of its tests; no other source of the group may have them
 
 
 def read_source(root: pathlib.Path, name: str, words: list[str]) -> Source:
@@ -66,7 +66,7 @@ def grouped(sources: list[Source]) -> list[list[Source]]:
 
 
 def words_of(root: pathlib.Path, group: list[Source]) -> list[str]:
-    """Returns compiler arguments for the whole group. The folders of the sources are added to the search path of includes."""
+    """Returns compiler arguments for the whole group, whose include path contains the folders of all sources."""
     folders = dict.fromkeys(str((root / source.name).parent) for source in group)
     out = [*group[0].words, *(word for folder in folders for word in ("-iquote", folder))]
     for source in group[1:]:
@@ -79,16 +79,16 @@ def words_of(root: pathlib.Path, group: list[Source]) -> list[str]:
 
 
 def text_of(group: list[Source]) -> tuple[str, list[tuple[str, int]]]:
-    """Returns the joint text, and for each of its lines the source and the line number in the source."""
+    """Returns the joint text, and the source and line number of each of its lines."""
     included: dict[str, tuple[str, int]] = {}
     body, places = [], []
     taken: set[str] = set()
     for at, source in enumerate(group):
         renamed = source.own & taken
         taken |= source.own
-        # members and qualified names stay unchanged, because they belong to other classes or namespaces
+        # Members and qualified names belong to other classes or namespaces, so they stay unchanged.
         pattern = re.compile(r"(?<![.>:\w])(" + "|".join(sorted(renamed)) + r")\b") if renamed else None
-        depth = 0  # depth of preprocessor conditions; an include within a condition is not moved
+        depth = 0  # depth of preprocessor conditions; a conditional include is not moved
         for number, line in enumerate(source.text.splitlines(), 1):
             depth += line.startswith("#if")
             depth -= line.startswith("#endif")

@@ -8,7 +8,7 @@ import functools
 import pathlib
 import re
 
-# names that each of these headers provides, by the standard or in every implementation
+# Names that each header provides, by the standard or in every implementation.
 _CONTAINERS = "array deque list map set span string string_view tuple unordered_map unordered_set vector".split()
 _COMMON = [*_CONTAINERS, "algorithm", "functional", "memory", "utility", "iterator", "optional"]
 _OF_COMMON = """size_t ptrdiff_t move swap pair make_pair exchange initializer_list begin end size next prev distance

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstddef>
 
-/// The header colours.hpp defines the palette that plots, pictures and replays share.
+/// colours.hpp defines the palette of plots, pictures and replays.
 namespace tumble::tools {
 
 struct Colour {
@@ -12,14 +12,14 @@ struct Colour {
   std::array<float, 4> rgba() const;
 };
 
-/// kMethodColours is the number of methods with different colours. Further methods use these colours again.
+/// Number of methods with different colours. Further methods reuse these colours.
 inline constexpr std::size_t kMethodColours = 6;
 
-/// Returns the colour of the truth, and of the method with an index. Colour-blind readers can distinguish the colours.
+/// Colours of the truth and of the methods by index. Colour-blind readers can distinguish them.
 Colour truth_colour();
 Colour method_colour(std::size_t index);
-/// Returns how often all colours were used before the method with this index. A plot distinguishes methods with equal
-/// colours by dashes, symbols or filling.
+/// Returns how many earlier methods have the colour of this method. A plot distinguishes methods with equal colours by
+/// dashes, symbols or filling.
 std::size_t colour_round(std::size_t index);
 
 }  // namespace tumble::tools

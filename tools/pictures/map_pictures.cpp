@@ -18,7 +18,7 @@ using Eigen::Vector3f;
 
 constexpr std::array<std::uint8_t, 3> kBackground = {24, 26, 30};
 constexpr int kScaleHeight = 14, kPictureMargin = 6;
-constexpr double kFocal = 1.7;  ///< focal length in units of half the picture's smaller side: about 60 degrees of view
+constexpr double kFocal = 1.7;  ///< focal length in half smaller sides of the picture: about 60 degrees of view
 constexpr double kElevation_rad = 0.6;
 
 /// Camera looks at the middle of the true path, across the direction of travel.
@@ -40,8 +40,8 @@ class Camera {
     distance_m_ = 1.25 * reach_m_;
   }
 
-  /// Projects a point to column, row and depth. Returns false for points outside of the picture, behind the camera or
-  /// too far from the path.
+  /// Projects a point to column, row and depth. Returns false for points outside the picture, behind the camera, or too
+  /// far from the path.
   bool project(const Vector3f& point_W_m, int& column, int& row, double& depth_m) const {
     const Vector3d from_centre = point_W_m.cast<double>() - centre_;
     if (!(from_centre.norm() <= 1.6 * reach_m_)) return false;

@@ -12,22 +12,22 @@
 #include "sim/recording.hpp"
 #include "sim/render/renderer.hpp"
 
-/// The functions in map_pictures.hpp draw maps whose points are coloured by their distance to the true surface.
+/// map_pictures.hpp draws maps whose points are coloured by their distance to the true surface.
 namespace tumble::tools {
 
-/// Errors of at least kMapErrorMax_m have the last colour of the scale [m].
+/// Errors from this value have the last colour of the scale [m].
 inline constexpr float kMapErrorMax_m = 1.0f;
 
-/// ErrorMap is a map in world axes, aligned with the truth by position and heading at the start, as for the scores.
+/// ErrorMap is a map in world axes, aligned with the truth by position and heading at the start, like the scores.
 struct ErrorMap {
   std::string name;  ///< for example "slam/icp_raw"
   std::vector<Eigen::Vector3f> points_W_m;
-  std::vector<float> error_m;  ///< distance to the true surface, at most kMapErrorMax_m; parallel to the points
+  std::vector<float> error_m;  ///< distance to the true surface of each point, at most kMapErrorMax_m
   double share_within(float limit_m) const;
 };
 
-/// Computes the error of each map point. Non-finite points are left out. The error map is empty if the estimate has no
-/// map, or no pose within the time of the truth.
+/// Computes the error of each finite map point. The result is empty if the estimate has no map, or no pose within the
+/// time of the truth.
 ErrorMap map_by_error(const std::string& name, const scenarios::Estimate& estimate, const sim::Truth& truth,
                       const sim::Surface& surface);
 
@@ -35,10 +35,9 @@ ErrorMap map_by_error(const std::string& name, const scenarios::Estimate& estima
 /// (kMapErrorMax_m).
 std::array<std::uint8_t, 3> error_colour(float error_m);
 
-/// Draws maps next to each other from one viewpoint: from the side and above, limited to the surroundings of the true
-/// path. Nearer points hide points that are farther away. A colour scale from 0 to kMapErrorMax_m is below the maps.
-/// The arguments `width` and `height` are the size of one map. Throws std::invalid_argument if there are no maps or if
-/// the truth is empty.
+/// Draws maps next to each other from one viewpoint at the side and above, limited to the surroundings of the true
+/// path. Nearer points hide farther points. Below the maps is a colour scale from 0 to kMapErrorMax_m. `width` and
+/// `height` are the size of one map. Throws std::invalid_argument if there are no maps or the truth is empty.
 sim::Picture map_picture(const std::vector<ErrorMap>& maps, const sim::Truth& truth, int width, int height);
 
 }  // namespace tumble::tools

@@ -12,10 +12,10 @@ namespace tumble::tools {
 
 namespace {
 
-/// The camera looks at the mean position of the robot over kFollow_s, so that it follows without shaking at impacts.
+/// The camera looks at the robot's mean position over kFollow_s, so it follows without shaking at impacts.
 constexpr double kFollow_s = 0.4;
 constexpr int kFollowSamples = 9;
-/// kPause_ms is the duration of the last frame before the animation restarts.
+/// Duration of the last frame before the animation restarts.
 constexpr int kPause_ms = 700;
 
 double step_ns(const MovingOptions& options) {
@@ -65,7 +65,7 @@ std::vector<std::uint8_t> moving_picture(const Scene& scene, const Span& span, c
   const scenarios::TruthTrack track(*scene.truth, scenarios::Frame::body);
   const std::vector<std::int64_t> stands =
       options.strobe > 0 ? instants_along(*scene.truth, options.strobe) : std::vector<std::int64_t>{};
-  // The frames have a few hundred pixels, so finer shadows would be invisible and most of the cost.
+  // Finer shadows would be invisible in such small frames, and would be most of the cost.
   sim::Renderer renderer(*scene.built, 1024);
   sim::View view;
   view.width = options.width;

@@ -9,22 +9,20 @@
 #include "tools/pictures/paths.hpp"
 #include "tools/pictures/pictures.hpp"
 
-/// The functions in moving.hpp render animations of a motion: the camera follows the robot, and copies of the robot
-/// mark its path.
+/// moving.hpp renders animations of a motion: the camera follows the robot, and copies of the robot mark its path.
 namespace tumble::tools {
 
 struct MovingOptions {
   int width = 640, height = 360;
   double frames_per_s = 20.0;
   double speed = 0.5;  ///< seconds of motion per second of playback
-  int strobe = 6;      ///< number of robots drawn along the path, equally far apart; 0 for none
+  int strobe = 6;      ///< number of robots along the path, equally far apart; 0: none
   float quality = 60.0f;
   std::function<void(std::size_t frames)> drawn;  ///< called after each frame with the number of finished frames; may
                                                   ///< be empty
 };
 
-/// Returns the interval of `length_s` in which the body rotates most. Returns the whole moving interval if the moving
-/// interval is shorter than `length_s`.
+/// Returns the interval of `length_s` in which the body rotates most; the whole moving interval if it is shorter.
 Span liveliest_span(const sim::Truth& truth, double length_s);
 
 /// Returns the number of frames of an animation of the interval `span`.

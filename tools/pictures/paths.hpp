@@ -9,7 +9,7 @@
 #include "scenarios/methods/method.hpp"
 #include "sim/recording.hpp"
 
-/// The functions in paths.hpp compute paths for pictures and plots. Scores are computed in scenarios/scoring, not here.
+/// paths.hpp computes paths for pictures and plots.
 namespace tumble::tools {
 
 /// Path is the path of one point of the robot in world axes: the geometric centre of the sphere, or the centre of mass
@@ -23,28 +23,25 @@ struct Path {
 /// Returns the pose of frame A in W, with the attitude normalised.
 Eigen::Isometry3d pose_of(const PoseState& state);
 
-/// Finds the calibrated mounting of the frame to which the poses of an estimate belong. Returns false if the recording
-/// or its truth lacks the sensor. The pointer `truth` may be null; in this case the sphere's centre is the origin of
-/// the body.
+/// Finds the calibrated mounting of the frame of an estimate's poses. Returns false if the recording or its truth lacks
+/// the sensor. `truth` may be null; the sphere's centre is then the origin of the body.
 bool given_mounting(scenarios::Frame frame, const sim::Sensors& sensors, const sim::Truth* truth,
                     Eigen::Isometry3d& T_BA);
 
 /// Returns the true path: every `stride`-th physics sample and the last sample.
 Path true_path(const sim::Sensors& sensors, const sim::Truth& truth, std::size_t stride);
 
-/// Returns the path of an estimate, aligned with the truth at the estimate's first pose by position and yaw, as for the
-/// scores. The returned path is empty if the estimate has no poses, or if the frame of the poses belongs to a sensor
-/// that the recording lacks.
+/// Returns the path of an estimate, aligned with the truth by position and yaw at its first pose, like the scores. The
+/// path is empty if the estimate has no poses, or if the recording lacks the sensor of their frame.
 Path estimated_path(const scenarios::Estimate& estimate, const sim::Sensors& sensors, const sim::Truth& truth);
 
-/// Returns `path` up to the first point outside of the surroundings of `truth`. The surroundings are the bounding box
-/// of `truth`, widened on each side by half of the box's diagonal and at least 1 m. The path is cut because a diverged
-/// estimate would fill the whole picture.
+/// Returns `path` up to the first point outside the surroundings of `truth`, because a diverged estimate would fill the
+/// whole picture. The surroundings are the bounding box of `truth`, widened on each side by half of its diagonal, and
+/// by at least 1 m.
 Path near_truth(const Path& path, const Path& truth);
 
-/// Span contains the first and last instant at which the body moves (faster than 0.1 m/s or 0.2 rad/s). The interval is
-/// widened by `margin_s` on each side and limited to the time of the truth. Without motion, the interval is the whole
-/// truth.
+/// Span contains the first and the last time at which the body moves (faster than 0.1 m/s or 0.2 rad/s). The interval
+/// is widened by `margin_s` on each side and limited to the time of the truth. Without motion, it is the whole truth.
 struct Span {
   std::int64_t begin_ns = 0, end_ns = 0;
 };

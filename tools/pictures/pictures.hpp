@@ -13,7 +13,7 @@
 
 namespace tumble::tools {
 
-/// Scene is the input of pictures. Only the first member of Scene is required.
+/// Scene is the input of pictures. Only `built` is required.
 struct Scene {
   const sim::BuiltSituation* built = nullptr;
   const sim::Sensors* sensors = nullptr;  ///< needed with `truth` to draw the robot along the true path
@@ -22,10 +22,10 @@ struct Scene {
 };
 
 /// Draws the whole path in one picture: the world, `robots` copies of the robot at equal distances along the path, and
-/// the true and estimated paths. Without truth, only the world and the estimates are drawn.
+/// the true and estimated paths. Without truth, only the world and the estimated paths.
 sim::Picture scene_picture(const Scene& scene, int robots, int width, int height);
 
-/// Draws `frames` close-ups at equal distances along the path, in picture rows of `columns`. The scene must have a
+/// Draws `frames` close-ups at equal distances along the path, in rows of `columns` pictures. The scene must have a
 /// truth.
 sim::Picture film_picture(const Scene& scene, int frames, int columns, int width, int height);
 

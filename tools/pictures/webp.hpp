@@ -13,17 +13,17 @@ namespace tumble::tools {
 /// bytes.
 class WebpAnimation {
  public:
-  /// Takes the size of each picture, from 1 to 16383 pixels per side, and the `quality` from 0 (small) to 100. Throws
-  /// std::invalid_argument for values outside of these ranges.
+  /// `width` and `height` of each picture are 1 to 16383 pixels; `quality` is 0 (small file) to 100. Throws
+  /// std::invalid_argument for other values.
   WebpAnimation(int width, int height, float quality);
   ~WebpAnimation();
   WebpAnimation(WebpAnimation&&) noexcept;
 
-  /// Appends a picture that is shown for `duration_ms`. Throws std::invalid_argument if the size differs or the
+  /// Appends a picture that is shown for `duration_ms`. Throws std::invalid_argument if its size differs or the
   /// duration is below 1 ms, and std::runtime_error if compression fails.
   void add(const sim::Picture& picture, int duration_ms);
 
-  /// Returns the WebP file; no picture may be added afterwards. Throws std::logic_error if there is no picture.
+  /// Returns the WebP file; no picture may follow. Throws std::logic_error if there is no picture.
   std::vector<std::uint8_t> bytes();
 
  private:

@@ -9,16 +9,15 @@
 #include "scenarios/methods/method.hpp"
 #include "sim/recording.hpp"
 
-/// The class Motion contains the motion of the body by the truth or by an estimate, in one common world frame.
+/// Motion contains the motion of the body, from the truth or an estimate, in one common world frame.
 namespace tumble::tools {
 
-/// Motion contains poses of the body B in W at increasing instants. Between samples, positions are interpolated
-/// linearly and attitudes by slerp. The pose is undefined outside the samples, and in gaps of more than half a second
-/// or four usual steps.
+/// Motion contains poses of the body B in W at increasing times. Positions are interpolated linearly and attitudes by
+/// slerp. The pose is undefined outside the samples, and in gaps longer than half a second or four usual steps.
 class Motion {
  public:
   Motion() = default;
-  /// Drops poses that are not finite, not later than the preceding pose, or farther than 10 km from the first pose.
+  /// Drops poses that are not finite, not later than the preceding pose, or farther than 10 km from the first.
   Motion(const std::vector<std::int64_t>& time_ns, const std::vector<Eigen::Isometry3d>& T_WB);
 
   bool empty() const { return time_ns_.empty(); }
@@ -34,15 +33,14 @@ class Motion {
   std::int64_t gap_ns_ = 0;
 };
 
-/// Samples the truth at instants `step_ns` apart. The returned motion is empty if the truth has no positions. Throws
-/// BadInput if the truth is inconsistent.
+/// Samples the truth at times `step_ns` apart. The result is empty if the truth has no positions. Throws BadInput if
+/// the truth is inconsistent.
 Motion true_motion(const sim::Truth& truth, std::int64_t step_ns);
 
-/// Converts an estimate to poses of the body, with the mounting that the estimator received. If there is a truth, the
-/// motion is aligned with the truth as for the scores: position and heading at the first pose within the time of the
-/// truth. Without a truth, the motion is aligned with `reference` in the same way. An estimate that has no common time
-/// with the reference is not moved. The returned motion is empty without poses, or if the frame of the poses belongs to
-/// a sensor that the recording lacks. The pointer `truth` may be null.
+/// Converts an estimate to poses of the body, with the mounting that the estimator received. The motion is aligned with
+/// the truth, like the scores: position and heading at the first pose within the time of the truth. Without a truth
+/// (null), it is aligned with `reference`; without a common time, it is not moved. The result is empty without poses,
+/// or if the recording lacks the sensor of their frame.
 Motion estimated_motion(const scenarios::Estimate& estimate, const sim::Sensors& sensors, const sim::Truth* truth,
                         const Motion& reference);
 

@@ -23,7 +23,7 @@ constexpr int kErrorSteps = 254;
 constexpr std::uint8_t kNoError = 255;
 constexpr int kColourLevels = 64;
 
-/// Arrays appends arrays to the bytes and describes each array in the head.
+/// Arrays appends arrays to the bytes, and describes each array in the head.
 class Arrays {
  public:
   template <typename Number>
@@ -53,7 +53,7 @@ std::int16_t whole(double value, double scale) {
   return static_cast<std::int16_t>(std::lround(std::clamp(value / scale, -kWhole, kWhole)));
 }
 
-/// Returns the quantisation step for which the largest value fits.
+/// Returns the quantisation step at which the largest value still fits.
 double scale_for(double largest) {
   return std::max(largest, 1e-6) / kWhole;
 }
@@ -81,7 +81,7 @@ void append(const Vector3d& v, double scale, std::vector<std::int16_t>& out) {
   for (int axis = 0; axis < 3; ++axis) out.push_back(whole(v[axis], scale));
 }
 
-/// Returns the origin of the page's positions: the middle of the first path, so that float32 stays precise.
+/// Returns the origin of the page's positions: the middle of the first path, where float32 is precise.
 Vector3d origin_of(const Replay& replay) {
   for (const ReplayActor& actor : replay.actors) {
     for (const Vector3d& p : actor.track.p_WB_m) {
@@ -91,7 +91,7 @@ Vector3d origin_of(const Replay& replay) {
   return Vector3d::Zero();
 }
 
-/// Packs the parts of a world or a robot under `name`. Vertices are relative to `origin`; corner indices count within
+/// Packs the parts of a world or a robot under `name`. Vertices are relative to `origin`. Corner indices count within
 /// each part.
 json pack_parts(const std::string& name, const std::vector<sim::MeshPart>& parts, const Vector3d& origin,
                 Arrays& arrays) {
@@ -182,8 +182,8 @@ json pack_points(const ReplayPoints& points, Arrays& arrays) {
   return {{"shown", points.p_B_m.size()}, {"of", points.of}, {"scale_m", scale}};
 }
 
-/// Returns the scale for the rates of the gyro and the truth. Estimated rates are limited to twice the largest rate of
-/// gyro and truth.
+/// Returns the scale of the rates of gyro and truth. Estimated rates are limited to twice the largest rate of gyro and
+/// truth.
 double rate_scale(const Replay& replay) {
   double largest = 0.0;
   const auto look = [&](const std::vector<Vector3f>& rates) {
@@ -231,7 +231,7 @@ json pack_strip(const ReplayStrip& strip, double scale, Arrays& arrays) {
           {"contacts_known", strip.contacts_known}};
 }
 
-/// Returns the colours of errors from 0 to the largest error, as in pictures of maps.
+/// Returns the colours of errors from 0 to kMapErrorMax_m, as in pictures of maps.
 json error_colours() {
   json out = json::array();
   for (int k = 0; k < kColourLevels; ++k) {

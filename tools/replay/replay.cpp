@@ -26,7 +26,7 @@ constexpr std::int64_t kStep_ns = 2'000'000;  ///< interpolation displaces a poi
 constexpr std::size_t kTracksShare = 2, kStripShare = 8;  ///< shares of the bytes: at most 1/2 for tracks, 1/8 for the
                                                           ///< strip
 constexpr std::size_t kPoseBytes = 20, kSampleBytes = 11, kRateBytes = 6, kPointBytes = 10;
-constexpr float kAround_m = 2.5f;  ///< distance from the path within which the ground has its full resolution
+constexpr float kAround_m = 2.5f;  ///< within this distance of the path, the ground has full resolution
 
 void require_parallel(const sim::Sensors& sensors) {
   for (const sim::LidarRecord& lidar : sensors.lidars) {
@@ -48,7 +48,7 @@ std::int64_t last_instant(const sim::Sensors& sensors, const sim::Truth* truth, 
   if (truth != nullptr && !truth->p_WB_m.empty())
     end_ns = std::max(end_ns, static_cast<std::int64_t>(truth->p_WB_m.size() - 1) * truth->period_ns);
   for (const Motion& motion : motions) {
-    if (end_ns == 0 && !motion.empty()) end_ns = motion.end_ns();  // the recording has poses only
+    if (end_ns == 0 && !motion.empty()) end_ns = motion.end_ns();  // the recording contains only poses
   }
   return end_ns;
 }
@@ -65,8 +65,7 @@ ReplayTrack sampled(const Motion& motion, std::int64_t end_ns, std::int64_t step
   return track;
 }
 
-/// Finds the interval with motion, by the truth or otherwise by the gyro. Without motion, the interval is the whole
-/// recording.
+/// Finds the interval with motion from the truth, or else from the gyro. Without motion, it is the whole recording.
 void find_motion(const ReplayInput& input, Replay& replay) {
   replay.to_ns = replay.end_ns;
   if (input.truth != nullptr && !input.truth->p_WB_m.empty() && input.truth->period_ns > 0) {
@@ -99,7 +98,7 @@ std::vector<ReplayActor> actors_of(const ReplayInput& input) {
     truth.T_BB_given = true_from_given_body(*input.sensors, *input.truth);
     actors.push_back(std::move(truth));
   }
-  // Estimates with a path come first, so that their colours agree with the pictures of the same run.
+  // Estimates with a path come first: their colours then agree with the pictures of the run.
   const auto with_path = static_cast<std::size_t>(std::ranges::count_if(input.estimates, has_path));
   std::size_t paths = 0, other = with_path;
   for (const ReplayEstimate& given : input.estimates) {
@@ -111,7 +110,7 @@ std::vector<ReplayActor> actors_of(const ReplayInput& input) {
   return actors;
 }
 
-/// The list of motions is parallel to the actors.
+/// Returns the motion of each actor.
 std::vector<Motion> motions_of(const ReplayInput& input, std::int64_t step_ns) {
   std::vector<Motion> motions;
   if (input.truth != nullptr) motions.push_back(true_motion(*input.truth, step_ns));
@@ -175,7 +174,7 @@ void add_tracks(const std::vector<Motion>& motions, const ReplayLimits& limits, 
       std::count_if(motions.begin(), motions.end(), [](const Motion& motion) { return !motion.empty(); }));
   const std::size_t room = limits.bytes / kTracksShare / (kPoseBytes * tracks);
   const auto poses = static_cast<std::int64_t>(std::max<std::size_t>(std::min(limits.poses, room), 2));
-  // The step is a multiple of whole microseconds, the page's unit of time.
+  // The page counts time in whole microseconds.
   replay.pose_step_ns = std::max(kStep_ns, (replay.end_ns / (poses - 1) / 1000 + 1) * 1000);
   for (std::size_t i = 0; i < motions.size(); ++i)
     replay.actors[i].track = sampled(motions[i], replay.end_ns, replay.pose_step_ns);
@@ -217,7 +216,7 @@ Replay replay_of(const ReplayInput& input, const ReplayLimits& limits) {
   replay.title = input.title;
   replay.facts = input.facts;
   const std::vector<Motion> motions = motions_of(input, input.truth == nullptr ? 0 : input.truth->period_ns);
-  // The end is at least 1 ns, even if there is only one pose.
+  // At least 1 ns, even for a single pose.
   replay.end_ns = std::max<std::int64_t>(last_instant(*input.sensors, input.truth, motions), 1);
   replay.actors = actors_of(input);
   add_rates(input, limits, replay);

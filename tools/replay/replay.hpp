@@ -13,7 +13,7 @@
 #include "sim/recording.hpp"
 #include "sim/render/world_mesh.hpp"
 
-/// The header replay.hpp defines the content of a replay, independent of the page and of its binary format.
+/// replay.hpp defines the content of a replay, independent of the page and its binary format.
 namespace tumble::tools {
 
 struct ReplayEstimate {
@@ -26,19 +26,19 @@ struct ReplayInput {
   std::string title;                                       ///< for example "hill, seed 6"
   std::vector<std::pair<std::string, std::string>> facts;  ///< pairs of name and value
   const sim::Sensors* sensors = nullptr;
-  const sim::Truth* truth = nullptr;           ///< null if unknown: points are then not coloured by error
-  const sim::BuiltSituation* built = nullptr;  ///< null: no world is shown, and a generic body replaces the robot
+  const sim::Truth* truth = nullptr;           ///< null: points are not coloured by error
+  const sim::BuiltSituation* built = nullptr;  ///< null: no world, and a generic body for the robot
   const sim::Surface* surface = nullptr;       ///< null: points are not coloured by error
   std::vector<ReplayEstimate> estimates;       ///< in the order of their colours
 };
 
-/// Shown states how many of the available items are shown.
+/// Shown states how many items are shown, and how many exist.
 struct Shown {
   std::size_t shown = 0, of = 0;
 };
 
-/// ReplayTrack contains poses of the body at multiples of `Replay::pose_step_ns` from time 0. Unknown poses have a
-/// non-finite position.
+/// ReplayTrack contains poses of the body at multiples of `Replay::pose_step_ns` from time 0. Unknown positions are not
+/// finite.
 struct ReplayTrack {
   std::vector<Eigen::Vector3d> p_WB_m;
   std::vector<Eigen::Quaterniond> q_WB;
@@ -49,8 +49,8 @@ struct ReplayActor {
   std::string colour;
   bool is_truth = false;
   ReplayTrack track;  ///< empty if the actor has no positions
-  /// This transform converts body axes of the estimator's calibration, which the points use, to the actor's body axes.
-  /// The two axes differ for the truth, which has the true mounting of the lidar.
+  /// Transform from body axes of the estimator's calibration, in which the points are, to the actor's body axes. The
+  /// two axes differ for the truth, which has the true mounting of the lidar.
   Eigen::Isometry3d T_BB_given = Eigen::Isometry3d::Identity();
   std::vector<float> error_m;               ///< error of each point as placed by this actor [m]; NaN if unknown; empty
                                             ///< without a true surface
@@ -60,9 +60,9 @@ struct ReplayActor {
 
 /// ReplayPoints contains returns of the first lidar in order of time.
 struct ReplayPoints {
-  std::vector<Eigen::Vector3f> p_B_m;  ///< in body axes by the given calibration
+  std::vector<Eigen::Vector3f> p_B_m;  ///< in body axes of the estimator's calibration
   std::vector<std::int64_t> time_ns;
-  std::size_t of = 0;  ///< number of returns in the recording, without those of the robot's own body
+  std::size_t of = 0;  ///< number of returns in the recording, without those from the robot
 };
 
 struct ContactSpan {
@@ -75,9 +75,9 @@ struct ReplayStrip {
   std::vector<std::int64_t> time_ns;
   std::vector<Eigen::Vector3f> gyro_rad_s;
   std::vector<std::uint8_t> clipped_axes;  ///< bit j is set if axis j is clipped
-  std::string clipping;                    ///< source of the clipping flags; empty if clipping is unknown
+  std::string clipping;                    ///< source of `clipped_axes`; empty if clipping is unknown
   std::size_t of = 0;                      ///< number of samples in the recording
-  std::vector<ContactSpan> contacts;       ///< all spans but those in the air
+  std::vector<ContactSpan> contacts;       ///< all spans except those in the air
   bool contacts_known = false;
 };
 
@@ -90,24 +90,24 @@ struct Replay {
   std::vector<sim::MeshPart> world;  ///< in axes of W
   Shown triangles;
   std::vector<sim::MeshPart> robot;  ///< in axes of B
-  double robot_radius_m = 0.0;       ///< radius of the ball around B's origin that contains the robot
+  double robot_radius_m = 0.0;       ///< radius of the robot about the origin of B
   std::vector<ReplayActor> actors;   ///< the truth is first if there is one
   ReplayPoints points;
   ReplayStrip strip;
 };
 
-/// ReplayLimits contains upper limits of the size of a replay.
+/// ReplayLimits contains the maximum sizes of a replay.
 struct ReplayLimits {
-  std::size_t bytes = 2'100'000;  ///< total of all arrays; the points use what the other arrays leave
+  std::size_t bytes = 2'100'000;  ///< size of all arrays; points use the rest
   std::size_t points = 120'000;
-  std::size_t poses = 6'000;  ///< number of poses per track
+  std::size_t poses = 6'000;  ///< poses per track
   std::size_t strip_samples = 6'000;
-  std::size_t triangles = 60'000;  ///< number of triangles of the world
+  std::size_t triangles = 60'000;  ///< triangles of the world
 };
 
 /// Builds a replay. Throws BadInput if neither the truth nor an estimate has positions, or if truth and sensors
-/// contradict each other. The cost is proportional to the number of points in the recording; errors cost some
-/// microseconds per point and actor.
+/// contradict each other. The cost is proportional to the number of points; errors cost some microseconds per point and
+/// actor.
 Replay replay_of(const ReplayInput& input, const ReplayLimits& limits = {});
 
 }  // namespace tumble::tools

@@ -16,7 +16,7 @@ using Eigen::Vector3f;
 
 constexpr std::uint8_t kGyroFlags = 7;
 
-/// Keeps the fastest sample of each group; all groups have equal numbers of samples.
+/// Keeps the fastest sample of each group of equal size.
 std::vector<std::size_t> kept_samples(const sim::ImuRecord& imu, std::size_t most) {
   const std::size_t count = std::min(imu.time_ns.size(), imu.gyro_rad_s.size());
   const std::size_t run = most == 0 ? count : (count + most - 1) / most;
@@ -72,7 +72,7 @@ void mark_clipping(const sim::Sensors& sensors, const sim::Truth* truth, const s
   }
 }
 
-/// For a rig, the replay distinguishes only contact, because slip and slide are defined for spheres.
+/// For a rig, only contact is shown: slip and slide are defined for spheres.
 std::vector<ContactSpan> contact_spans(const sim::Sensors& sensors, const sim::Truth& truth) {
   std::vector<ContactSpan> spans;
   const auto label_at = [&](std::size_t k) {

@@ -5,13 +5,12 @@
 
 #include "tools/replay/replay.hpp"
 
-/// The functions in strip.hpp provide readings of the primary gyro, and the rate in gyro axes by the truth and by
-/// estimates.
+/// strip.hpp provides readings of the primary gyro, and the rates of truth and estimates in gyro axes.
 namespace tumble::tools {
 
-/// Selects at most `most` samples of the primary IMU: all samples, or the fastest of each group of equal size. Clipped
-/// axes come from the truth (scenarios/scoring/clipping.hpp), else from the device's flags if the device sets any
-/// flags, else from the first estimate with rates. The strip is empty without an IMU. The pointer `truth` may be null.
+/// Selects at most `most` samples of the primary IMU: all, or the fastest of each group of equal size. Clipped axes
+/// come from the truth (scenarios/scoring/clipping.hpp), else from the device's flags if any is set, else from the
+/// first estimate with rates. The strip is empty without an IMU. `truth` may be null.
 ReplayStrip strip_of(const sim::Sensors& sensors, const sim::Truth* truth, const std::vector<ReplayEstimate>& estimates,
                      std::size_t most);
 

@@ -40,8 +40,7 @@ std::vector<const MetricComparison*> rows_of(const Section& section, const scena
   return rows;
 }
 
-/// Returns the difference with a sign that is positive if the method is worse than the baseline, whether larger or
-/// smaller values are better.
+/// Returns the difference between method and baseline with a positive sign if the method is worse.
 double badness(const MetricInfo& info, double difference) {
   return info.sense == Sense::higher ? -difference : difference;
 }
@@ -58,7 +57,7 @@ ContestResult result_of(const MetricComparison& row) {
     out.better = badness(info, row.difference.value) < 0.0;
   }
   const double scale = info.sense == Sense::two_sided ? kNaN : 100.0 / std::abs(row.against_median);
-  // If half of the baseline's runs failed, the baseline's median is infinite and a percentage is undefined.
+  // If half of the baseline's runs failed, its median is infinite and the percentage is undefined.
   const bool known = std::isfinite(row.against_median) && row.against_median != 0.0;
   const double factor = known ? scale : kNaN;
   out.percent = std::isfinite(row.difference.value) ? row.difference.value * factor : kNaN;
@@ -101,7 +100,7 @@ Tally tally(const std::vector<ContestResult>& results) {
     out.won += result.won();
     out.lost += result.lost();
     out.open += !result.won() && !result.lost();
-    // Few runs give no interval, but a difference with one sign on all runs still indicates which method is better.
+    // Few runs give no interval; but a difference with the same sign on all runs indicates which method is better.
     const bool on_every_draw = result.certainty == Certainty::open && result.row.better == result.row.pairs;
     if (result.better && (on_every_draw || result.certainty == Certainty::interval)) {
       const std::string& method = result.row.contest.method;

@@ -9,8 +9,8 @@
 #include "scenarios/summary/comparison.hpp"
 #include "scenarios/summary/summary.hpp"
 
-/// The functions in contests.hpp compute the headline of a report: the best method of each section, its margin, and the
-/// statistical certainty.
+/// contests.hpp computes the headline of a report: the best method of each section, its margin, and the statistical
+/// certainty.
 namespace tumble::tools {
 
 /// Certainty is the statistical significance of a difference.
@@ -20,32 +20,30 @@ enum class Certainty {
   open        ///< not significant by either criterion
 };
 
-/// ContestResult is the result of one section: the best method (needs no truth, is not the baseline), paired with the
-/// baseline by the first headline metric that both methods have.
+/// ContestResult is the result of one section: the best method without truth, other than the baseline, paired with the
+/// baseline by the first headline metric that both have.
 struct ContestResult {
   scenarios::MetricComparison row;
   Certainty certainty = Certainty::open;
-  bool better = false;  ///< the difference favours the method; may be chance if `certainty` is `open`
-  /// The difference is a percentage of the baseline's median, with its interval; NaN if the median is 0 or not finite,
-  /// or if the difference is not finite. An end of the interval is infinite if one run of a pair failed.
+  bool better = false;  ///< the difference favours the method; if `certainty` is `open`, it may be chance
+  /// Difference in percent of the baseline's median, with its interval; NaN if this median is 0 or not finite, or if
+  /// the difference is not finite. An end is infinite if one run of a pair failed.
   double percent = 0.0, percent_low = 0.0, percent_high = 0.0;
-  /// This factor is the baseline's median divided by the method's median, if lower values are better; otherwise NaN.
+  /// Baseline's median divided by the method's median if lower values are better; otherwise NaN.
   double times = std::numeric_limits<double>::quiet_NaN();
-  /// The interval alone is insufficient, because the method was chosen as the best of several methods on these
-  /// simulated runs.
+  /// The interval alone does not decide: the method was chosen as the best of several methods on these runs.
   bool won() const { return better && certainty == Certainty::corrected; }
   bool lost() const { return !better && certainty == Certainty::corrected; }
 };
 
-/// Computes the contests (best method against baseline) in the order of the summary's sections. Attitude is included
-/// only if there is no other kind of method, because attitude describes the motion least. Sections that contain only
-/// the baseline are omitted.
+/// Computes the contests (best method against baseline) in the order of the summary's sections. Attitude describes the
+/// motion least; it is included only if there is no other kind. Sections with only the baseline are omitted.
 std::vector<ContestResult> contests(const scenarios::Summary& summary, const scenarios::Comparison& comparison);
 
-/// Tally contains counts of contests by result.
+/// Tally counts contests by result.
 struct Tally {
   std::size_t contests = 0, won = 0, lost = 0, open = 0;  ///< open: neither won nor lost
-  std::size_t ahead = 0;       ///< open contests in which the method is better by its own interval, or on every draw
+  std::size_t ahead = 0;       ///< open contests in which the method is better by its own interval or in every run
   std::string ahead_by;        ///< the method that is ahead in all of these contests; empty if there are several or
                                ///< none
   std::string leader;          ///< the method that wins most contests (first of equals); empty if no contest is won
@@ -53,10 +51,10 @@ struct Tally {
 };
 Tally tally(const std::vector<ContestResult>& results);
 
-/// Summarises the counts in one sentence, for example "tumble is better than the baseline in 3 of 4 contests".
+/// Summarises the counts in one sentence: "tumble is better than the baseline in 3 of 4 contests".
 std::string tally_text(const Tally& tally);
 
-/// Describes the certainty of a contest in words: which method is better, and what is missing if the contest is open.
+/// Describes the certainty of a contest: which method is better, and what is missing if the contest is open.
 std::string certainty_text(const ContestResult& result, std::size_t comparisons);
 
 }  // namespace tumble::tools

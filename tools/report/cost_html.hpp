@@ -14,13 +14,12 @@ namespace tumble::tools {
 struct CostRow {
   std::string scenario, method;  ///< method: KIND/NAME
   double cpu_s = 0.0;            ///< median CPU time of one estimate
-  /// This factor is the median over the simulated runs of the recording's duration divided by the CPU time; above 1,
-  /// the method is faster than real time on one processor. The factor is NaN if the results contain no durations.
+  /// Median of recording duration / CPU time over the simulated runs; above 1, the method is faster than real time on
+  /// one processor. The factor is NaN if the results contain no durations.
   double real_time_factor = 0.0;
 };
 
-/// Returns the cost of each scenario, kind and method that has a CPU time. The cost of the function is O(values *
-/// log(draws)).
+/// Returns the cost of each scenario, kind and method with a CPU time, in O(values * log(draws)).
 std::vector<CostRow> cost_rows(const scenarios::Summary& summary, std::span<const scenarios::DrawValues> draws);
 
 /// Returns the cost rows as a folded table.

@@ -16,7 +16,7 @@ namespace {
 using scenarios::DependenceClass;
 
 constexpr double kWidth = 150.0, kHeight = 44.0, kPlotMargin = 3.0;
-constexpr double kLeastWidth = 3.0;  // minimum width of a class, for a class that contains a single number
+constexpr double kLeastWidth = 3.0;  // minimum width of a class, which may contain a single value
 constexpr double kDecade = 10.0;
 
 /// Axis maps values to pixels between two ends of the picture.

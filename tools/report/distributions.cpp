@@ -18,7 +18,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Describes the values that a histogram leaves out; empty if the histogram shows all values.
+/// Describes the values that a histogram omits; empty if it shows all values.
 std::string thinned_text(std::span<const Spread> spreads) {
   const auto is_thinned = [](const Spread& spread) { return spread.of_draws && spread.values.size() > kBoxPoints; };
   if (std::none_of(spreads.begin(), spreads.end(), is_thinned)) return "";
@@ -66,7 +66,7 @@ std::string text(const Spread& spread, double value) {
   return number_text(value * spread.factor);
 }
 
-/// kHatchings lists hatchings, selected by how often all colours were used (`colour_round`).
+/// Hatchings by the number of earlier scenarios with the same colour (`colour_round`).
 constexpr std::array kHatchings = {"", "/", "x", "."};
 
 /// Returns histograms of one quantity, one per scenario.

@@ -10,8 +10,8 @@
 #include "tools/report/plots.hpp"
 #include "tools/tables/table.hpp"
 
-/// The functions in distributions.hpp show distributions of the simulated motions, compared with the published
-/// experiment with the tumbling rig.
+/// distributions.hpp shows distributions of the simulated motions, compared with the published experiment with the
+/// tumbling rig.
 namespace tumble::tools {
 
 using scenarios::Spread;

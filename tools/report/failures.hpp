@@ -10,34 +10,34 @@
 #include "scenarios/summary/summary.hpp"
 #include "scenarios/sweep/results.hpp"
 
-/// The functions in failures.hpp list the simulated runs on which methods failed, with commands to repeat the runs.
+/// failures.hpp lists the simulated runs on which methods failed, with commands to repeat them.
 namespace tumble::tools {
 
-/// kFailedDrawsShown is the maximum number of failed runs on the page.
+/// Maximum number of failed runs on the page.
 inline constexpr std::size_t kFailedDrawsShown = 60;
 
 struct FailedRun {
   std::string method;   ///< kind/name
   std::string status;   ///< for example "diverged"
   std::string message;  ///< one line; may be empty
-  std::string command;  ///< command that runs it again (run_again.hpp)
+  std::string command;  ///< command that repeats the run (run_again.hpp)
 };
 
-/// FailedDraw is a run with the methods that failed on it.
+/// FailedDraw is a simulated run with the methods that failed on it.
 struct FailedDraw {
   std::string scenario;
   std::uint64_t seed = 0;
   std::vector<FailedRun> runs;
-  std::string replay_command;  ///< creates a replay from data that `sweep --keep` stored; empty if nothing is stored
+  std::string replay_command;  ///< replay of data that `sweep --keep` stored; empty if none is stored
 };
 
 struct FailedDraws {
-  std::size_t draws = 0;          ///< total number of failed draws
-  std::vector<FailedDraw> shown;  ///< draws with the most failed methods, at most `kFailedDrawsShown`
+  std::size_t draws = 0;          ///< total number of failed runs
+  std::vector<FailedDraw> shown;  ///< runs with the most failed methods, at most `kFailedDrawsShown`
 };
 
-/// Finds the failed runs, and reads messages only for the runs that are shown. The argument `database` is the path of
-/// the results; kept files are next to the database.
+/// Finds the failed runs, and reads messages only for those that are shown. `database` is the path of the results; kept
+/// files are next to it.
 FailedDraws failed_draws(const scenarios::Results& results, const scenarios::Summary& summary,
                          const std::filesystem::path& database);
 

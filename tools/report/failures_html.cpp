@@ -15,7 +15,7 @@ namespace {
 
 using html::escaped;
 
-/// The first kOpenDraws failed runs are open; further failed runs are folded.
+/// Number of failed runs that are open; further ones are folded.
 constexpr std::size_t kOpenDraws = 8;
 
 const ShownExample* example_of(const PageContent& content, const FailedDraw& draw) {

@@ -21,12 +21,12 @@ using scenarios::Interval;
 using scenarios::Section;
 using scenarios::Summary;
 
-/// The first kShownContests contests are open; further contests are folded.
+/// Number of contests that are open; further ones are folded.
 constexpr std::size_t kShownContests = 6;
-/// kNamedScenarios is the maximum number of scenarios that the first sentence names.
+/// Maximum number of scenarios that the first sentence names.
 constexpr std::size_t kNamedScenarios = 4;
 
-/// Lists names, for example "hill, roll and slip", or returns the count if there are many.
+/// Lists names, for example "hill, roll and slip"; returns only their number if there are many.
 std::string names_text(const std::vector<std::string>& all, const char* many) {
   if (all.size() > kNamedScenarios) return fmt::format("{} {}", all.size(), many);
   std::string names;
@@ -47,7 +47,7 @@ std::string draws_text(const Summary& summary) {
                        : fmt::format("{} to {} draws each of {}", least, most, names);
 }
 
-/// Describes the input data of the methods and the source of the truth.
+/// Describes the sensor data that the methods receive, and the source of the truth.
 std::string data_text(const PageContent& content) {
   if (!content.recorded)
     return fmt::format("The data are {} from simulation with known truth. All methods received the same recordings.",
@@ -58,7 +58,7 @@ std::string data_text(const PageContent& content) {
       names_text(content.summary.scenarios, "of them"));
 }
 
-/// Describes the tasks of the contests.
+/// Describes the tasks of the methods in the contests.
 std::string tasks_text(const std::vector<ContestResult>& results) {
   using scenarios::Kind;
   const std::pair<Kind, const char*> tasks[] = {{Kind::rate, "rate (angular velocity)"},
@@ -73,7 +73,7 @@ std::string tasks_text(const std::vector<ContestResult>& results) {
   return out;
 }
 
-/// Counts the methods that do not need the truth.
+/// Counts the methods without truth.
 std::size_t method_count(const Summary& summary) {
   std::set<std::pair<scenarios::Kind, std::string>> names;
   for (const Section& section : summary.sections) {
@@ -84,7 +84,7 @@ std::size_t method_count(const Summary& summary) {
   return names.size();
 }
 
-/// Draws the interval on an axis from -100 % to +100 %; values outside are cut at the border.
+/// Draws the interval on an axis from -100 % to +100 %, limited to this range.
 std::string bar_html(const ContestResult& result) {
   if (!std::isfinite(result.percent)) return "<span class=\"bar none\"></span>";
   const auto at = [](double percent) { return 50.0 + 0.5 * std::clamp(percent, -100.0, 100.0); };
@@ -108,7 +108,7 @@ std::string difference_text(const ContestResult& result) {
   }
   const std::string value = styled_value(result.row.metric, own.value, true);
   const std::string sign = own.value > 0.0 ? "+" : "";
-  // An interval without a finite end is omitted.
+  // Intervals with two infinite ends are omitted.
   if (!std::isfinite(own.low) && !std::isfinite(own.high)) return sign + value;
   return sign + value + " " + styled_interval(result.row.metric, own);
 }
@@ -160,8 +160,8 @@ std::string contests_html(const std::vector<ContestResult>& results, std::size_t
   return out + "</section>\n";
 }
 
-/// Chooses an example by priority: typical runs before failed runs, examples of these results before other examples,
-/// animations before still pictures.
+/// Chooses an example by priority: typical before failed runs, examples of these before other results, animations
+/// before still pictures.
 const ShownExample* example_to_show(const std::vector<ShownExample>& examples) {
   const ShownExample* best = nullptr;
   const auto rank = [](const ShownExample& shown) {

@@ -7,7 +7,7 @@
 
 namespace tumble::tools {
 
-/// Returns the first screen with the compared methods, the best methods with margin and certainty, and one animation.
+/// Returns the first screen: the compared methods, the best methods with margin and certainty, and one animation.
 std::string front_html(const PageContent& content);
 
 }  // namespace tumble::tools

@@ -17,7 +17,7 @@ using scenarios::MotionCloud;
 using scenarios::MotionMap;
 using scenarios::PublishedExtreme;
 
-/// The points have symbols in addition to colours, because there may be more scenarios than colours.
+/// Points differ by symbol and colour, because there may be more scenarios than colours.
 constexpr std::array kSymbols = {"circle", "square", "diamond", "triangle-up", "cross", "x", "star"};
 
 json density(const MotionMap& map) {
@@ -64,7 +64,7 @@ json points(const MotionCloud& cloud, std::size_t index) {
           {"y", std::move(y)}};
 }
 
-/// Returns an outline from the lower ends of the axes to the extremes; a line if no rate is published.
+/// Returns an outline from the lower ends of the axes to the published maxima; a line if no rate is published.
 json outline(const PublishedExtreme& extreme, const MotionMap& map, bool dotted) {
   const double low_rate = map.rate_rad_s.front(), low_force = map.force_m_s2.front();
   json x = json::array({low_rate}), y = json::array({extreme.force_m_s2});

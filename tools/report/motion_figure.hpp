@@ -7,7 +7,7 @@
 namespace tumble::tools {
 
 /// Plots the density of all runs over rate and specific force (both logarithmic), the runs as points by scenario, and
-/// the published extremes as outlines. The figure is empty without runs.
+/// the published maxima as outlines. The figure is empty without runs.
 Figure motion_figure(const scenarios::MotionMap& map);
 
 }  // namespace tumble::tools

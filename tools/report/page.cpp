@@ -43,7 +43,7 @@ std::string draws_html(const Summary& summary) {
 }
 
 /// Lists the reasons why simulated runs were rejected. The time at the end of a reason is removed, so that equal
-/// reasons are counted together.
+/// reasons count together.
 std::string rejected_html(const std::vector<scenarios::RejectedDraw>& rejected) {
   std::map<std::pair<std::string, std::string>, std::vector<std::uint64_t>> reasons;
   for (const scenarios::RejectedDraw& draw : rejected) {
@@ -119,7 +119,7 @@ std::string commands_html(const std::vector<Fact>& commands) {
   return out;
 }
 
-/// Returns the sections in the order of the page, without empty sections.
+/// Returns the non-empty sections in the order of the page.
 std::vector<Part> parts_of(const PageContent& content, std::vector<Figure>& figures) {
   std::vector<Part> parts;
   const auto add = [&](const char* id, const char* title, std::string html) {
@@ -154,7 +154,7 @@ std::string figures_json(const std::vector<Figure>& figures) {
   return html::script_json("[" + all + "]");
 }
 
-/// The policy allows only content that is embedded in the page: scripts, styles, and pictures as data.
+/// Allows only content that is embedded in the page: scripts, styles, and pictures as data.
 constexpr const char* kPolicy =
     "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data: blob:; style-src "
     "'unsafe-inline'; script-src 'unsafe-inline'\">";

@@ -29,35 +29,34 @@ struct ShownExample {
 /// Fact is a pair of name and value.
 using Fact = std::pair<std::string, std::string>;
 
-/// PageContent is the content of a report page. The function `page_html` adds only markup.
+/// PageContent is the content of a report page; `page_html` adds only markup.
 struct PageContent {
   std::string title;
-  bool recorded = false;  ///< results of recordings instead of simulated draws
+  bool recorded = false;  ///< results of recordings instead of simulated runs
   scenarios::Summary summary;
-  scenarios::Comparison comparison;    ///< comparison with the baselines by the headline metrics
-  std::vector<ShownExample> examples;  ///< single draws with pictures and plots
-  scenarios::MotionMap motion_map;     ///< covers all draws, as does the next member
+  scenarios::Comparison comparison;    ///< with the baselines, by the headline metrics
+  std::vector<ShownExample> examples;  ///< single runs with pictures and plots
+  scenarios::MotionMap motion_map;     ///< covers all runs, like `motions`
   std::vector<Spread> motions;
   Palette palette;             ///< colours of the methods in all figures
-  std::vector<Figure> errors;  ///< errors of all draws
+  std::vector<Figure> errors;  ///< errors of all runs
   Figure cost;
   std::vector<CostRow> costs;
   std::vector<Curve> curves;
   FailedDraws failed;
   std::vector<scenarios::RejectedDraw> rejected;
   std::vector<scenarios::Sensitivity> sensitivity;
-  std::string sensitivity_note;  ///< states the draws used, or why there is no sensitivity
+  std::string sensitivity_note;  ///< which runs were used, or why there is no sensitivity
   std::vector<scenarios::Certificate> certificates;
   std::vector<Fact> methods;          ///< name and description of each method
-  std::vector<Fact> versions;         ///< suite, draws, builds, data, date
+  std::vector<Fact> versions;         ///< suite, runs, builds, data, date
   std::vector<Fact> commands;         ///< purpose and command
-  std::vector<std::string> warnings;  ///< what is missing, and why
+  std::vector<std::string> warnings;  ///< missing content, and the reason
 };
 
-/// Returns one self-contained page with styles, plots, pictures and the Plotly bundle inside. The page needs no
-/// network, and its Content Security Policy forbids network access. The sections are first screen, motions, errors,
-/// paired differences, failures, sensitivity, cost, certificate, versions, commands. All texts are embedded as data,
-/// never as markup.
+/// Returns one self-contained page with styles, plots, pictures and the Plotly bundle inside. The Content Security
+/// Policy of the page forbids network access. The sections are first screen, motions, errors, paired differences,
+/// failures, sensitivity, cost, certificate, versions, commands. Texts are embedded as data, never as markup.
 std::string page_html(const PageContent& content, const std::string& plotly_bundle);
 
 }  // namespace tumble::tools

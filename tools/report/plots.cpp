@@ -83,8 +83,8 @@ class Boxes {
     }
   }
 
-  /// Uses a logarithmic axis if values are positive and span more than a decade. A linear axis starts at 0 if
-  /// `from_zero` is set, or at the smallest value.
+  /// Uses a logarithmic axis if values are positive and span more than a decade. Otherwise, the axis starts at 0 if
+  /// `from_zero` is set, or else at the smallest value.
   void put_into(Figure& figure, bool from_zero) {
     json data = json::array();
     for (const auto& [name, trace] : traces_) data.push_back(trace);
@@ -108,7 +108,7 @@ class Boxes {
   };
 
   void add_values(json& trace, const std::string& group, const std::vector<double>& values, std::size_t failed) {
-    // The fractions of values and of failed runs remain if only some of the runs are drawn.
+    // If not all runs are drawn, the drawn ones keep the ratio of values to failed runs.
     const std::size_t all = values.size() + failed;
     const std::size_t shown_failed = all <= kBoxPoints ? failed : (failed * kBoxPoints + all - 1) / all;
     for (const double value : at_most(values, std::max<std::size_t>(2, std::min(all, kBoxPoints) - shown_failed))) {
@@ -266,7 +266,7 @@ std::string axis_title(const std::string& metric) {
   std::string name = metric;
   const std::string unit = scenarios::metric_style(metric).unit;
   const std::string in_unit = unit.empty() ? "" : " [" + unit + "]";
-  if (name.find('.') != std::string::npos) return name + in_unit;  // a key of a scenario
+  if (name.find('.') != std::string::npos) return name + in_unit;  // a scenario parameter
   std::string suffix = std::string("_") + scenarios::symbol(scenarios::metric_info(metric).unit);
   std::replace(suffix.begin(), suffix.end(), '/', '_');
   if (name.ends_with(suffix)) name.resize(name.size() - suffix.size());

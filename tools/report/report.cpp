@@ -58,14 +58,14 @@ std::vector<Fact> listed_methods(const Summary& summary) {
   return out;
 }
 
-/// Returns whether a sweep by this build, with the data found on this machine, would continue these results.
+/// Returns true if a sweep by this build, with the data on this machine, would continue these results.
 bool are_of_here(const scenarios::Results& results, const ReportOptions& options) {
   const std::string made_by = results.note("build"), made_of = results.note("data");
   return (made_by.empty() || made_by == scenarios::build_id()) &&
          (made_of.empty() || options.data.empty() || made_of == options.data);
 }
 
-/// Returns the commands that repeat the page and extend it, without commands that would reject these results.
+/// Returns the commands that repeat and extend the page, without commands that would reject these results.
 std::vector<Fact> commands(const scenarios::Results& results, const ReportOptions& options,
                            const PageContent& content) {
   const std::string database = scenarios::shell_word(options.database.string());
@@ -89,7 +89,7 @@ std::vector<Fact> commands(const scenarios::Results& results, const ReportOption
   return out;
 }
 
-/// Plots the headline metrics of each kind. Pass-fail metrics are omitted, because the table shows their fraction.
+/// Plots the headline metrics of each kind, without pass-fail metrics, whose fraction is in the table.
 std::vector<Figure> errors_of_all_draws(const Summary& summary, const Palette& palette) {
   std::vector<Figure> figures;
   for (const Kind kind : {Kind::rate, Kind::attitude, Kind::position, Kind::slam}) {
@@ -103,9 +103,9 @@ std::vector<Figure> errors_of_all_draws(const Summary& summary, const Palette& p
   return figures;
 }
 
-/// Returns whether the example belongs to these results: the database contains its rows, and a new simulation gives a
-/// recording with the same digest. The digest may be that of a recording without lidars, because sweeps omit lidars
-/// that no method needs.
+/// Returns true if the example belongs to these results: the database contains its rows, and the digests of the
+/// recordings are equal. Sweeps omit lidars that no method needs, so the digest may be that of the recording without
+/// lidars.
 bool is_of(const scenarios::Results& results, const Example& example) {
   if (example.made_of != scenarios::digest_of_rows(results, {example.scenario, example.seed})) return false;
   const std::vector<scenarios::Outcome> rows = results.outcomes_of(example.scenario, example.seed);
@@ -115,8 +115,8 @@ bool is_of(const scenarios::Results& results, const Example& example) {
   });
 }
 
-/// Explains why there are no pictures, and which command creates pictures. Only a sweep adds pictures, and only to
-/// results of the sweep's build and data.
+/// Explains why there are no pictures, and which command creates them. Only a sweep adds pictures, with the build and
+/// the data of the results.
 std::string how_to_get_pictures(const scenarios::Results& results, const ReportOptions& options) {
   const std::string none =
       fmt::format("There are no pictures of single draws in {}", examples_folder(options.database).string());
@@ -167,7 +167,7 @@ void add_examples(const scenarios::Results& results, const ReportOptions& option
   if (content.examples.empty()) content.warnings.push_back(how_to_get_pictures(results, options));
 }
 
-/// Takes the colours of the examples' pictures first, because pictures cannot be recoloured.
+/// Takes the colours in the examples' pictures first, because pictures cannot be recoloured.
 Palette palette_of(const PageContent& content) {
   Palette palette;
   for (const ShownExample& shown : content.examples) {

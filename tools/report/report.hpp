@@ -20,20 +20,20 @@ struct ReportInput {
   std::vector<Curve> curves;
   std::vector<Spread> motions;
   std::vector<scenarios::Sensitivity> sensitivity;
-  std::string sensitivity_note;  ///< states the draws used, or why there is no sensitivity
+  std::string sensitivity_note;  ///< which runs were used, or why there is no sensitivity
 };
 
 struct ReportOptions {
   std::filesystem::path database;  ///< path of the results; examples are next to it
-  std::filesystem::path page;      ///< path of the page, from which links to replays are relative
+  std::filesystem::path page;      ///< path of the page; links to replays are relative to it
   std::string version;             ///< version of the program
-  std::string data;     ///< digest of the models and scenarios that a sweep would use on this machine; may be empty
-  std::string made_at;  ///< date and time as shown on the page
+  std::string data;                ///< digest of the models and scenarios on this machine; may be empty
+  std::string made_at;             ///< date and time on the page
 };
 
-/// Computes the content of the page from the results and from the examples that a sweep stored next to the results. The
-/// report simulates and estimates nothing. Without examples, the page states the command that creates examples, or the
-/// required build or data.
+/// Computes the content of the page from the results, and from the examples that a sweep stored next to them. Nothing
+/// is simulated or estimated. Without examples, the page shows the command that creates them, or the required build or
+/// data.
 PageContent report_content(ReportInput input, const ReportOptions& options);
 
 }  // namespace tumble::tools

@@ -24,14 +24,14 @@ using scenarios::Sense;
 std::string plain(double value) {
   if (std::isnan(value)) return "–";
   if (std::isinf(value)) return value > 0.0 ? "∞" : "−∞";
-  // Numbers between a thousandth and a million are written without exponents.
+  // Numbers from a thousandth to a million have no exponent.
   if (value < 0.0) return "−" + plain(-value);
   if (value != 0.0 && (std::abs(value) < 1e-3 || std::abs(value) >= 1e6)) return fmt::format("{:.2e}", value);
   const int digits = value == 0.0 ? 0 : std::max(0, 2 - static_cast<int>(std::floor(std::log10(std::abs(value)))));
   return fmt::format("{:.{}f}", value, digits);
 }
 
-/// Returns the method with the best median among the methods that a real robot can run.
+/// Returns the method without truth that has the best median.
 const MethodSummary* best_method(const Section& section, const std::string& metric) {
   const MethodSummary* best = nullptr;
   const MetricInfo& info = metric_info(metric);
@@ -40,7 +40,7 @@ const MethodSummary* best_method(const Section& section, const std::string& metr
     const MetricSummary* own = method.find(metric);
     if (own == nullptr || method.needs_truth) continue;
     const double value = own->centre.value;
-    // Full coverage is nearer to the target than partial coverage, but any overestimated covariance reaches it.
+    // Full coverage is nearer to the target than partial coverage, but any overestimated covariance has full coverage.
     if (info.sense == Sense::two_sided && info.unit == scenarios::Unit::share && info.target < 1.0 && value >= 1.0)
       continue;
     if (best == nullptr || is_better(info, value, best->find(metric)->centre.value)) best = &method;

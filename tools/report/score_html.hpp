@@ -15,7 +15,7 @@ std::string styled_value(const std::string& metric, double value_si, bool with_u
 std::string styled_interval(const std::string& metric, const scenarios::Interval& interval);
 
 /// Returns the table of one section: one row per metric, one column per method with median, interval and paired wins.
-/// The first row contains the failures.
+/// The first row shows the failures.
 std::string score_table_html(const scenarios::Section& section);
 
 }  // namespace tumble::tools

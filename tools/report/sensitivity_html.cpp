@@ -32,7 +32,7 @@ std::string strength_cell(double strength) {
                      60.0 * strength, strength);
 }
 
-/// Draws the score as a function of the number.
+/// Draws the score as a function of the scenario parameter.
 std::string dependence_cell(const Sensitivity& row, const Influence& each) {
   const bool is_share = row.metric == kFailure || scenarios::metric_info(row.metric).unit == scenarios::Unit::verdict;
   const auto label_of = [&](const scenarios::DependenceClass& part) {

@@ -39,7 +39,7 @@ def sweep_command(name, sweep, program, folder, jobs):
 
 
 def read_scores(folder):
-    """Returns (status, {metric: value}) by (scenario, seed, kind/method), from all databases of a folder."""
+    """Returns (status, {metric: value}) for each (scenario, seed, kind/method), from all databases of a folder."""
     scores = {}
     for file in sorted(folder.glob("*.db")):
         with sqlite3.connect(f"file:{file}?mode=ro", uri=True) as database:
@@ -52,12 +52,12 @@ def read_scores(folder):
 
 
 def cell(scores, scenario, column, method):
-    """Returns the value of a cell and its number of simulated runs. A draw without an estimate counts as infinite in a median and as one failure."""
+    """Returns the value of a cell and its number of simulated runs. A failed run counts as infinite in a median, and as one failure."""
     draws = [entry for (of, _, by), entry in scores.items() if of == scenario and by == method]
     if column["statistic"] == "failures":
         return sum(status != "ok" for status, _ in draws), len(draws)
     used = [values.get(column["metric"]) if status == "ok" else math.inf for status, values in draws]
-    used = [value for value in used if value is not None and not math.isnan(value)]  # a draw without clipped samples has no such score
+    used = [value for value in used if value is not None and not math.isnan(value)]  # a run without clipped samples has no such score
     if not used:
         return None, len(draws)
     value = {"median": statistics.median, "mean": statistics.fmean, "max": max}[column["statistic"]](used)
@@ -65,7 +65,7 @@ def cell(scores, scenario, column, method):
 
 
 def computed(group, scores):
-    """Returns a list of [value, draws] per row, in the order of the columns. Rows are scenarios or methods; a column may be a text."""
+    """Returns a list of [value, number of runs] per row, in the order of the columns. Rows are scenarios or methods; a column may be a text."""
     out = {}
     for row in group["rows"]:
         cells = []
@@ -144,7 +144,7 @@ def write_values(described, file=FILE):
 
 
 def run(names, program, folder, jobs, write, pages):
-    """Runs the sweeps of the named tables. Returns the number of stale cells."""
+    """Runs the sweeps of the named tables. Returns the number of stale cells, whose values differ from docs/figures.yaml."""
     described = load()
     if pages:
         write_pages(described)

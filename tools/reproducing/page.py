@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes the pages of docs/papers: tables with the paper's numbers next to those of this project. The module also finds stale cells."""
+"""Writes the pages of docs/papers: tables with the paper's numbers next to those of this project. The module also finds stale lines."""
 from __future__ import annotations
 
 import math
@@ -25,7 +25,7 @@ class Table:
 
 
 def number(value: float, digits: int = 3) -> str:
-    """Returns a number rounded to significant digits; `-` for a missing number, `lost` if the median simulated run failed."""
+    """Returns a number rounded to significant digits; `-` for a missing number, `lost` if at least half of the simulated runs failed."""
     if math.isnan(value):
         return "-"
     if math.isinf(value):
@@ -58,7 +58,7 @@ def stale(written: str, now: str) -> list[str]:
 
 
 def finish(path: pathlib.Path, text: str, check: bool) -> list[str]:
-    """Writes a page. With `check`, compares the text with the existing page and returns the stale lines."""
+    """Writes a page. With `check`, compares the text with the existing page and returns the lines that differ."""
     if not check:
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text, encoding="utf-8")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Draws the figures of the pages in one style and with small files."""
+"""Draws the figures of docs/papers in one style and with small files."""
 from __future__ import annotations
 
 import io
@@ -33,7 +33,7 @@ def save(figure: object, path: pathlib.Path, palette: bool = True) -> None:
     """Writes a PNG. A palette of 128 colours needs a third of the bytes, but drops rare colours of a picture of points."""
     from PIL import Image
 
-    figure.draw_without_rendering()  # the layout needs the size of the tick labels, which the first drawing computes
+    figure.draw_without_rendering()  # the first drawing computes the size of the tick labels, which the layout needs
     memory = io.BytesIO()
     figure.savefig(memory, format="png", dpi=100)
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -44,6 +44,6 @@ def save(figure: object, path: pathlib.Path, palette: bool = True) -> None:
 
 
 def percentiles(panel: object, values: list[float], label: str, colour: str, limit: float) -> None:
-    """Plots values against their percentile. Values beyond `limit` and failed draws are drawn at `limit`."""
+    """Plots values against their percentile. Values above `limit`, and those of failed runs, are drawn at `limit`."""
     ordered = np.minimum(np.sort(values), limit)
     panel.plot(100 * (np.arange(len(ordered)) + 0.5) / len(ordered), ordered, color=colour, label=label, marker=".", ms=4, lw=1.4)

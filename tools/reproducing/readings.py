@@ -15,8 +15,8 @@ import numpy as np
 class Recording:
     """The first IMU of a recording, and its truth.
 
-    clipped           (N,) whether saturation of the gyro changed the sample
-    clipped_elements  (N,) number of sensing elements, of three, at their saturation limit
+    clipped           (N,) true if saturation of the gyro changed the sample
+    clipped_elements  (N,) number of saturated sensing elements, 0 to 3
     """
 
     def __init__(self, path: pathlib.Path):
@@ -30,10 +30,10 @@ class Recording:
             self.true_force_m_s2 = true_imu["specific_force_I_m_s2"][:]
             lost = self.gyro_rad_s - true_imu["gyro_unclipped_I_rad_s"][:]
             elements = true_imu["gyro_elements_I"][:] if "gyro_elements_I" in true_imu else np.eye(3)
-            # a deficit below the noise of one sample does not count as clipping: scenarios/scoring/clipping.hpp
+            # a saturation deficit below the noise of one sample does not count as clipping: scenarios/scoring/clipping.hpp
             noise_rad_s = imu.attrs["gyro_noise_rad_s_sqrt_hz"] / np.sqrt(imu.attrs["period_ns"] * 1e-9)
             self.clipped = np.any(np.abs(lost) > max(noise_rad_s, 1e-6), axis=1)
-            # saturation acts on a sensing element, whose axis differs slightly from the axis of the reading
+            # a sensing element saturates along its own axis, which differs slightly from the axis of the reading
             self.clipped_elements = np.sum(np.abs(lost @ elements.T) > max(noise_rad_s, 1e-6), axis=1)
             self.R_BI = true_imu["T_BI"][:][:3, :3]
             self.p_BI_m = true_imu["T_BI"][:][:3, 3]
@@ -52,7 +52,7 @@ class Recording:
 
 
 def state_true_mounting(recording: pathlib.Path, copy: pathlib.Path) -> None:
-    """Writes a copy of a recording in which the stated mounting of each IMU is the true one."""
+    """Writes a copy of a recording in which the calibrated mounting of each IMU is the true mounting."""
     import h5py
 
     copy.parent.mkdir(parents=True, exist_ok=True)
@@ -61,13 +61,13 @@ def state_true_mounting(recording: pathlib.Path, copy: pathlib.Path) -> None:
     with h5py.File(part, "r+") as file:
         for index in file["sensors/imus"]:
             file[f"sensors/imus/{index}/T_BI"][...] = file[f"truth/imus/{index}/T_BI"][:]
-        file.attrs["digest"] = ""  # the digest belongs to the recording before the change
+        file.attrs["digest"] = ""  # the digest is that of the original recording
         del file["sensors"].attrs["digest"]
     part.rename(copy)
 
 
 class Estimate:
-    """The folder with the estimate of one method for one recording."""
+    """The estimate of one method for one recording, in a folder."""
 
     def __init__(self, folder: pathlib.Path):
         self.folder = folder

@@ -17,7 +17,7 @@ from .runs import Runs, Scores
 
 RAW, PUBLISHED, TUNED, BATCH, LAG = RATES = ("rate/raw", "rate/saave", "rate/saave at 10.0", "rate/tumble", "rate/tumble_lag")
 SWEPT = (RAW, PUBLISHED, BATCH, LAG)
-# the saturation limits of the simulated gyros differ by one percent between devices and axes; 10.0 rad/s is below all limits
+# the saturation limits of the simulated gyros differ by about one percent between devices and axes; 10.0 rad/s is below all of them
 DEFAULT_THRESHOLD_RAD_S = 10.45  # the program's default, for a nominal saturation limit of 10.5 rad/s
 THRESHOLD = "saturation_point_rad_s=10.0"
 MAPS = dict(zip(RATES, ("slam/icp_raw", "slam/published", f"slam/published slam/published.{THRESHOLD}", "slam/tumble", "slam/tumble_lag")))
@@ -30,7 +30,7 @@ ANY, ONE, MORE = "any", "one element", "two or three elements"  # number of clip
 
 
 def reproduce(runs: Runs, folder: pathlib.Path, check: bool) -> list[str]:
-    """Runs the missing sweeps, then writes rig.md and its pictures to `folder`. With `check`, only returns the stale lines."""
+    """Runs the missing sweeps, then writes rig.md and its pictures to `folder`. With `check`, only returns the lines that differ."""
     rates = runs.sweep("rig_rates", "hill", SWEPT, scenario="hill", keep=True)
     maps = runs.sweep("rig_maps", HERE / "rig_maps.yaml")
     recordings = {seed: Recording(runs.kept("rig_rates", "hill", seed) / "recording.h5") for seed in rates.seeds(RAW)}
@@ -46,9 +46,9 @@ def reproduce(runs: Runs, folder: pathlib.Path, check: bool) -> list[str]:
 
 
 def pooled_errors(recordings: dict[int, Recording], estimate: Callable[[int, str], pathlib.Path]) -> dict[tuple[str, str], np.ndarray]:
-    """Returns the rate errors in rad/s at the clipped samples of all draws, by (method, elements at their saturation limit).
+    """Returns the rate errors in rad/s at the clipped samples of all simulated runs, by (method, number of clipped elements).
 
-    estimate  folder of the estimate of a draw and a method
+    estimate  folder of the estimate of one method on one run
     """
     pools: dict[tuple[str, str], list[np.ndarray]] = {(m, e): [] for m in RATES for e in (ANY, ONE, MORE)}
     for seed, recording in recordings.items():
@@ -61,7 +61,7 @@ def pooled_errors(recordings: dict[int, Recording], estimate: Callable[[int, str
 
 
 def estimated(runs: Runs, seed: int, method: str, exact: bool = False) -> pathlib.Path:
-    """Returns the folder of a rate estimate. exact: the recording states the true mounting of its IMUs."""
+    """Returns the folder of a rate estimate. exact: the recording contains the true mounting of its IMUs."""
     kept = runs.kept("rig_rates", "hill", seed)
     name = method.replace("/", "-").replace(" ", "_")
     if not exact and method in SWEPT:
@@ -102,7 +102,7 @@ def page(runs: Runs, recordings: dict[int, Recording], errors: dict, exact: dict
 
 
 def unseen_share(recordings: dict[int, Recording]) -> float:
-    """Returns the share of the clipped samples that exceed the published threshold on no axis."""
+    """Returns the fraction of the clipped samples in which no axis exceeds the published threshold."""
     highest = np.concatenate([np.abs(r.gyro_rad_s[r.clipped]).max(axis=1) for r in recordings.values()])
     return float(np.mean(highest <= DEFAULT_THRESHOLD_RAD_S)) if len(highest) else 0.0
 
@@ -130,7 +130,7 @@ PRINTED = {TRANSLATION: "−71.5 %", ROTATION: "−65.5 %", OVERLAP: "77.2 %; 92
 
 
 def map_rows(out: Table, maps: Scores, seeds: list[int]) -> None:
-    """Adds the rows about localisation and map for some draws."""
+    """Adds the rows about localisation and map for some simulated runs."""
     for metric, quantity, scale, unit in ((TRANSLATION, "median end error, translation", 1, " m"), (ROTATION, "median end error, rotation", 180 / math.pi, "°")):
         medians = [scale * statistics.median(maps.values(MAPS[m], metric, seeds, failed=math.inf)) for m in RATES]
         out.add(quantity, "-", *(number(m) + unit if math.isfinite(m) else "lost" for m in medians))
@@ -142,14 +142,14 @@ def map_rows(out: Table, maps: Scores, seeds: list[int]) -> None:
 
 
 def draws_with_one(recordings: dict[int, Recording]) -> list[int]:
-    """Returns the draws that clip, with at most 2 % of the clipped samples on two or more sensing elements."""
+    """Returns the simulated runs with clipping, but with at most 2 % of the clipped samples on two or more sensing elements."""
     def more(r: Recording) -> float:
         return np.mean(r.clipped_elements[r.clipped] > 1) if r.clipped.any() else 1.0
     return [seed for seed, r in sorted(recordings.items()) if more(r) <= 0.02]
 
 
 def draw_with_collisions(recordings: dict[int, Recording]) -> int:
-    """Returns the draw with most collisions between its first and its last clipped sample. Of several such draws, returns the draw that clips longest."""
+    """Returns the simulated run with most collisions between its first and last clipped sample; of equal runs, that with most clipped samples."""
     def collisions(seed: int) -> tuple[int, int]:
         recording = recordings[seed]
         clipped_s = recording.time_s[recording.clipped]
@@ -161,7 +161,7 @@ def draw_with_collisions(recordings: dict[int, Recording]) -> int:
 
 
 def draw_rate(runs: Runs, recordings: dict[int, Recording], path: pathlib.Path) -> None:
-    """Plots the rate through one tumble: the axis that clips most often, and the angular speed."""
+    """Plots the rate during one tumble: of the axis that clips most often, and the angular speed."""
     seed = draw_with_collisions(recordings)
     recording = recordings[seed]
     lost = np.abs(recording.gyro_rad_s - recording.true_rate_rad_s)
@@ -247,7 +247,7 @@ def outlines() -> dict[str, list[tuple[float, float]]]:
 
 
 def worst_map(maps: Scores) -> int:
-    """Returns the draw whose map with the raw gyro has the median overlap of all failed maps. If no map failed, returns the lowest overlap."""
+    """Returns the simulated run whose map from the raw gyro has the median overlap of all failed maps; if no map failed, the lowest overlap."""
     overlap = maps.of(MAPS[RAW], OVERLAP)
     failed = [seed for seed, value in maps.of(MAPS[RAW], FAILED).items() if value > 0 and seed in overlap]
     ordered = sorted(failed or overlap, key=lambda seed: overlap[seed])
@@ -255,7 +255,7 @@ def worst_map(maps: Scores) -> int:
 
 
 def draw_map(runs: Runs, maps: Scores, path: pathlib.Path) -> None:
-    """Draws the maps of one draw side by side, with points coloured by their distance to the true surface."""
+    """Draws the maps of one simulated run side by side, with points coloured by their distance to the true surface."""
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import LinearSegmentedColormap
     from PIL import Image

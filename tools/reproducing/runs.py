@@ -28,7 +28,7 @@ class Runs:
 
     program  path of `tumble`
     folder   databases, recordings and estimates
-    seeds    first and last seed of the draws, both included
+    seeds    first and last seed of the simulated runs, both included
     jobs     number of parallel processes of a sweep
     """
 
@@ -43,7 +43,7 @@ class Runs:
         return list(range(self.seeds[0], self.seeds[1] + 1))
 
     def call(self, *words: object, unseen: Iterable[object] = ()) -> str:
-        """Runs `tumble words... unseen... --quiet` in the work folder and returns what it prints. No page shows `unseen`."""
+        """Runs `tumble words... unseen... --quiet` in the work folder and returns what it prints. Pages show the command without `unseen`."""
         texts = [str(word) for word in words]
         command = " ".join(["tumble", *texts]).replace(f"{ROOT}/", "")
         if command not in self.commands:
@@ -57,11 +57,11 @@ class Runs:
 
     def sweep(self, name: str, suite: object, methods: Iterable[str] = (), scenario: str = "", keep: bool = False,
               last: int = 0) -> Scores:
-        """Sweeps the draws of a suite into NAME.db, resumes a sweep that was stopped, and returns its scores.
+        """Runs a suite (many simulated runs) into NAME.db, or continues it, and returns its scores.
 
         scenario  runs only this scenario of the suite; empty: all
-        keep      keeps recording and estimates of each draw (`kept`)
-        last      last seed, if it differs from the last seed of the run
+        keep      keeps recording and estimates of each simulated run (`kept`)
+        last      last seed, if it differs from `seeds`
         """
         words: list[object] = ["sweep", suite]
         if scenario:
@@ -74,7 +74,7 @@ class Runs:
         return Scores(self.folder / f"{name}.db")
 
     def kept(self, name: str, scenario: str, seed: int) -> pathlib.Path:
-        """Returns the folder of one kept draw: `recording.h5` and `estimates/KIND-METHOD`."""
+        """Returns the folder of one kept simulated run: `recording.h5` and `estimates/KIND-METHOD`."""
         return self.folder / f"{name}.db.files" / "kept" / scenario / str(seed)
 
     def estimate(self, recording: pathlib.Path, method: str, folder: pathlib.Path, settings: Iterable[str] = ()) -> pathlib.Path:
@@ -89,7 +89,7 @@ class Runs:
         return folder
 
     def record(self, scenario: object, seed: int, recording: pathlib.Path) -> pathlib.Path:
-        """Simulates one draw of a scenario."""
+        """Simulates one run of a scenario."""
         if not recording.is_file():
             recording.parent.mkdir(parents=True, exist_ok=True)
             self.call("record", scenario, "--seed", seed, "-o", os.path.relpath(recording, self.folder))
@@ -97,7 +97,7 @@ class Runs:
 
 
 class Scores:
-    """Scores of a results database. A method with a varied parameter is named `KIND/NAME KEY=VALUE`."""
+    """The scores in a results database. A method with a varied parameter has the name `KIND/NAME KEY=VALUE`."""
 
     def __init__(self, path: pathlib.Path):
         with sqlite3.connect(f"file:{path.resolve()}?mode=ro", uri=True) as database:
@@ -106,14 +106,14 @@ class Scores:
             self.rows = database.execute(f"{plain} UNION ALL {varied}").fetchall()
 
     def of(self, method: str, metric: str) -> dict[int, float]:
-        """Returns the values of one method by seed. Leaves out draws on which the method failed or has no such score."""
+        """Returns the values of one method by seed, without the runs on which the method failed or has no such score."""
         return {seed: value for seed, name, found, value in self.rows if (name, found) == (method, metric) and value is not None}
 
     def values(self, method: str, metric: str, seeds: Iterable[int] | None = None, failed: float = float("inf")) -> list[float]:
-        """Returns the values of the named draws, by default of all draws. A draw without a value counts as `failed`."""
+        """Returns the values of the runs with these seeds; the default is all runs. A run without a value has the value `failed`."""
         values = self.of(method, metric)
         return [values.get(seed, failed) for seed in (self.seeds(method) if seeds is None else seeds)]
 
     def seeds(self, method: str) -> list[int]:
-        """Returns the seeds of all draws on which the method ran, including failed runs."""
+        """Returns the seeds of all runs of the method, including failed runs."""
         return sorted({seed for seed, name, *_ in self.rows if name == method})

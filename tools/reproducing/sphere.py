@@ -34,13 +34,13 @@ SLIP, SLIDE, FAST_SLIP = "slip_l", "slide_l", "slip"
 BELOW_M = 0.1  # points farther below the floor are errors of the map, not noise of the lidar
 MAP_DRAWS = 8
 TRACKER_HZ = 120.0  # rate of the paper's optical tracking, at which the paper computes the derivative
-SETTLING = 75  # number of samples at the start and at the end of a standstill that are left out, because the filters settle
+SETTLING = 75  # number of omitted samples at the start and at the end of a standstill, while the filters settle
 MOVING_RAD_S = 0.05
 DRAWN_STEP_DEG = 1e-5  # smaller steps are drawn at this value
 
 
 def reproduce(runs: Runs, folder: pathlib.Path, check: bool) -> list[str]:
-    """Runs the missing sweeps, then writes sphere.md and its pictures to `folder`. With `check`, only returns the stale lines."""
+    """Runs the missing sweeps, then writes sphere.md and its pictures to `folder`. With `check`, only returns the lines that differ."""
     last = min(runs.seeds[0] + MAP_DRAWS - 1, runs.seeds[1])
     runs.sweep("sphere_roll", "slip", [OURS, AUTOGAIN], scenario=FAST, keep=True)
     runs.sweep("sphere_slip", "slip", (ROTATION, FUSED, BATCH, LIVE), scenario=FAST_SLIP, keep=True)
@@ -59,9 +59,9 @@ def reproduce(runs: Runs, folder: pathlib.Path, check: bool) -> list[str]:
 
 
 def situation(runs: Runs, scenario: str, seed: int) -> tuple[pathlib.Path, Callable[[str], pathlib.Path]]:
-    """Returns the recording of one draw, and a function from a method to the folder of its estimate.
+    """Returns the recording of one simulated run, and a function that returns the folder of a method's estimate.
 
-    Draws of the catalogue come from the sweeps. Draws of the scenario files in this folder are recorded one by one.
+    Runs of catalogue scenarios come from the sweeps. Runs of the scenario files in this folder are simulated one by one.
     """
     own = HERE / f"{scenario}.yaml"
     kept = runs.folder / f"sphere_{scenario}" / str(seed) if own.is_file() else runs.kept(f"sphere_{scenario}", scenario, seed)
@@ -82,7 +82,7 @@ def situation(runs: Runs, scenario: str, seed: int) -> tuple[pathlib.Path, Calla
 
 @dataclass
 class Turning:
-    """Attitudes of one rolling sphere: distance to the truth per method, and steps at standstill."""
+    """Attitudes of one rolling sphere: angle to the truth per method, and steps at standstill."""
 
     time_s: np.ndarray
     moving: slice
@@ -91,7 +91,7 @@ class Turning:
     mean_rate_rad_s: float  # mean rate while the sphere moves
 
     def at_tracker(self, method: str) -> tuple[np.ndarray, np.ndarray]:
-        """Returns times in s and distances in degrees while the sphere moves, at the rate of the paper's tracker."""
+        """Returns times in s and angles to the truth in degrees while the sphere moves, at the sample rate of the paper's tracker."""
         time_s = self.time_s[self.moving]
         grid = np.arange(time_s[0], time_s[-1], 1 / TRACKER_HZ)
         return grid, np.interp(grid, time_s, self.distance_deg[method][self.moving])
@@ -120,7 +120,7 @@ def small_rotations(R: np.ndarray) -> np.ndarray:
 
 @dataclass
 class Leg:
-    """One draw of the L: paths seen from above in m, aligned in yaw at the start, and lengths of both legs."""
+    """One simulated run along an L: paths seen from above in m, aligned in yaw at the start, and lengths of both legs."""
 
     true_path_m: np.ndarray
     path_m: dict[str, np.ndarray]
@@ -223,7 +223,7 @@ def leg_table(legs: dict[str, list[Leg]]) -> Table:
 
 
 def leg_errors(legs: list[Leg], method: str) -> list[float]:
-    """Returns the relative errors of both legs of all draws."""
+    """Returns the relative length errors of both legs of all runs."""
     return [estimate / truth - 1 for d in legs for estimate, truth in zip(d.legs_m[method], d.true_legs_m)]
 
 
@@ -247,7 +247,7 @@ def draw_jitter(turn: Turning, path: pathlib.Path) -> None:
 
 
 def draw_distance(turn: Turning, path: pathlib.Path) -> None:
-    """Plots the distance to the truth over one draw, and its derivative."""
+    """Plots the angle to the truth over one run, and its derivative."""
     figure, axes = pictures.panels(2, 1, 8.5, 5.6, sharex=True)
     for method in (MADGWICK, AUTOGAIN, OURS):
         time_s, distance_deg = turn.at_tracker(method)
@@ -260,7 +260,7 @@ def draw_distance(turn: Turning, path: pathlib.Path) -> None:
 
 
 def draw_paths(legs: list[Leg], path: pathlib.Path) -> None:
-    """Plots the L of three draws from above."""
+    """Plots the paths of three runs along the L, from above."""
     figure, axes = pictures.panels(1, 3, 10.5, 4.0)
     for panel, draw in zip(axes[0], legs):
         panel.plot(*draw.true_path_m.T, color=pictures.TRUTH, lw=2.4, label="truth")
@@ -289,7 +289,7 @@ def draw_legs(legs: dict[str, list[Leg]], path: pathlib.Path) -> None:
 
 
 def draw_map(maps: dict[int, dict[str, np.ndarray]], path: pathlib.Path) -> None:
-    """Plots the map of the room of one draw from the side, with points below the floor in red."""
+    """Plots the map of the room in one run from the side, with points below the floor in red."""
     points = next(iter(maps.values()))
     figure, axes = pictures.panels(2, 2, 9.5, 5.4, sharex=True, sharey=True)
     for panel, method in zip(axes.flat, MAPS):

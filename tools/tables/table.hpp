@@ -7,8 +7,8 @@
 
 namespace tumble::tools {
 
-/// Table is a table of text: title, header and rows. Each column is as wide as its widest cell, counted in characters.
-/// Columns are left-aligned by default, and cells are never truncated.
+/// Table is a table of text: title, header and rows. Each column is as wide as its widest cell, in characters. Columns
+/// are left-aligned by default; cells are never truncated.
 class Table {
  public:
   Table(std::string title, std::vector<std::string> header);
@@ -23,8 +23,7 @@ class Table {
   bool empty() const { return rows_.empty(); }
   /// Returns title, header, rule and rows; lines have no trailing spaces.
   std::string text() const;
-  /// These functions return the table in formats for documents. Cells are escaped, so that their content is never
-  /// interpreted as markup.
+  /// Formats for documents. Cells are escaped, so that their content is not interpreted as markup.
   std::string markdown() const;  ///< a GitHub Markdown table
   std::string csv() const;       ///< RFC 4180; the title is a comment line, "# title"
   std::string tex() const;       ///< a LaTeX `tabular` with the rules of `booktabs`
@@ -37,7 +36,7 @@ class Table {
   bool wrapped_ = false;
 };
 
-/// kLineMax is the length of the lines of a table with `wrap_last`; the last column has at least a third of this width.
+/// Maximum line length of a table with `wrap_last`; the last column has at least a third of this width.
 inline constexpr std::size_t kLineMax = 160;
 
 /// Formats a number with four significant digits; "-" if the number is not finite.
@@ -46,8 +45,8 @@ std::string number_text(double value);
 /// Formats a p-value with four decimals; "-" for NaN.
 std::string chance_text(double chance);
 
-/// Formats the number of runs that an open test needs in addition. Returns "" if the test is not open, and "no number"
-/// if no number of runs suffices.
+/// Formats how many more runs an open (undecided) test needs; empty if the test is decided, "no number" if no number of
+/// runs suffices.
 std::string more_draws_text(double needed, std::int64_t draws, bool open);
 
 /// Counts the code points of a UTF-8 string; combining marks count separately.

@@ -57,7 +57,7 @@ Shard parse_shard(const std::string& text) {
 
 bool shard_seeds(const Shard& shard, std::uint64_t& first, std::uint64_t& last) {
   if (shard.count == 1) return true;
-  // 2^64 seeds overflow a counter, but the difference between the first and the last seed fits.
+  // The count of 2^64 seeds overflows, but the difference of the last and the first seed does not.
   const std::uint64_t span = last - first, rest = span % shard.count + 1;
   const std::uint64_t length = span / shard.count + rest / shard.count, longer = rest % shard.count;
   const std::uint64_t before = shard.index - 1;
@@ -125,7 +125,7 @@ std::uint64_t seed_of(const scenarios::Scenario& scenario, const std::string& te
   throw BadInput(fmt::format("--seed is missing; use --seed NUMBER to choose a draw of scenario '{}'", scenario.name));
 }
 
-// CLI11 does not convert a BadInput that the check throws.
+// CLI11 does not convert a BadInput from the check.
 std::function<void(const std::string&)> a_scenario(const Session& session) {
   return [&session](const std::string& text) { scenarios::load_scenario(session.data(), text); };
 }

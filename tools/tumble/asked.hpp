@@ -8,7 +8,7 @@
 #include "tools/tables/table.hpp"
 #include "tools/tumble/session.hpp"
 
-/// The functions in asked.hpp parse questions about two methods from the command line. All functions in asked.hpp throw
+/// asked.hpp parses questions about two methods ("is A better than B?") from the command line. All functions throw
 /// scenarios::BadInput with a one-line message.
 namespace tumble::tools {
 

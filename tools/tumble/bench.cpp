@@ -44,7 +44,7 @@ struct BenchOptions {
   bool store = false;
 };
 
-/// All methods must have one kind, because a suite has one kind.
+/// A suite has one kind, so all methods must have this kind.
 std::vector<scenarios::MethodPointer> methods_of(const BenchOptions& options) {
   std::vector<scenarios::MethodPointer> methods = scenarios::find_methods(options.methods);
   for (const scenarios::MethodPointer& each : methods)
@@ -66,8 +66,8 @@ scenarios::Suite suite_of(const scenarios::DataRoot& data, const BenchOptions& o
   return suite;
 }
 
-/// The name of the database depends on suite, methods and build. A stopped run therefore continues in its database,
-/// while a changed method or build starts a new database.
+/// The name of the database depends on suite, methods and build: a stopped run continues in its database, and a changed
+/// method or build starts a new one.
 fs::path database_of(const scenarios::DataRoot& data, const BenchOptions& options, const scenarios::Suite& suite,
                      const std::vector<scenarios::MethodPointer>& methods) {
   if (!options.database.empty()) return options.database;
@@ -79,8 +79,8 @@ fs::path database_of(const scenarios::DataRoot& data, const BenchOptions& option
   return fmt::format("{}_{}_{}.db", suite.name, whose, scenarios::digest_of_texts(texts).substr(0, kDigestShown));
 }
 
-/// Reads the results stored in the source tree, and the result files that the user names. A result file with results of
-/// another suite is an error.
+/// Reads the stored results in the source tree and the result files that the user names. Results of another suite are
+/// an error.
 std::vector<BenchResult> stored_results(const scenarios::DataRoot& data, const BenchOptions& options,
                                         const scenarios::Suite& suite) {
   std::vector<BenchResult> all = scenarios::read_bench_results(scenarios::bench_results_file(data, suite.name));
@@ -96,7 +96,7 @@ std::vector<BenchResult> stored_results(const scenarios::DataRoot& data, const B
   return all;
 }
 
-/// Returns the command with file names only, so that the page contains no path of this machine.
+/// Returns the command with file names only: the page then contains no path of this machine.
 std::string command_of(const BenchOptions& options) {
   std::string words = "tumble bench";
   for (const std::string& method : options.methods) {
@@ -128,22 +128,22 @@ BenchPage page_of(const scenarios::Results& results, const scenarios::Suite& sui
   return page;
 }
 
-/// Prints the page; with --json, prints one JSON line per method that ran instead.
+/// Prints the page. With --json, prints one JSON line per method that ran.
 void print(const Session& session, const std::vector<Table>& tables, const std::string& lines) {
   if (!session.json) return session.print(tables, {});
   if (std::fwrite(lines.data(), 1, lines.size(), stdout) != lines.size() || std::fflush(stdout) != 0)
     throw BadInput(std::string("standard output: ") + std::strerror(errno));
 }
 
-/// Returns the command of the sweep that measures the same runs, for the note in the database.
+/// Returns the command of the sweep that measures the same runs, for a note in the database.
 std::string sweep_command(const BenchOptions& options, const scenarios::Suite& suite) {
   std::string words = scenarios::shell_word(options.suite.empty() ? suite.name : options.suite);
   for (const std::string& method : options.methods) words += " --method " + scenarios::shell_word(method);
   return words;
 }
 
-/// Writes a database with the measured and the stored results for `report`. The measured database never contains stored
-/// results, because a sweep would take them for completed runs. Returns the path of the database for the report.
+/// Writes a database with measured and stored results for `report`, and returns its path. The measured database never
+/// contains stored results: a sweep would take them for completed runs.
 fs::path database_to_report(const fs::path& measured, const scenarios::Results& results, const BenchPage& page) {
   std::vector<BenchResult> others = page.stored;
   std::erase_if(others, [&](const BenchResult& stored) {

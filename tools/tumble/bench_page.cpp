@@ -33,8 +33,7 @@ std::vector<MethodRow> rows_of(const BenchPage& page) {
   return rows;
 }
 
-/// Returns the method with which all other methods are paired: the baseline, or the first in the registry if the page
-/// has no baseline.
+/// Returns the method with which all others are paired: the baseline, or else the first method in the registry.
 const BenchResult* baseline_of(const std::vector<MethodRow>& rows) {
   const BenchResult* first = nullptr;
   for (const scenarios::Method& method : scenarios::methods()) {
@@ -79,7 +78,7 @@ Table metric_table(const scenarios::Suite& suite, const std::string& metric, con
   return table;
 }
 
-/// Returns the table of statuses, cost and origin of each result.
+/// Returns the table with status counts, cost and origin of each result.
 Table origin_table(const scenarios::Suite& suite, const std::vector<MethodRow>& rows,
                    const std::vector<BenchResult>& all) {
   Table table(fmt::format("origin of the results; {} {}", suite.name, scenarios::bench_suite_digest(suite)),

@@ -36,7 +36,7 @@ struct CompareOptions {
   double risk = 0.05, power = 0.8;
 };
 
-/// The comparison is with the baseline, or with the last method if several are named.
+/// The reference is the baseline, or the last method if several are named.
 scenarios::ComparisonOptions read(const CompareOptions& options) {
   scenarios::ComparisonOptions out;
   out.methods = options.methods;
@@ -61,7 +61,7 @@ std::string title_of(const Contest& contest, const std::string& what) {
   return fmt::format("{}: {}, {}", contest.scenario, to_string(contest.kind), what);
 }
 
-/// ComparisonRow builds the cells of a row together with the column titles.
+/// ComparisonRow builds the cells of a row, and the column titles.
 struct ComparisonRow {
   std::vector<std::string> heads = {}, cells = {};
 
@@ -69,7 +69,7 @@ struct ComparisonRow {
     heads.push_back(head);
     cells.push_back(std::move(cell));
   }
-  /// Adds the two ends of an interval as separate numeric cells for CSV; infinite ends are empty.
+  /// Adds the two ends of an interval as numeric cells, for CSV. Infinite ends are empty.
   void add_ends(const std::string& head, const scenarios::Interval& interval, double unit = 1.0) {
     const auto end = [&](double value) { return std::isfinite(value) ? fmt::format("{:.6g}", unit * value) : ""; };
     add(head + " low", end(interval.low));

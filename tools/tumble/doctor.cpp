@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/exchange/diagnosis.hpp"
+#include "scenarios/methods/diagnosis.hpp"
 #include "tools/tumble/chosen_method.hpp"
 #include "tools/tumble/importing.hpp"
 #include "tools/tumble/verbs.hpp"
@@ -22,7 +22,7 @@ void append_findings(std::vector<RecordingFinding> more, std::vector<RecordingFi
   std::move(more.begin(), more.end(), std::back_inserter(out));
 }
 
-/// Runs the causal estimator, whose health reports faults that show only in a map.
+/// Runs the causal slam method, whose health reports faults that only a map reveals.
 std::vector<RecordingFinding> findings_of_odometry(const sim::Sensors& sensors) {
   const scenarios::MethodPointer method = chosen_method("slam/tumble_lag", {sensors.robot, true});
   const scenarios::Estimate estimate = run_method(*method, sensors);
@@ -48,7 +48,7 @@ std::vector<RecordingFinding> findings_of(const OpenRecording& recording) {
 }
 
 int run_doctor(const Session& session, const ImportOptions& options) {
-  // Invalid options and an unknown format are wrong use; every later error is a finding.
+  // Invalid options and an unknown format are wrong use; later errors are findings.
   (void)format_of(options);
   (void)bag_reading(session, options);
   std::vector<RecordingFinding> findings;

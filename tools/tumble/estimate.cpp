@@ -15,7 +15,7 @@
 #include "scenarios/recordings/recording_check.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 #include "scenarios/recordings/replace_file.hpp"
-#include "scenarios/sweep/outcome.hpp"
+#include "scenarios/sweep/evaluate.hpp"
 #include "tools/tumble/arguments.hpp"
 #include "tools/tumble/chosen_method.hpp"
 #include "tools/tumble/learnt_file.hpp"
@@ -37,7 +37,7 @@ struct EstimateOptions {
   PriorMapOptions prior_map;
 };
 
-/// ShownCounter is a health counter that the table shows; --json and estimate.json contain all counters.
+/// ShownCounter is a health counter in the table. --json and estimate.json contain all counters.
 struct ShownCounter {
   const char *name, *meaning, *unit;
 };
@@ -49,10 +49,10 @@ constexpr ShownCounter kShownCounters[] = {
 };
 
 /// Lists the content of an estimate, with units.
-Table summary(const scenarios::Estimate& estimate) {
+Table summary(const scenarios::Estimate& estimate, scenarios::OutcomeStatus status) {
   Table table("", {"estimate", "value", "unit"});
   table.align_right_from(1);
-  table.add_row({"status", estimate.status.message(), ""});
+  table.add_row({"status", estimate.status.ok() ? to_string(status) : estimate.status.message(), ""});
   const auto count = [&](const char* what, const auto& rows) {
     if (!rows.empty()) table.add_row({what, std::to_string(rows.size()), ""});
   };
@@ -98,23 +98,25 @@ int run_estimate(const Session& session, const EstimateOptions& options) {
   learnt.keep(session);
   folder.keep();
 
+  scenarios::Outcome outcome;
+  judge_without_truth(method.info, estimate, outcome);
   const nlohmann::json document = {{"method", method.info.name},
                                    {"kind", to_string(method.info.kind)},
-                                   {"status", estimate.status.ok() ? "ok" : "failed"},
-                                   {"message", estimate.status.message()},
+                                   {"status", to_string(outcome.status)},
+                                   {"message", outcome.message.empty() ? "ok" : outcome.message},
                                    {"digest", scenarios::digest(estimate)},
                                    {"health", estimate.health}};
-  session.print({summary(estimate)}, document);
+  session.print({summary(estimate, outcome.status)}, document);
   session.note(fmt::format("--json and {1} contain all {0} health counters", estimate.health.size(),
                            (options.folder / "estimate.json").string()));
   if (const std::string caution = learnt.caution(sensors); !caution.empty()) session.note(caution);
   if (!options.prior_map.map.empty()) session.note(localisation_text(options.prior_map, estimate));
   if (!with_digest) session.note("the recording contains no digest of its data, so the program cannot detect damage");
-  // The findings are printed even after a failure, because a sensor fault may be the cause.
+  // After a failure, the findings may name the cause: a sensor fault.
   for (const HealthFinding& each : estimate.faults.findings)
     session.note(full_name(method.info) + ": " + scenarios::report_text(each));
   if (estimate.status.ok()) return kDone;
-  // The estimate is kept for inspection, because the cause of the error is in the recording.
+  // The incomplete estimate is kept for inspection.
   throw BadInput(options.recording.string() + ": " + full_name(method.info) +
                  " failed: " + failure_reason(estimate.status, sensors));
 }

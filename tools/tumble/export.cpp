@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/exchange/estimate_in_bag.hpp"
 #include "scenarios/recordings/dialects/export_for.hpp"
+#include "scenarios/recordings/replace_file.hpp"
 #include "tools/tumble/arguments.hpp"
 #include "tools/tumble/verbs.hpp"
 
@@ -23,7 +23,7 @@ struct ExportOptions {
   std::vector<std::filesystem::path> estimates;
 };
 
-/// Returns the format that the user names, or the format that corresponds to the output's extension.
+/// Returns the format that the user names, or else that of the output's extension.
 std::string format_of(const ExportOptions& options) {
   const std::string format_name = options.format.empty() ? scenarios::format_of_ending(options.out) : options.format;
   if (format_name.empty())

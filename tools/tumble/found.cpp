@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "scenarios/draw/data_sheet.hpp"
-#include "scenarios/exchange/probable_devices.hpp"
+#include "scenarios/methods/probable_devices.hpp"
 #include "scenarios/recordings/number_text.hpp"
 #include "scenarios/recordings/upper_median.hpp"
 #include "scenarios/standard_gravity.hpp"

@@ -9,20 +9,20 @@
 #include "tools/tables/table.hpp"
 #include "tools/tumble/importing.hpp"
 
-/// The functions in found.hpp report what `odometry` detected in a recording, and add properties that neither the
-/// recording nor the user supplies.
+/// found.hpp reports what `odometry` detected in a recording, and adds properties that neither recording nor user
+/// states.
 namespace tumble::tools {
 
 /// FoundItem is one detected or assumed property.
 struct FoundItem {
   std::string item;
-  std::string found;   ///< value, with evidence or with the effect of an assumption
-  std::string sure;    ///< stated, measured, by name or assumed
-  std::string option;  ///< option that changes the item
+  std::string found;   ///< value, with its evidence or the effect of an assumption
+  std::string sure;    ///< certainty: stated, measured, inferred from the name, or assumed
+  std::string option;  ///< command-line option that changes the property
 };
 
-/// Detects the data sheets of the first IMU and lidar, and the attitude of a lidar without a known pose. The function
-/// stores the detected properties in the recording and returns them.
+/// Detects the data sheets of the first IMU and lidar, and the attitude of a lidar without a known pose. Stores these
+/// properties in the recording and returns them.
 ///
 /// @param own_body_L  Box around the robot in lidar axes; points inside are dropped. For display only.
 std::vector<FoundItem> complete_recording(const Session& session, OpenRecording& recording,

@@ -23,8 +23,7 @@ namespace {
 using nlohmann::json;
 using scenarios::CaseResult;
 
-/// Converts a case to a suite: the single simulated run of the case, and the methods for which the case states
-/// expectations.
+/// Converts a case to a suite: its single simulated run, and the methods with an expectation.
 scenarios::Suite suite_of(const scenarios::Scenario& named) {
   scenarios::Suite suite;
   suite.name = kAllCases;
@@ -35,7 +34,7 @@ scenarios::Suite suite_of(const scenarios::Scenario& named) {
   return suite;
 }
 
-/// Reached contains each expectation of a case with its outcome.
+/// Expectations of a case, each with the outcome of this run.
 using Reached = std::vector<std::pair<scenarios::Expectation, scenarios::Outcome>>;
 
 Reached reached(const scenarios::Results& results, const scenarios::Scenario& named) {
@@ -92,7 +91,7 @@ json to_json(const std::vector<CaseResult>& results, bool passes) {
   return {{"verdict", passes ? "pass" : "fail"}, {"cases", std::move(rows)}};
 }
 
-/// Writes the outcomes as new expectations to the case's file.
+/// Writes the outcomes to the file of the case as new expectations.
 void accept(const Session& session, const scenarios::DataRoot& data, scenarios::Scenario named, Reached& outcomes) {
   named.named_case->expected.clear();
   for (auto& [expected, outcome] : outcomes) {

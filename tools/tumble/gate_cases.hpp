@@ -8,23 +8,23 @@
 #include "scenarios/data_root.hpp"
 #include "tools/tumble/session.hpp"
 
-/// The function hold_cases implements the gate of the named cases in scenarios/regressions.
+/// hold_cases implements the gate of the named cases in scenarios/regressions.
 namespace tumble::tools {
 
-/// kAllCases is the command-line word that selects all named cases of the source tree.
+/// Word on the command line that selects all named cases of the source tree.
 inline constexpr const char* kAllCases = "regressions";
 
-/// Returns true for the word `kAllCases` and for the name of a case.
+/// Returns true if `word` is kAllCases or the name of a case.
 bool names_cases(const scenarios::DataRoot& data, const std::string& word);
 
-/// Returns a check that rejects names that are neither cases, nor a suite, a suite file or a scenario.
+/// Returns a check that accepts cases, suites, suite files and scenarios.
 std::function<void(const std::string&)> a_suite_or_cases(const Session& session);
 
 struct CaseGate {
   std::string word;  ///< `kAllCases`, or the name of a case
   int jobs = 1;
   std::filesystem::path database;  ///< empty: a temporary file
-  bool accept = false;             ///< writes the outcomes to the cases' files as new expectations
+  bool accept = false;             ///< write the outcomes to the files of the cases as new expectations
 };
 
 /// Runs the cases and compares the outcomes with the expectations (scenarios/cases/hold_case.hpp). Returns the exit

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/exchange/estimate_clock.hpp"
+#include "scenarios/methods/estimate_clock.hpp"
 #include "scenarios/methods/estimate_file.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 #include "tools/tumble/arguments.hpp"
@@ -27,7 +27,7 @@ scenarios::Frame frame_of(const std::string& name, bool has_imu) {
 
 namespace {
 
-/// Compares the digest of the sensor data in an estimate with the recording.
+/// Throws BadInput if the digest of the sensor data in the estimate is not that of the recording.
 void require_own(const std::filesystem::path& estimate, const std::filesystem::path& recording,
                  const sim::Sensors& sensors) {
   const std::string made_from = scenarios::estimated_sensors(estimate);

@@ -8,6 +8,7 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/recordings/lower_extension.hpp"
+#include "scenarios/recordings/tables/csv_text.hpp"
 #include "scenarios/recordings/trajectories/reference.hpp"
 #include "scenarios/regular_file.hpp"
 #include "tools/tumble/arguments.hpp"
@@ -19,20 +20,20 @@ namespace {
 
 using scenarios::BadInput;
 
-const std::vector<std::string> kFormats = {"airbrakes", "broad",   "csv",     "kitti",   "mcap", "pcd", "odometry",
-                                           "ply",       "repoimu", "rosbag1", "rosbag2", "tum",  "vtk"};
+const std::vector<std::string> kFormats = {"csv", "kitti",   "mcap",    "pcd", "odometry",
+                                           "ply", "rosbag1", "rosbag2", "tum", "vtk"};
 
-/// Detects the format from the files in a folder. Several files of a ROS 1 bag are parts of one recording.
+/// Detects the format of the files in a folder. Several ROS 1 bags are parts of one recording.
 std::string format_of_folder(const std::filesystem::path& folder) {
-  const std::map<std::string, std::string> known = {
-      {".ply", "ply"}, {".pcd", "pcd"}, {".bin", "kitti"}, {".vtk", "vtk"}, {".bag", "rosbag1"}};
+  const std::map<std::string, std::string> known = {{".ply", "ply"},    {".pcd", "pcd"},     {".bin", "kitti"},
+                                                    {".vtk", "vtk"},    {".bag", "rosbag1"}, {".mcap", "rosbag2"},
+                                                    {".db3", "rosbag2"}};
   if (std::filesystem::exists(folder / "metadata.yaml")) return "rosbag2";
-  std::string found, ros2_file;
+  std::string found;
   bool tables = false;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     const std::string ending = scenarios::lower_extension(entry.path());
     tables = tables || ending == ".csv";
-    if (ending == ".mcap" || ending == ".db3") ros2_file = entry.path().filename().string();
     const auto format = known.find(ending);
     if (format == known.end() || format->second == found) continue;
     if (!found.empty()) {
@@ -44,28 +45,36 @@ std::string format_of_folder(const std::filesystem::path& folder) {
   }
   if (found.empty() && tables) return "csv";
   if (found.empty())
-    throw BadInput(fmt::format(
-        "{}: this folder contains no .ply, .pcd, .vtk, .bin, .bag or .csv file and no metadata.yaml of a ROS 2 bag{}",
-        folder.string(),
-        (ros2_file.empty() ? ""
-                           : "; create metadata.yaml with 'ros2 bag reindex', or import one file at a time, "
-                             "for example " +
-                                 ros2_file)));
+    throw BadInput(fmt::format("{}: this folder contains no .ply, .pcd, .vtk, .bin, .bag, .mcap, .db3 or .csv file",
+                               folder.string()));
   return found;
+}
+
+/// Throws BadInput for a table of a data set that the Python package reads.
+void require_no_data_set(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  std::string line;
+  std::getline(stream, line);
+  const bool repoimu = line.find(";Vicon Orientation;") != std::string::npos;
+  if (!repoimu && line.find("raw_angular_rate_x_deg_per_s") == std::string::npos) return;
+  throw BadInput(
+      fmt::format("{}: this is a file of {}; convert it with the Python package: tumble.write(\"out.h5\", "
+                  "tumble.{}(\"{}\"))",
+                  file.string(), repoimu ? "RepoIMU" : "AirbrakesV2", repoimu ? "read_repoimu" : "read_airbrakes",
+                  file.filename().string()));
 }
 
 /// Detects the format of a CSV file from its first line.
 std::string format_of_csv(const std::filesystem::path& file) {
-  if (scenarios::is_repoimu(file)) return "repoimu";
-  if (scenarios::is_airbrakes(file)) return "airbrakes";
+  require_no_data_set(file);
   try {
     return scenarios::pose_format(file);
   } catch (const BadInput&) {
-    return "csv";  // no poses
+    return "csv";  // no table of poses
   }
 }
 
-/// Detects a binary format from the first bytes; returns "" for other files.
+/// Detects a binary format from the first bytes; empty for other files.
 std::string format_of_content(const std::filesystem::path& file) {
   std::array<char, 16> first{};
   std::ifstream(file, std::ios::binary).read(first.data(), first.size());
@@ -73,14 +82,16 @@ std::string format_of_content(const std::filesystem::path& file) {
   if (start.starts_with("#ROSBAG V")) return "rosbag1";
   if (start.starts_with("\x89MCAP")) return "mcap";
   if (start.starts_with("SQLite format 3")) return "rosbag2";
-  return start.starts_with("\x89HDF\r\n") ? "broad" : "";
+  return start.starts_with("\x89HDF\r\n") ? "recording" : "";
 }
 
-/// Detects the format of a text file without extension: a table with commas, or poses.
+/// Detects the format of a text file: a table with commas, or poses. The first line that is no comment decides.
 std::string format_of_text(const std::filesystem::path& file) {
   std::ifstream stream(file);
   std::string line;
-  std::getline(stream, line);
+  while (std::getline(stream, line) &&
+         (line.find_first_not_of(" \t\r") == std::string::npos || scenarios::is_comment(line)))
+    continue;
   return line.find_first_of(",;\t") == std::string::npos ? scenarios::pose_format(file) : format_of_csv(file);
 }
 
@@ -90,7 +101,7 @@ std::string format_of(const ImportOptions& options) {
   if (!options.format.empty()) require_known("format", options.format, kFormats);
   std::error_code error;
   const bool folder = std::filesystem::is_directory(options.path, error);
-  // A pipe can be read only once, so the function does not open a pipe.
+  // A pipe can be read only once, so it is not opened here.
   if (!folder && options.format != "tum" && std::filesystem::exists(options.path, error))
     scenarios::require_regular_file(options.path);
   if (!options.format.empty()) return options.format;
@@ -104,10 +115,10 @@ std::string format_of(const ImportOptions& options) {
   if (ending == ".db3" || ending == ".zstd") return "rosbag2";
   if (ending == ".mcap") return "mcap";
   if (ending == ".hdf5" || ending == ".h5") return "broad";
+  if (exists && (ending.empty() || ending == ".txt")) return format_of_text(options.path);
   if (ending == ".tum" || ending == ".txt" || ending == ".kitti") return scenarios::pose_format(options.path);
-  if (ending.empty() && exists) return format_of_text(options.path);
   throw BadInput(fmt::format(
-      "{}: the file name does not reveal the format; give --format (broad, csv, kitti, mcap, rosbag1, rosbag2 or tum)",
+      "{}: the file name does not reveal the format; give --format (csv, kitti, mcap, rosbag1, rosbag2 or tum)",
       options.path.string()));
 }
 

@@ -29,7 +29,7 @@ bool is_sweeps(const std::string& format) {
 void require_numbers(const std::string& option, const std::vector<double>& numbers, double bound) {
   for (const double x : numbers) {
     if (!(std::abs(x) <= bound)) {
-      // NaN has a separate message, because it appears in tables as a dash.
+      // NaN has its own message, because tables show NaN as a dash.
       throw BadInput(
           fmt::format("{0}: {1:g} is out of range; each number must be from -{2:g} to {2:g}", option, x, bound));
     }
@@ -136,9 +136,6 @@ void declare_reference(VerbOptions& verb, ImportOptions& options) {
   verb.add("--reference-topic", options.reference_topic,
            "uses the poses of this topic of a bag as truth: nav_msgs/Odometry, geometry_msgs/PoseStamped or "
            "geometry_msgs/TransformStamped [default: no truth]");
-  verb.add_flag("--align-reference", options.align_reference,
-                "for repoimu: estimates delay, rotation and tilt of the reference from the motion, and removes them "
-                "[default: only reports them]");
   verb.add_flag("--sort", options.sorted,
                 "accepts lines of a TUM file in any order, and uses the first of several lines with equal stamps");
 }
@@ -146,16 +143,17 @@ void declare_reference(VerbOptions& verb, ImportOptions& options) {
 }  // namespace
 
 void declare_sensors(VerbOptions& verb, ImportOptions& options) {
-  verb.add("PATH", options.path,
-           "reads this file or folder. Lidar sweeps can be PLY, PCD, VTK or KITTI .bin files. IMU readings can be a "
-           "CSV file of a logger or of sensor_msgs/Imu, the folder of a CSV export, a BROAD HDF5 or RepoIMU CSV file "
-           "with optical reference, or an AirbrakesV2 flight log. A bag can be a ROS 1 file or a folder of its parts, "
-           "a ROS 2 folder, or an MCAP file. Poses can be a TUM file, a KITTI file, or a table with named columns such "
-           "as EuRoC's ground truth. 'tumble odometry' and 'tumble doctor' also read recordings of tumble (.h5)")
+  verb.add(
+          "PATH", options.path,
+          "reads this file or folder. Lidar sweeps can be PLY, PCD, VTK or KITTI .bin files. IMU readings can be a "
+          "CSV file of a logger or of sensor_msgs/Imu, or the folder of a CSV export. A bag can be a ROS 1 file or a "
+          "folder of its parts, a ROS 2 folder, or an MCAP file. Poses can be a TUM file, a KITTI file, or a table "
+          "with named columns such as EuRoC's ground truth. 'tumble odometry' and 'tumble doctor' also read recordings "
+          "of tumble (.h5)")
       .required();
   verb.add("--format", options.format,
-           "sets the format of the input: airbrakes, broad, csv, kitti, mcap, odometry, pcd, ply, repoimu, rosbag1, "
-           "rosbag2, tum or vtk [default: detected from extension or content]");
+           "sets the format of the input: csv, kitti, mcap, odometry, pcd, ply, rosbag1, rosbag2, tum or vtk [default: "
+           "detected from extension or content]");
   verb.add("--device", options.device,
            "names the data sheet of the IMU, which states ranges and noise ('tumble list sensors' lists the sheets) "
            "[default: unknown]");
@@ -198,7 +196,6 @@ void declare(VerbOptions& verb, ImportOptions& options) {
 
 void require_fitting(const ImportOptions& options, const std::string& format) {
   const bool bag = is_bag(format), csv = format == "csv" || !options.imu.empty();
-  const bool log = format == "repoimu" || format == "airbrakes";
   const bool sweeps = is_sweeps(format) && (format != "kitti" || std::filesystem::is_directory(options.path));
   const auto refuse = [&](bool given, const std::string& option, const std::string& why) {
     if (given) throw BadInput(option + ": " + why);
@@ -210,16 +207,9 @@ void require_fitting(const ImportOptions& options, const std::string& format) {
   refuse(!options.columns.empty() && (!csv || (format == "csv" && std::filesystem::is_directory(options.path))),
          "--columns", "this option applies only to a CSV file with IMU readings");
   refuse(!options.stamps.empty() && !bag, "--stamps", "this option applies only to a bag");
-  refuse(options.align_reference && format != "repoimu", "--align-reference",
-         "this option applies only to a RepoIMU recording");
-  refuse(!options.reference.empty() && log, "--reference",
-         format == "repoimu" ? "a RepoIMU recording contains its own reference; remove this option"
-                             : "this option does not apply to a flight log; remove it");
   refuse(!options.lever_arm_m.empty() && !csv && !bag, "--lever-arm",
-         format == "broad" || log
-             ? "the body frame of this format is the IMU frame, so the lever arm is zero; remove this option"
-             : "this option applies only to an IMU in a CSV file or bag");
-  refuse(!options.device.empty() && !csv && !bag && !log && format != "broad", "--device",
+         "this option applies only to an IMU in a CSV file or bag");
+  refuse(!options.device.empty() && !csv && !bag, "--device",
          "this option applies only to an IMU; use --lidar for a lidar");
   refuse(!options.imu.empty() && !sweeps, "--imu", "this option applies only to a folder of sweeps");
   refuse(!options.stem.empty() && !sweeps, "--stem", "this option applies only to a folder of sweeps");

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/exchange/imu_notes.hpp"
+#include "scenarios/methods/imu_notes.hpp"
 #include "tools/tumble/arguments.hpp"
 
 namespace tumble::tools {
@@ -28,17 +28,6 @@ Imported import_format(const Session& session, const ImportOptions& options, con
     return scenarios::import_csv_folder(options.path, imu_sheet(session, options), accel_unit(options),
                                         gyro_unit(options));
   if (format == "csv") return imu_table(session, options, options.path);
-  if (format == "broad") {
-    Imported imported = scenarios::import_broad(options.path);
-    complete(imu_sheet(session, options), imported.sensors.imus.front());
-    return imported;
-  }
-  if (format == "repoimu" || format == "airbrakes") {
-    Imported imported = format == "repoimu" ? scenarios::import_repoimu(options.path, options.align_reference)
-                                            : scenarios::import_airbrakes(options.path);
-    complete(imu_sheet(session, options), imported.sensors.imus.front());
-    return imported;
-  }
   if (format == "rosbag1") return scenarios::import_ros1_bag(options.path, bag_reading(session, options));
   if (format == "rosbag2") return scenarios::import_ros2_bag(options.path, bag_reading(session, options));
   if (format == "mcap") return scenarios::import_mcap(options.path, bag_reading(session, options));
@@ -47,7 +36,7 @@ Imported import_format(const Session& session, const ImportOptions& options, con
   return scenarios::import_sweeps(sweep_source(session, options, format));
 }
 
-/// Adds notes on the assumptions about an IMU, for properties that the file format lacks.
+/// Adds notes on assumed properties of an IMU that the file format lacks.
 void say_what_is_assumed(const ImportOptions& options, const std::string& format, std::vector<std::string>& notes) {
   if (options.lever_arm_m.empty() && (format == "csv" || !options.imu.empty())) {
     notes.push_back(
@@ -56,7 +45,7 @@ void say_what_is_assumed(const ImportOptions& options, const std::string& format
   }
 }
 
-/// Sets an option that the user did not set. Returns false if the option is already set or is another option.
+/// Sets an option that the user did not set. Returns false if it is already set, or not a known option.
 bool set_option(const scenarios::ImportOption& option, ImportOptions& options) {
   const std::pair<const char*, std::string*> known[] = {
       {"--accel-unit", &options.accel_unit}, {"--gyro-unit", &options.gyro_unit}, {"--stamps", &options.stamps}};
@@ -68,7 +57,7 @@ bool set_option(const scenarios::ImportOption& option, ImportOptions& options) {
   return false;
 }
 
-/// Throws BadInput for options that do not apply to a recording of this program; only data sheet and mounting of its
+/// Throws BadInput for options that have no effect on a recording of this program: only data sheet and mounting of its
 /// first sensors can be set.
 void require_own_options(ImportOptions options) {
   for (std::string* name : {&options.device, &options.lidar}) name->clear();
@@ -101,19 +90,14 @@ void open_own(const Session& session, OpenRecording& out) {
   for (std::string& note : scenarios::imu_notes(out.content)) out.content.notes.push_back(std::move(note));
 }
 
-bool is_own_recording(const std::filesystem::path& path) {
-  try {
-    (void)scenarios::read_info(path);
-    return true;
-  } catch (const BadInput&) {
-    return false;
-  }
-}
-
 }  // namespace
 
 Imported import_recording(const Session& session, const ImportOptions& options, const std::string& format,
                           scenarios::LidarRotationCheck& rotation) {
+  if (format == "recording") {
+    (void)scenarios::read_info(options.path);  // throws for an HDF5 file of another program
+    throw BadInput(options.path.string() + ": this file is already a recording; use the file directly, without import");
+  }
   Imported imported = import_format(session, options, format);
   if (!options.imu.empty()) {
     scenarios::attach_imus(imported, imu_table(session, options, options.imu));
@@ -136,7 +120,7 @@ OpenRecording open_recording(const Session& session, ImportOptions options) {
   out.options = std::move(options);
   out.options.leave_out_topics = true;
   out.format = format_of(out.options);
-  if (out.format == "broad" && is_own_recording(out.options.path)) {
+  if (out.format == "recording") {
     open_own(session, out);
     return out;
   }

@@ -7,14 +7,14 @@ namespace tumble::tools {
 
 namespace {
 
-// A signal handler may access only static storage.
+// A signal handler may only use static storage.
 std::atomic<bool> raised_by_signal{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler must not lock");
 
-// These variables store the previous signal handlers.
+// Previous signal handlers.
 struct sigaction interrupt_before = {}, terminate_before = {}, hang_up_before = {};
 
-/// A second signal has its previous effect, except for SIGHUP.
+/// A second signal has its previous effect; only SIGHUP sets the flag again.
 extern "C" void raise_flag(int number) {
   raised_by_signal.store(true);
   if (number != SIGHUP) sigaction(number, number == SIGINT ? &interrupt_before : &terminate_before, nullptr);

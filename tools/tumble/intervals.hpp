@@ -6,12 +6,12 @@
 
 #include "scenarios/statistics/statistics.hpp"
 
-/// The functions in intervals.hpp format intervals for people (text) and for programs (JSON).
+/// intervals.hpp formats intervals as text and as JSON.
 namespace tumble::tools {
 
 /// Formats the two ends of an interval; "[-]" if neither is known.
 std::string interval_text(const scenarios::Interval& interval);
-/// Returns null for values that are not finite, because JSON cannot represent such values.
+/// Returns null for non-finite values, which JSON cannot represent.
 nlohmann::json finite(double value);
 nlohmann::json interval_json(const scenarios::Interval& interval);
 

@@ -23,10 +23,10 @@ void LearntFile::require_place() const {
 }
 
 std::string LearntFile::caution(const sim::Sensors& sensors) const {
-  constexpr double kLeverArmOff_m = 0.1;  // larger than the error of any measured mounting
+  constexpr double kLeverArmOff_m = 0.1;  // above the error of any measured mounting
   if (!learning_.given || sensors.imus.empty()) return "";
   const Eigen::Vector3d stated = scenarios::bridge::lever_arm_I_m(sensors.imus.front());
-  if (stated.isZero(0.0)) return "";  // the recording does not state a lever arm
+  if (stated.isZero(0.0)) return "";  // the recording contains no lever arm
   const double off_m = (learning_.given->calibration.constants.lever_arm_m - stated).norm();
   if (off_m <= kLeverArmOff_m) return "";
   return fmt::format(

@@ -19,7 +19,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Listing is a listing as tables for people and as JSON.
+/// Listing is a listing as tables and as JSON.
 struct Listing {
   std::vector<Table> tables;
   json document = json::array();
@@ -67,7 +67,7 @@ std::span<const sim::Parameter> parameters_of(std::span<const sim::ComponentType
   return {};
 }
 
-/// Adds one table row and one JSON object per parameter; omitted parameters are listed with their defaults.
+/// Adds one table row and one JSON object per parameter. Parameters that the scenario omits have their defaults.
 void add_part(Table& table, json& rows, const std::string& place, std::span<const sim::Parameter> known,
               const std::map<std::string, scenarios::Distribution>& given) {
   for (const sim::Parameter& p : known) {
@@ -95,7 +95,7 @@ void add_scenario_numbers(const scenarios::Scenario& s, Listing& out, json& entr
   entry["numbers"] = std::move(rows);
 }
 
-/// Lists the named cases separately from the catalogue, with origin and expectations.
+/// Lists the named cases, with origin and expectations, in a separate table.
 void add_cases(const scenarios::DataRoot& data, Listing& out) {
   Table table("named cases", {"case", "of", "seed", "duration_s", "expected", "meaning"});
   for (const std::string& name : scenarios::case_names(data)) {
@@ -126,7 +126,7 @@ Listing list_scenarios(const scenarios::DataRoot& data, const std::string& only)
   Listing out;
   std::vector<std::string> names = scenarios::scenario_names(data);
   const std::vector<std::string> cases = scenarios::case_names(data);
-  if (!only.empty()) {  // all numbers of one case, as for a scenario
+  if (!only.empty()) {  // shows all parameters of one case, as for a scenario
     names.insert(names.end(), cases.begin(), cases.end());
     require_known("scenario", only, names);
   }
@@ -186,12 +186,12 @@ Listing list_methods(const std::string& only) {
   }
   out.tables.push_back(std::move(table));
   if (!parameters.empty()) out.tables.push_back(std::move(parameters));
-  // The numbers of all methods would fill thousands of lines.
+  // The parameters of all methods would fill thousands of lines.
   if (!only.empty() && !further.empty()) out.tables.push_back(std::move(further));
   return out;
 }
 
-/// Lists the kinds of sensors, or all numbers of one kind.
+/// Lists the kinds of sensors, or all parameters of one kind.
 void add_sensor_kinds(const std::string& only, Listing& out) {
   Table kinds("kinds", {"kind", "meaning"});
   for (const sim::ComponentType& kind : sim::sensor_types()) {

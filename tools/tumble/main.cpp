@@ -6,9 +6,9 @@
 #include "tools/tumble/program.hpp"
 
 int main(int argc, char** argv) {
-  // A write beyond the file-size limit then fails with an error message instead of ending the program.
+  // A write beyond the file-size limit must cause an error message and not end the program.
   std::signal(SIGXFSZ, SIG_IGN);
-  // Unfinished files are removed when a verb is interrupted.
+  // Removes unfinished files when a signal interrupts a verb.
   tumble::scenarios::remove_unfinished_on_signals();
   return tumble::tools::run_program(argc, argv);
 }

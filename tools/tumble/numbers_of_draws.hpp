@@ -8,14 +8,14 @@
 #include "scenarios/summary/sensitivity.hpp"
 #include "tools/tumble/session.hpp"
 
-/// The functions in numbers_of_draws.hpp return the random numbers of the simulated runs in a results database, by
+/// numbers_of_draws.hpp returns the values of the random parameters of the simulated runs in a results database, by
 /// scenario.
 namespace tumble::tools {
 
 using NumbersByScenario = std::map<std::string, scenarios::NumbersOfDraws>;
 
-/// Returns the random numbers of catalogue scenarios; other scenarios are omitted with a note. The database must have
-/// been made with the same models and catalogue.
+/// Returns the random parameters of catalogue scenarios. Other scenarios are omitted with a note. The database must
+/// come from the same models and catalogue.
 NumbersByScenario numbers_of_catalogue(const Session& session, const scenarios::DataRoot& data,
                                        const scenarios::Summary& summary);
 

@@ -10,7 +10,7 @@
 #include <span>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/exchange/diagnosis.hpp"
+#include "scenarios/methods/diagnosis.hpp"
 #include "scenarios/methods/estimate_file.hpp"
 #include "scenarios/methods/findings.hpp"
 #include "scenarios/methods/given_parameters.hpp"
@@ -18,6 +18,7 @@
 #include "scenarios/methods/prior_map_file.hpp"
 #include "scenarios/methods/robot_presets.hpp"
 #include "scenarios/recordings/replace_file.hpp"
+#include "scenarios/sweep/evaluate.hpp"
 #include "tools/replay/page.hpp"
 #include "tools/replay/replay.hpp"
 #include "tools/tumble/chosen_method.hpp"
@@ -60,7 +61,7 @@ std::string method_name(const OdometryOptions& options) {
   return options.prior_map.map.empty() ? "slam/tumble" : "slam/tumble_lag";
 }
 
-/// Returns the texts that set the box of the robot for a method with these parameters.
+/// Returns the parameter texts for a method with these parameters, including the box of the robot.
 std::vector<std::string> parameter_texts(const OdometryOptions& options, const scenarios::MethodInfo& info) {
   std::vector<std::string> texts = options.parameters;
   if (options.own_body_m.empty()) return texts;
@@ -83,7 +84,7 @@ void require_both_sensors(const std::filesystem::path& path, const sim::Sensors&
           : "Add IMU readings with --imu FILE.csv"));
 }
 
-/// Runs the method, with a progress bar on a terminal. Returns the duration of the run in seconds.
+/// Runs the method, with a progress bar on a terminal. Returns the duration in seconds.
 double run_with_progress(const Session& session, const scenarios::Method& method, const sim::Sensors& sensors,
                          Estimate& estimate) {
   using Clock = std::chrono::steady_clock;
@@ -106,8 +107,7 @@ double run_with_progress(const Session& session, const scenarios::Method& method
   return since(start);
 }
 
-/// Returns the length of the path through the ends of the sweeps [m]. The poses between the ends of the sweeps would
-/// add noise to the length.
+/// Returns the length of the path through the ends of the sweeps [m]. The poses between would add noise.
 double path_length_m(const Estimate& estimate) {
   double sum_m = 0.0;
   for (std::size_t k = 1; k < estimate.sweeps.size(); ++k)
@@ -119,15 +119,17 @@ double imu_duration_s(const sim::ImuRecord& imu) {
   return imu.time_ns.empty() ? 0.0 : 1e-9 * static_cast<double>(imu.time_ns.back() - imu.time_ns.front());
 }
 
-std::string health_text(const Estimate& estimate) {
-  if (!estimate.status.ok()) return "failed";
+std::string health_text(const Estimate& estimate, scenarios::OutcomeStatus status) {
+  if (status == scenarios::OutcomeStatus::failed) return "failed";
   std::string text;
   for (const HealthFinding& finding : estimate.faults.findings)
     if (scenarios::is_current(finding)) text += (text.empty() ? "" : ", ") + std::string(to_string(finding.kind));
+  if (status == scenarios::OutcomeStatus::diverged) return "diverged: " + text;
   return text.empty() ? "ok" : text;
 }
 
-nlohmann::json summary_of(const sim::Sensors& sensors, const Estimate& estimate, double run_s) {
+nlohmann::json summary_of(const sim::Sensors& sensors, const Estimate& estimate, scenarios::OutcomeStatus status,
+                          double run_s) {
   const std::size_t sweeps = sensors.lidars.front().sweep_start_ns.size();
   const scenarios::Saturation saturation = scenarios::saturation_of(sensors.imus.front());
   const auto registered =
@@ -137,7 +139,7 @@ nlohmann::json summary_of(const sim::Sensors& sensors, const Estimate& estimate,
           {"sweeps_registered", registered},
           {"sweeps", sweeps},
           {"clipped_share", saturation.gyro_share},
-          {"health", health_text(estimate)},
+          {"health", health_text(estimate, status)},
           {"sweeps_per_s", run_s > 0.0 ? static_cast<double>(sweeps) / run_s : 0.0}};
 }
 
@@ -198,11 +200,13 @@ int run_odometry(const Session& session, const OdometryOptions& options) {
 
   print_notes(session, recording, estimate);
   if (!options.prior_map.map.empty()) session.note(localisation_text(options.prior_map, estimate));
-  const nlohmann::json summary = summary_of(sensors, estimate, run_s);
+  scenarios::Outcome outcome;
+  judge_without_truth(info, estimate, outcome);
+  const nlohmann::json summary = summary_of(sensors, estimate, outcome.status, run_s);
   session.print({summary_table(summary)}, {{"folder", options.folder.string()},
                                            {"method", full_name(info)},
-                                           {"status", estimate.status.ok() ? "ok" : "failed"},
-                                           {"message", estimate.status.message()},
+                                           {"status", to_string(outcome.status)},
+                                           {"message", outcome.message.empty() ? "ok" : outcome.message},
                                            {"found", found_document(found)},
                                            {"summary", summary},
                                            {"health", estimate.health}});

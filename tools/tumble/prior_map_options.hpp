@@ -8,23 +8,22 @@
 #include "scenarios/methods/method.hpp"
 #include "tools/tumble/verb_options.hpp"
 
-/// The header prior_map_options.hpp declares the options with which a verb localises a run in the map of an earlier
-/// run.
+/// prior_map_options.hpp declares the options by which a verb localises a run in the map of an earlier run.
 namespace tumble::tools {
 
 struct PriorMapOptions {
   std::filesystem::path map;
-  std::vector<double> pose;  ///< x y z [m] and heading [rad], with two standard deviations [m, rad]
+  std::vector<double> pose;  ///< x y z [m] and heading [rad]; optionally two standard deviations [m, rad]
   bool frozen = false;
 };
 
 void declare_prior_map(VerbOptions& verb, PriorMapOptions& options);
 
-/// Returns `method` with the prior map of the options, if any. Throws BadInput if the map cannot be read or the method
-/// cannot use a map.
+/// Returns `method` with the prior map of the options, if there is one. Throws BadInput if the map cannot be read, or
+/// the method cannot use a map.
 scenarios::Method with_prior_map(const scenarios::Method& method, const PriorMapOptions& options);
 
-/// States from which sweep on the poses are in the prior map.
+/// States from which sweep the poses are in the frame of the prior map.
 std::string localisation_text(const PriorMapOptions& options, const scenarios::Estimate& estimate);
 
 }  // namespace tumble::tools

@@ -27,7 +27,7 @@ namespace {
 
 using scenarios::BadInput;
 
-/// Checks the verb before CLI11 does, because CLI11 would report an unknown verb as a superfluous argument.
+/// CLI11 would report an unknown verb as a superfluous argument, so the verb is checked first.
 void check_verb(int argc, const char* const* argv) {
   std::vector<std::string> known;
   for (const Verb& verb : verbs()) known.emplace_back(verb.name);
@@ -37,7 +37,7 @@ void check_verb(int argc, const char* const* argv) {
   }
 }
 
-/// Supports `help` and `help VERB`, as other programs do.
+/// Converts `help` and `help VERB` to --help, as other programs do.
 std::vector<const char*> without_help(int argc, const char* const* argv) {
   std::vector<const char*> words(argv, argv + argc);
   if (words.size() < 2 || std::string_view(words[1]) != "help") return words;
@@ -49,7 +49,7 @@ std::vector<const char*> without_help(int argc, const char* const* argv) {
   return words;
 }
 
-/// Returns the verb that is parsed, or the program itself if there is no verb.
+/// Returns the verb on the command line, or else the program itself.
 const CLI::App& parsed(const CLI::App& app) {
   const auto subcommands = app.get_subcommands();
   return subcommands.empty() ? app : *subcommands.front();
@@ -81,7 +81,7 @@ std::string usage_line(const CLI::App& app, const CLI::ParseError& error) {
 }
 
 int say(const char* prefix, const std::string& line, int status) {
-  // Messages are shortened, because a corrupt file may contain megabytes in place of a word.
+  // A corrupt file may contain megabytes in place of a word.
   constexpr std::size_t kBegin = 1500, kEnd = 300;
   std::string shown =
       line.size() <= kBegin + kEnd ? line : line.substr(0, kBegin) + " ... " + line.substr(line.size() - kEnd);
@@ -91,7 +91,7 @@ int say(const char* prefix, const std::string& line, int status) {
   return status;
 }
 
-/// Prints the text that `tumble` shows without arguments.
+/// Prints the text of `tumble` without arguments.
 int show_the_way() {
   std::string text =
       "tumble simulates robots that tumble and roll, estimates their motion and scores the estimates\n\nfirst steps\n  "
@@ -142,13 +142,13 @@ int dispatch(int argc, const char* const* argv) {
     options->add_flag("--quiet", session.quiet, "suppresses notes and progress on standard error");
     VerbOptions declared(*options);
     options->callback([action = verb.declare(declared, session), &chosen] { chosen = action; });
-    // For some verbs, --format is the format of a recording.
+    // Some verbs have another --format: that of a recording.
     if (options->get_option_no_throw("--format") == nullptr) add_table_format(*options, session);
   }
   check_verb(argc, argv);
   try {
     app.parse(argc, argv);
-  } catch (const CLI::Success& done) {  // CLI11 reports --help and --version in this way
+  } catch (const CLI::Success& done) {  // CLI11 reports --help and --version by this exception
     return app.exit(done);
   } catch (const CLI::ParseError& error) {
     throw BadInput(usage_line(app, error));
@@ -169,7 +169,7 @@ int run_program(int argc, const char* const* argv) {
   } catch (const std::filesystem::filesystem_error& error) {
     return say("", error.what(), kBadInput);
   } catch (const std::system_error& error) {
-    // A lack of processes, pipes or threads is not a defect of the program.
+    // A lack of processes, pipes or threads is not a defect.
     return say("", error.what(), kBadInput);
   } catch (const sim::SimulationFailure& error) {
     return say("the simulation rejected the draw: ", error.what(), kCheckFailed);

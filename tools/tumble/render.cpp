@@ -39,7 +39,7 @@ struct RenderOptions {
   int width = 1280, height = 720;
 };
 
-/// RenderContent owns all data to which a scene refers.
+/// RenderContent owns the data to which a scene refers.
 struct RenderContent {
   std::optional<sim::BuiltSituation> built;
   sim::Sensors sensors;
@@ -48,8 +48,8 @@ struct RenderContent {
 };
 
 bool is_recording(const std::string& what) {
-  // A name with a recording's extension means a file, even if the file does not exist. A folder is never a recording,
-  // so that the folder that 'tumble run hill' writes does not hide the scenario.
+  // A name with the extension of a recording is a file, even if the file does not exist. A folder is no recording: the
+  // folder from 'tumble run hill' must not hide the scenario 'hill'.
   if (std::filesystem::exists(what) && !std::filesystem::is_directory(what)) return !what.ends_with(".yaml");
   return what.ends_with(".h5") || what.ends_with(".hdf5");
 }
@@ -64,7 +64,7 @@ void load_situation(const scenarios::DataRoot& data, const RenderOptions& option
                     options.what));
   content.built = built_from(info, options.what, data);
   content.sensors = scenarios::read_sensors(options.what);
-  // The truth gives the poses of the robot and the alignment of the estimates in the picture.
+  // The truth provides the poses of the robot, and aligns the estimates in the picture.
   if (!info.has_truth)
     throw BadInput(
         fmt::format("{}: this recording contains no truth, so its path cannot be shown; give a recording with truth",
@@ -128,10 +128,10 @@ int render_maps(const Session& session, const RenderOptions& options, const scen
   return kDone;
 }
 
-/// kFramesMax is the maximum number of video frames, because more would take minutes to render and to watch.
+/// Maximum number of video frames: more would take minutes to render and to watch.
 constexpr std::size_t kFramesMax = 3000;
 
-/// kSayEvery_s is the interval of progress lines for long renderings.
+/// Interval of progress lines for long renderings.
 constexpr double kSayEvery_s = 10.0;
 
 std::vector<std::uint8_t> video_of(const Session& session, const RenderOptions& options, const Scene& scene) {

@@ -29,7 +29,7 @@ struct ReplayOptions {
   std::size_t points = ReplayLimits{}.points;
 };
 
-/// ReplayContent owns all data to which a replay refers.
+/// ReplayContent owns the data to which a replay refers.
 struct ReplayContent {
   sim::Sensors sensors;
   std::optional<sim::Truth> truth;
@@ -38,7 +38,7 @@ struct ReplayContent {
   std::list<scenarios::Estimate> estimates;
 };
 
-/// Loads the recording with the truth, for display only.
+/// Loads the recording; its truth is only displayed.
 void load_recording(const Session& session, const ReplayOptions& options, const scenarios::RecordingInfo& info,
                     ReplayContent& content) {
   content.sensors = scenarios::read_sensors(options.recording);

@@ -81,7 +81,7 @@ Table draws_table(const Summary& summary) {
   return table;
 }
 
-/// Returns the content of the page's tables in SI units.
+/// Returns the content of the tables in SI units.
 json to_json(const Summary& summary) {
   json rows = json::array();
   for (const Section& section : summary.sections) {
@@ -116,8 +116,7 @@ std::string read_text(const std::filesystem::path& path) {
   return text;
 }
 
-/// Returns the digest of the data that a sweep would use; empty if the data are absent, because a report works without
-/// data.
+/// Returns the digest of the data that a sweep would use; empty if the data are missing, which a report does not need.
 std::string data_found(const Session& session) {
   try {
     return scenarios::data_digest(session.data());
@@ -126,11 +125,11 @@ std::string data_found(const Session& session) {
   }
 }
 
-/// kSensitivityDraws is the maximum number of simulated runs per scenario that the sensitivity section of a page uses.
+/// Maximum number of simulated runs per scenario for the sensitivity section of a page.
 constexpr std::size_t kSensitivityDraws = 2000;
 
-/// Adds the sensitivity of each method for one score and for failures, with a limited number of simulated runs. The
-/// complete table takes long and belongs to `tumble sensitivity`.
+/// Adds the sensitivity of each method, for one score and for failures, from a limited number of runs. `tumble
+/// sensitivity` computes the complete table, which takes long.
 void add_sensitivity(const Session& session, const std::string& data_found, ReportInput& input) {
   const Summary some = scenarios::at_most_draws(*input.summary, kSensitivityDraws);
   NumbersByScenario numbers;
@@ -178,7 +177,7 @@ PageContent content_of(const Session& session, const ReportVerbOptions& options,
 void write_page(const Session& session, const ReportVerbOptions& options, ReportInput input) {
   const std::string plotly = options.page.empty() ? "" : read_text(session.plotly());
   const PageContent content = content_of(session, options, std::move(input));
-  // Both files are complete before the first is moved, so that a full disk leaves neither.
+  // Page and badge are complete before the first is moved: a full disk then leaves neither.
   std::list<scenarios::OutputFile> files;
   const auto write = [&](const std::filesystem::path& path, const std::string& text) {
     files.emplace_back(path).write(std::as_bytes(std::span(text)));
@@ -221,7 +220,7 @@ int report(const Session& session, const ReportVerbOptions& options) {
   for (const scenarios::Certificate& certificate : results.certificates()) {
     document["certificates"].push_back(json::parse(to_json(certificate)));
   }
-  // The page is written first, because it must not depend on a reader of standard output.
+  // The page is written first, because it must not depend on the reader of standard output.
   if (!options.page.empty() || !options.badge.empty())
     write_page(session, options, {&results, &summary, draws, std::move(curves), std::move(motions), {}, {}});
   session.print(tables, document);

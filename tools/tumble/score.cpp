@@ -16,6 +16,7 @@
 #include "scenarios/recordings/recording_file.hpp"
 #include "scenarios/scoring/score.hpp"
 #include "scenarios/scoring/truth_track.hpp"
+#include "scenarios/sweep/evaluate.hpp"
 #include "tools/tables/table.hpp"
 #include "tools/tumble/arguments.hpp"
 #include "tools/tumble/given_estimate.hpp"
@@ -41,7 +42,7 @@ void order(ScoreOptions& options) {
   if (is_recording(options.estimate) && !is_recording(options.recording)) options.estimate.swap(options.recording);
 }
 
-/// Checks that the truth has poses and that the estimate overlaps with the truth in time.
+/// Throws BadInput if the truth has no poses, or does not overlap the estimate in time.
 void require_common_time(const ScoreOptions& options, const scenarios::Estimate& estimate, const sim::Truth& truth) {
   const bool known = std::any_of(truth.p_WB_m.begin(), truth.p_WB_m.end(), [](const auto& p) { return p.allFinite(); });
   if (!known)
@@ -59,18 +60,18 @@ void require_common_time(const ScoreOptions& options, const scenarios::Estimate&
                   options.estimate.string(), first_s, last_s, options.recording.string(), end_s));
 }
 
-constexpr double kHoleShare = 0.2;  // share of the recording; a longer gap counts as a divergence (scenarios::verdict)
-// Below these limits, the comparison would include hardly more than the alignment pose.
+constexpr double kHoleShare = 0.2;  // fraction of the recording; a longer gap is a divergence (scenarios::verdict)
+// Below these limits, little more than the aligned pose would be compared.
 constexpr std::size_t kComparedMin = 2;
 constexpr double kSpannedShareMin = 0.01;
 
-/// Standing contains temporal coverage and alignment of an external trajectory relative to the truth.
+/// Standing contains alignment and temporal coverage of an external trajectory relative to the truth.
 struct Standing {
-  double first_s = 0, last_s = 0, end_s = 0;  ///< first and last pose within the time of the truth; end of the truth
-  std::size_t compared = 0, poses = 0;        ///< number of poses within the time of the truth, and of all poses
-  double covered_s = 0;                       ///< covered time, without gaps longer than a fifth of the truth
+  double first_s = 0, last_s = 0, end_s = 0;  ///< times of the first and last pose within the truth; end of the truth
+  std::size_t compared = 0, poses = 0;        ///< number of poses within the time of the truth; number of all poses
+  double covered_s = 0;                       ///< covered time of the truth, without gaps longer than a fifth of it
   scenarios::Alignment alignment;
-  /// Returns the fraction of the truth's time between the first and last pose, gaps included.
+  /// Returns the fraction of the truth's time between the first and the last pose, including gaps.
   double spanned() const { return end_s > 0.0 ? (last_s - first_s) / end_s : 1.0; }
   double share() const { return end_s > 0.0 ? covered_s / end_s : 1.0; }
 };
@@ -93,9 +94,9 @@ Standing standing_of(const scenarios::Estimate& estimate, const sim::Truth& trut
   return out;
 }
 
-/// Throws BadInput for time stamps in ms, us or ns that were read as seconds. With wrong time stamps, only the first
-/// few poses, far apart, would overlap with the recording and be scored. A trajectory that is longer than the recording
-/// and contains it has denser poses or another length.
+/// Throws BadInput for time stamps in ms, us or ns that were read as seconds. Only the first few poses, far apart,
+/// would then overlap the recording. A correct trajectory that contains the recording has denser poses or another
+/// length.
 void require_seconds(const ScoreOptions& options, const scenarios::Estimate& estimate, const Standing& standing) {
   constexpr double kNear = 1.5, kLeastStep_s = 0.1;
   if (estimate.poses.size() < 2 || !(standing.end_s > 0.0)) return;
@@ -112,7 +113,7 @@ void require_seconds(const ScoreOptions& options, const scenarios::Estimate& est
   }
 }
 
-/// Throws BadInput for a trajectory with nearly no overlap, because all its errors would be zero.
+/// Throws BadInput if the trajectory hardly overlaps the truth, because all errors would be zero.
 void require_compared(const ScoreOptions& options, const Standing& standing) {
   if (standing.compared >= kComparedMin && standing.spanned() >= kSpannedShareMin) return;
   throw scenarios::BadInput(
@@ -136,9 +137,8 @@ std::string cover_text(const Standing& standing) {
                      standing.poses);
 }
 
-/// Judges an external trajectory over the part of the truth's time in which the trajectory has poses, and reports the
-/// coverage. The verdict "partial" means that there is no divergence in this part, but a gap of more than a fifth of
-/// the recording.
+/// Judges an external trajectory over its own part of the truth's time, and reports the coverage. "partial" means no
+/// divergence in this part, but a gap of more than a fifth of the recording.
 std::string judge_trajectory(const Session& session, const Standing& standing, const scenarios::ScoredEstimate& scored,
                              scenarios::Outcome& outcome) {
   std::string status = to_string(outcome.status);
@@ -173,8 +173,8 @@ void add_cover(const Standing& standing, Table& table) {
   table.add_row({"poses_compared", fmt::format("{} of {}", standing.compared, standing.poses)});
 }
 
-/// Returns the kind of a TUM file: the named kind, else `position` for a rolling sphere or a recording without lidar,
-/// else `slam`.
+/// Returns the kind of a TUM file: the user's choice, or else `position` for a rolling sphere or a recording without
+/// lidar, or else `slam`.
 scenarios::Kind kind_of(const std::string& name, const sim::Sensors& sensors) {
   if (name.empty()) {
     return sensors.lidars.empty() || sensors.sphere_radius_m > 0.0 ? scenarios::Kind::position : scenarios::Kind::slam;
@@ -192,10 +192,10 @@ struct Claim {
   scenarios::Estimate estimate;
   scenarios::Kind kind = scenarios::Kind::position;
   std::string method;
-  bool foreign = false;  ///< an external trajectory without information about its method
+  bool foreign = false;  ///< external trajectory without information about its method
 };
 
-/// Adds the information that an external estimate does not contain, and reports a wrong convention or clock.
+/// Adds the information that an external estimate lacks, and reports a wrong convention or clock.
 void complete_foreign(const Session& session, const ScoreOptions& options, Claim& claim) {
   claim.kind = kind_of(options.kind, claim.sensors);
   for (const auto& complain : {scenarios::turning_complaint, scenarios::clock_complaint}) {
@@ -233,23 +233,33 @@ Claim read_claim(const Session& session, const ScoreOptions& options) {
   return claim;
 }
 
-/// Builds the true surface, which only maps need. Returns null if there is no map, because building takes long.
+/// Builds the true surface, which takes long. Returns null if there is no map, because only maps need the surface.
 std::unique_ptr<const sim::Surface> surface_of(const Session& session, const ScoreOptions& options,
                                                const Claim& claim) {
   if (claim.kind != scenarios::Kind::slam || claim.foreign || claim.info.situation_yaml.empty()) return nullptr;
   return std::make_unique<const sim::Surface>(built_from(claim.info, options.recording.string(), session.data()));
 }
 
+/// Returns the method of this build that computed the estimate, or only kind and name of another method.
+scenarios::MethodInfo info_of(const Claim& claim) {
+  for (const scenarios::Method& method : scenarios::methods())
+    if (method.info.kind == claim.kind && method.info.name == claim.method) return method.info;
+  scenarios::MethodInfo other;
+  other.name = claim.method;
+  other.kind = claim.kind;
+  return other;
+}
+
 scenarios::Outcome outcome_of(const Claim& claim, const scenarios::ScoredEstimate& scored) {
-  const bool ok = claim.estimate.status.ok();
   scenarios::Outcome outcome;
   outcome.kind = claim.kind;
   outcome.method = claim.method;
   outcome.scenario = claim.info.scenario;
   outcome.seed = claim.info.seed;
-  outcome.status = ok ? scenarios::verdict(claim.kind, scored) : scenarios::OutcomeStatus::failed;
-  outcome.message = ok ? "" : claim.estimate.status.message();
   outcome.scores = scenarios::score(claim.kind, scored);
+  scenarios::judge_without_truth(info_of(claim), claim.estimate, outcome);
+  const scenarios::OutcomeStatus by_truth = scenarios::verdict(claim.kind, scored);
+  if (outcome.status == scenarios::OutcomeStatus::ok) outcome.status = by_truth;
   return outcome;
 }
 

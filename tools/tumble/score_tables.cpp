@@ -26,7 +26,7 @@ Table kind_table(const std::string& title, const std::vector<const Outcome*>& ou
     header.push_back(outcome->method);
     status.push_back(said.empty() ? to_string(outcome->status) : said);
     for (const scenarios::Score& score : outcome->scores) {
-      if (scenarios::parse_binned(score.metric)) continue;  // binned scores are meaningful only over many draws
+      if (scenarios::parse_binned(score.metric)) continue;  // binned scores need many runs
       if (std::find(metrics.begin(), metrics.end(), score.metric) == metrics.end()) metrics.push_back(score.metric);
     }
   }

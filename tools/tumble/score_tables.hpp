@@ -12,7 +12,7 @@
 namespace tumble::tools {
 
 /// Returns one table per kind: one row per metric in the order of first occurrence, one column per method, with the
-/// status in the first row. The argument `status` replaces the status of the outcomes if it has more detail.
+/// status in the first row. A non-empty `status` replaces the status of the outcomes.
 std::vector<Table> score_tables(const std::string& title, std::span<const scenarios::Outcome> outcomes,
                                 const std::string& status = "");
 
@@ -22,7 +22,7 @@ nlohmann::json score_rows(std::span<const scenarios::Outcome> outcomes);
 /// Returns kind, method, status, message and digest of every outcome.
 nlohmann::json outcome_rows(std::span<const scenarios::Outcome> outcomes);
 
-/// Returns `ok` if every outcome is ok; otherwise the first other status.
+/// Returns `ok` if all outcomes are ok, or else the first other status.
 std::string overall_status(std::span<const scenarios::Outcome> outcomes);
 
 }  // namespace tumble::tools

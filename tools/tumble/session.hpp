@@ -25,19 +25,18 @@ class Session {
   bool quiet = false;  ///< no notes and no progress
   TableFormat format = TableFormat::text;
 
-  /// Returns the folder with models, catalogue and suites: $TUMBLE_DATA, else share/tumble next to the program's
-  /// folder, else the source tree of the build. Throws BadInput if none of these folders contains models.
+  /// Returns the folder with models, catalogue and suites: $TUMBLE_DATA if set, else share/tumble next to the program's
+  /// folder, else the source tree of the build. Throws BadInput if no folder contains models.
   scenarios::DataRoot data() const;
 
-  /// Returns the Plotly bundle next to the data. Throws BadInput with instructions if the bundle is missing.
+  /// Returns the path of the Plotly bundle next to the data. Throws BadInput with instructions if it is missing.
   std::filesystem::path plotly() const;
 
-  /// Returns the path of the program's executable file, for starting the program again. Throws BadInput if the system
-  /// cannot provide the path.
+  /// Returns the path of this program, for starting it again. Throws BadInput if the system does not provide it.
   std::filesystem::path program() const;
 
   /// Returns the folder for cached measurements: $TUMBLE_CACHE, else $XDG_CACHE_HOME/tumble, else ~/.cache/tumble;
-  /// empty if none of these variables is set.
+  /// empty if no variable is set.
   std::filesystem::path cache() const;
 
   /// Prints a line to standard error, unless quiet.

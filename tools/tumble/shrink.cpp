@@ -36,8 +36,8 @@ struct ShrinkVerbOptions {
   std::filesystem::path file;
 };
 
-/// Returns the method with true input (oracle) of the method's kind, if it applies to the robot. A simulated run on
-/// which even this method fails is not a useful case.
+/// Returns the oracle (method with true input) of the method's kind, if it can run on the robot. A run on which even
+/// the oracle fails is no useful case.
 scenarios::MethodPointer control_of(const ShrinkVerbOptions& options, const scenarios::Method& method,
                                     const scenarios::Scenario& scenario, double time_limit_s) {
   if (options.control == "none") return nullptr;
@@ -109,7 +109,7 @@ std::string command_of(const ShrinkVerbOptions& options, std::uint64_t seed) {
   return words + fmt::format(" --budget {} -o ", options.budget) + shell_word(options.file.filename().string());
 }
 
-/// Returns the name of the case, which is the file's name and must be a valid name.
+/// Returns the name of the case: the file's name, which must be an identifier.
 std::string name_of(const std::filesystem::path& file) {
   const std::string name = file.stem().string();
   const auto allowed = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; };
@@ -122,7 +122,7 @@ std::string name_of(const std::filesystem::path& file) {
                   file.string()));
 }
 
-/// A case can be named wherever a scenario or a suite can, so a case must not have the name of a scenario or suite.
+/// A case can be named in place of a scenario or a suite, so its name must differ from theirs.
 void require_own_name(const scenarios::DataRoot& data, const std::string& name) {
   for (const std::vector<std::string>& known : {scenarios::scenario_names(data), scenarios::suite_names(data)}) {
     if (std::find(known.begin(), known.end(), name) != known.end())

@@ -26,7 +26,7 @@ namespace tumble::tools {
 
 namespace {
 
-/// The constants are defaults of `tumble sweep`; each example costs one more simulated run, and its pictures.
+/// Defaults of `tumble sweep`. Each example costs one more simulated run, and its pictures.
 constexpr std::uint64_t kExamplesMax = 3, kDrawsPerExample = 8, kFailuresMax = 8, kDrawsPerFailure = 4;
 
 struct SweepVerbOptions {
@@ -34,7 +34,7 @@ struct SweepVerbOptions {
   std::string seeds, shard;
   std::vector<std::string> scenarios, methods, again;
   int jobs = available_processors();
-  std::optional<std::size_t> examples, failures;  ///< if not stated, depends on the size of the sweep
+  std::optional<std::size_t> examples, failures;  ///< default: depends on the size of the sweep
   std::filesystem::path database, recordings;
   double memory_mib = scenarios::kWorkerMemoryMib;
   std::string keep = "none";
@@ -52,7 +52,7 @@ void take_scenarios(const std::vector<std::string>& named, scenarios::Suite& sui
   std::erase_if(suite.scenarios, [&](const std::string& name) { return std::ranges::count(named, name) == 0; });
 }
 
-/// Prints the content of the suite, because a scenario and a suite may have equal names.
+/// Prints the content of the suite, because a scenario may have the same name.
 void say_what_it_holds(const Session& session, const SweepVerbOptions& options, const scenarios::Suite& suite) {
   if (!options.scenarios.empty() || suite.scenarios.size() < 2) return;
   if (std::ranges::count(suite.scenarios, options.suite) == 0) return;
@@ -85,7 +85,7 @@ bool select(const scenarios::DataRoot& data, const SweepVerbOptions& options, sc
   return options.shard.empty() || shard_seeds(parse_shard(options.shard), suite.first_seed, suite.last_seed);
 }
 
-/// Stores the certificate of this build (checks of its simulation) with the results; the certificate is measured at
+/// Stores the certificate of this build (checks of its simulation) with the results. The certificate is measured at
 /// most once per build and machine.
 void certify(const Session& session, const scenarios::DataRoot& data, const std::filesystem::path& database,
              const std::atomic<bool>& stop) {
@@ -124,16 +124,14 @@ void note_command(scenarios::Results results, const SweepVerbOptions& options) {
   results.set_note(scenarios::kCommandNote, scenarios::with_commands(known, command_of(options)));
 }
 
-/// Generates examples only if the complete suite was swept, because the typical runs of a part may be untypical of the
-/// suite. Errors in pictures are reported but do not change the table and the exit status. Returns false if the
-/// generation was stopped.
+/// Generates examples if the complete suite was swept: typical runs of a part may be untypical of the suite. Errors in
+/// pictures are reported, but change neither table nor exit status. Returns false if the generation was stopped.
 bool leave_examples(const Session& session, const scenarios::DataRoot& data, const scenarios::Suite& suite,
                     const SweepVerbOptions& options, std::uint64_t draws, const std::atomic<bool>& stop) {
   if (!options.shard.empty()) return true;
   LeaveOptions leave;
   leave.count = options.examples.value_or(std::min(kExamplesMax, draws / kDrawsPerExample));
-  // The option `--examples 0` also disables pictures of failures; a sweep that is too small for typical runs still
-  // shows failures.
+  // `--examples 0` also disables pictures of failures. A sweep that is too small for typical runs still shows failures.
   const bool wants_none = options.examples && *options.examples == 0;
   leave.failures =
       options.failures.value_or(wants_none ? 0 : std::clamp(draws / kDrawsPerFailure, std::uint64_t{1}, kFailuresMax));
@@ -191,7 +189,7 @@ scenarios::SweepOptions sweep_options(const SweepVerbOptions& options, const std
   return out;
 }
 
-/// NewDatabase removes a database that a rejected sweep created, unless it contains runs.
+/// NewDatabase removes a database that a rejected sweep created, if it contains no runs.
 class NewDatabase {
  public:
   explicit NewDatabase(const std::filesystem::path& path) : path_(path), is_new_(!exists_at(path)) {}
@@ -209,7 +207,7 @@ class NewDatabase {
     std::error_code ignored;
     return std::filesystem::exists(std::filesystem::symlink_status(path, ignored));
   }
-  /// An unreadable database is kept, unless it is empty because the disk was full.
+  /// An unreadable database is kept, except for an empty file from a full disk.
   bool holds_rows() const {
     try {
       const scenarios::Results results(path_, scenarios::Results::Mode::read_only);
@@ -224,7 +222,7 @@ class NewDatabase {
   bool is_new_, kept_ = false;
 };
 
-/// Stores the question in the results before the first run; an empty text asks nothing.
+/// Stores the question in the results before the first run. Without --until, there is no question.
 std::optional<scenarios::Question> ask(const SweepVerbOptions& options, const scenarios::DataRoot& data,
                                        const scenarios::Suite& suite) {
   if (options.until.empty()) return std::nullopt;
@@ -265,7 +263,7 @@ int run_sweep(const Session& session, const SweepVerbOptions& options) {
   const scenarios::DatabaseOwner owner(options.database);
   NewDatabase made(options.database);
   if (!any) {
-    // The call creates an empty database, so that the databases of all parts can be merged.
+    // Creates an empty database, so that the databases of all parts can be merged.
     scenarios::Results results = scenarios::open_results(data, suite, options.database);
     if (options.keep != "none") results.set_note(scenarios::kKeepNote, options.keep);
     made.keep();
@@ -278,7 +276,7 @@ int run_sweep(const Session& session, const SweepVerbOptions& options) {
   scenarios::require_sound(suite, how);
   const std::optional<scenarios::Question> question = ask(options, data, suite);
   note_command(scenarios::open_results(data, suite, options.database), options);
-  // The certificate applies only to simulations.
+  // The certificate checks the simulation, so recordings need none.
   if (suite.recordings.empty()) certify(session, data, options.database, interrupt.raised());
   AskedSweep swept;
   if (question) {
@@ -321,7 +319,7 @@ Action declare_sweep(VerbOptions& verb, const Session& session) {
       .filled();  // an empty word would select all
   verb.add("--method", options->methods,
            "runs this method; repeat the option for more methods [default: the methods of the suite]")
-      .one_at_a_time();  // each option takes exactly one word
+      .one_at_a_time();  // each option takes one word
   verb.add("--jobs", options->jobs, "runs this number of processes in parallel [default: number of processors]")
       .whole(1, 1024)
       .shows_default();

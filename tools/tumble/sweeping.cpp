@@ -10,7 +10,7 @@ namespace tumble::tools {
 
 namespace {
 
-/// Adds the progress before this step and the progress of this step, for a total of `draws`.
+/// Adds the progress before this step and that of this step, for a total of `draws`.
 scenarios::SweepProgress sum(const scenarios::SweepProgress& before, const scenarios::SweepProgress& since,
                              std::uint64_t draws) {
   scenarios::SweepProgress all = since;
@@ -22,7 +22,7 @@ scenarios::SweepProgress sum(const scenarios::SweepProgress& before, const scena
   all.elapsed_s += before.elapsed_s;
   all.peak_mib = std::max(all.peak_mib, before.peak_mib);
   if (all.not_kept.empty()) all.not_kept = before.not_kept;
-  // The estimate of the remaining time uses the mean time per run, as if all runs were executed.
+  // The remaining time follows from the mean time per run, as if all runs were executed.
   if (all.draws_done > 0)
     all.left_s = all.elapsed_s / static_cast<double>(all.draws_done) * static_cast<double>(draws - all.draws_done);
   return all;
@@ -46,7 +46,7 @@ AskedSweep sweep_until(const Session& session, const scenarios::DataRoot& data, 
   ProgressDisplay shown = ProgressDisplay::on_standard_error();
   AskedSweep out;
   scenarios::Suite part = suite;
-  // The worst runs are determined after the last step.
+  // The worst runs are known only after the last step.
   scenarios::SweepOptions own = options;
   if (options.keep.which == scenarios::Keep::Which::worst) own.keep = {};
   const auto draws_of = [&](std::uint64_t seeds) { return seeds * suite.scenarios.size(); };
@@ -57,7 +57,7 @@ AskedSweep sweep_until(const Session& session, const scenarios::DataRoot& data, 
     if (!session.quiet) own.on_progress = [&](const scenarios::SweepProgress& p) { shown.show(sum(before, p, all)); };
     const std::uint64_t seen = draws_of(seed - suite.first_seed + 1);
     out.progress = sum(before, scenarios::sweep(data, part, database, own), seen);
-    if (out.progress.draws_done < seen) break;  // stopped
+    if (out.progress.draws_done < seen) break;  // the user stopped the sweep
     out.answers = scenarios::answers({database.database(), scenarios::Results::Mode::read_only}, question, seed);
     if (scenarios::all_answered(out.answers)) break;
     part.first_seed = seed + 1;

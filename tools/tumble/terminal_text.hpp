@@ -7,7 +7,7 @@
 namespace tumble::tools {
 
 /// Makes a text safe for a terminal: invalid UTF-8 and control characters (C0 except line ends, DEL, C1) become '?'.
-/// Names in files and paths must not move the cursor.
+/// Names in files and paths could otherwise move the cursor.
 std::string terminal_text(std::string_view text);
 
 }  // namespace tumble::tools

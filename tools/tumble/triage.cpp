@@ -34,7 +34,7 @@ struct TriageVerbOptions {
   std::filesystem::path database;
 };
 
-/// The verdict is "cures" if the original run failed and the run with this true input succeeds.
+/// Returns "cures" if the original run failed and the run with this true input succeeds.
 std::string verdict(const TriageRow& row, const TriageRow& base) {
   if (!base.fails) return "";
   return row.fails ? "" : "cures";
@@ -106,14 +106,14 @@ int run_triage_of_draw(const Session& session, const TriageVerbOptions& options)
 }
 
 /// Throws BadInput for a name that is neither a suite nor a scenario, before CLI11 reports missing options. The content
-/// of a file is checked when all options are known.
+/// of a file is checked later, when all options are known.
 std::function<void(const std::string&)> known_name(const Session& session) {
   return [&session](const std::string& text) {
     if (!text.ends_with(".yaml")) scenarios::load_suite(session.data(), text);
   };
 }
 
-/// Returns whether a seed or a named case is given; otherwise the name is a suite.
+/// Returns true for a seed or a named case; otherwise the name is a suite.
 bool is_one_draw(const Session& session, const TriageVerbOptions& options) {
   const bool named = !options.what.ends_with(".yaml") && names_cases(session.data(), options.what);
   const bool one = !options.seed.empty() || (named && options.seeds.empty());
@@ -122,7 +122,7 @@ bool is_one_draw(const Session& session, const TriageVerbOptions& options) {
   return one;
 }
 
-/// Returns the options for the command that triages one draw of the suite.
+/// Returns the options of the command that triages one simulated run of the suite.
 std::string words_of(const TriageVerbOptions& options) {
   std::string words = " --method " + scenarios::shell_word(options.method);
   if (!options.metric.empty()) words += " --metric " + scenarios::shell_word(options.metric);

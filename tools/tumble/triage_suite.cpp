@@ -95,11 +95,11 @@ json to_json(const std::vector<InputWorth>& worths, const std::vector<DrawTriage
           {"draws", std::move(all)}};
 }
 
-/// Names the true input that prevents the failure of most simulated runs. The replacement of all inputs together is
-/// only a bound, so it is not considered.
+/// Names the true input that prevents the failure of most runs. The replacement of all inputs is only a bound and is
+/// not considered.
 std::string conclusion(const std::vector<InputWorth>& worths) {
   if (worths.empty()) return "no draw could be run";
-  const std::string& whole = worths.back().scenario;  // the summary over all scenarios, if there are several
+  const std::string& whole = worths.back().scenario;  // all scenarios, if there are several
   const auto is_single = [&](const InputWorth& worth) { return worth.scenario == whole && worth.input != "all"; };
   const auto first = std::find_if(worths.begin(), worths.end(), is_single);
   if (first == worths.end()) return "no input could be replaced";

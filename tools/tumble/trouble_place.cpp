@@ -3,10 +3,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "scenarios/methods/bridge.hpp"
 #include "tumble/common/imu.hpp"
+#include "tumble/mapping/odometry_params.hpp"
 
 namespace tumble::tools {
 
@@ -31,7 +35,7 @@ std::string place_of_gap(const sim::Sensors& sensors) {
   return place;
 }
 
-/// Returns whether a reading has this error, alone or relative to its predecessor.
+/// Returns true if a reading has this error, alone or relative to the previous reading.
 bool has_trouble(ErrorCode error_code, const sim::ImuRecord& imu, std::size_t k) {
   if (error_code == ErrorCode::time_order) return k > 0 && imu.time_ns[k] <= imu.time_ns[k - 1];
   ImuSample sample;
@@ -52,11 +56,24 @@ std::string place_of_reading(ErrorCode error_code, const sim::Sensors& sensors) 
   return "";
 }
 
+/// Describes the size of the sweeps of the first lidar, because a map needs sweeps with enough points.
+std::string size_of_sweeps(const sim::Sensors& sensors) {
+  std::vector<std::size_t> sizes;
+  for (std::size_t k = 0; !sensors.lidars.empty() && k < sensors.lidars.front().sweep_start_ns.size(); ++k)
+    sizes.push_back(sensors.lidars.front().sweep_first[k + 1] - sensors.lidars.front().sweep_first[k]);
+  if (sizes.empty()) return "";
+  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  std::nth_element(sizes.begin(), middle, sizes.end());
+  return fmt::format("the sweeps of {} have {} points (median); a map needs sweeps with at least {} points",
+                     sensors.lidars.front().name, *middle, OdometryParams{}.expert.matching.matches_min);
+}
+
 }  // namespace
 
 std::string trouble_place(const Status& status, const sim::Sensors& sensors) {
   if (status.error_code == ErrorCode::gap) return place_of_gap(sensors);
   const std::string field = status.field;
+  if (field == "lidar.sweeps_registered") return size_of_sweeps(sensors);
   const bool of_reading = field.starts_with("angular_velocity_rad_s") || field.starts_with("specific_force_m_s2") ||
                           (status.error_code == ErrorCode::time_order && field == "time_ns");
   return of_reading ? place_of_reading(status.error_code, sensors) : "";

@@ -8,8 +8,9 @@
 
 namespace tumble::tools {
 
-/// Finds why a method rejected a recording: the longest gap, or the first IMU reading that is not finite, out of range
-/// or out of order. Returns an empty text if no reading is the cause. The cost is O(N).
+/// Describes why a method rejected a recording: the longest gap, or the first IMU reading that is not finite, out of
+/// range or out of order. If no sweep was registered, the text is the number of points in a sweep. Returns an empty
+/// text if none of these is the cause. The cost is O(N).
 std::string trouble_place(const Status& status, const sim::Sensors& sensors);
 
 }  // namespace tumble::tools

@@ -9,11 +9,11 @@ class App;
 class Option;
 }  // namespace CLI
 
-/// The classes in verb_options.hpp declare the options of a verb. Only verb_options.cpp and program.cpp include CLI11,
-/// because CLI11's headers add seconds of compile time to every source.
+/// verb_options.hpp declares the options of a verb. Only verb_options.cpp and program.cpp include CLI11, whose headers
+/// add seconds of compile time to each source.
 namespace tumble::tools {
 
-/// VerbOption contains further properties of an option or argument that was just declared.
+/// VerbOption sets further properties of the option or argument that was just declared.
 class VerbOption {
  public:
   explicit VerbOption(CLI::Option& option) : option_(&option) {}
@@ -24,18 +24,17 @@ class VerbOption {
   VerbOption within(double low, double high);
   /// Accepts whole numbers from `low` to `high`.
   VerbOption whole(int low, int high);
-  /// Adds a check that runs before CLI11 reports missing options. The function `refuse` throws BadInput with a one-line
-  /// message.
+  /// Adds a check that runs before CLI11 reports missing options. `refuse` throws BadInput with a one-line message.
   VerbOption check(std::function<void(const std::string&)> refuse);
   /// Rejects an empty word.
   VerbOption filled();
-  /// The option then takes exactly `count` words.
+  /// Makes the option take exactly `count` words.
   VerbOption words(int count);
-  /// The option then takes one word each time it occurs; the next word belongs to another option.
+  /// Makes the option take one word per occurrence; the next word is not part of it.
   VerbOption one_at_a_time();
   /// Splits one word into several words at `separator`.
   VerbOption separated_by(char separator);
-  /// Shows the current value of the target as the default in `--help`.
+  /// Shows the current value of the target as default in `--help`.
   VerbOption shows_default();
 
  private:
@@ -47,8 +46,8 @@ class VerbOptions {
  public:
   explicit VerbOptions(CLI::App& app) : app_(&app) {}
 
-  /// Declares an option ("--seed", "-o,--output") or a positional argument ("SCENARIO"). The type `Value` is one of the
-  /// types instantiated in verb_options.cpp. The target must exist while the command line is parsed.
+  /// Declares an option ("--seed", "-o,--output") or a positional argument ("SCENARIO"). `Value` is one of the types
+  /// instantiated in verb_options.cpp. The target must exist while the command line is parsed.
   template <class Value>
   VerbOption add(const std::string& names, Value& target, const std::string& doc);
   void add_flag(const std::string& name, bool& target, const std::string& doc);

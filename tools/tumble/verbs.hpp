@@ -9,11 +9,11 @@
 
 namespace tumble::tools {
 
-/// Action runs a verb after its options were parsed, and returns the exit status.
+/// Action runs a verb after its options were parsed. Returns the exit status.
 using Action = std::function<int()>;
 
-/// Verb is a subcommand of the program. The declaration adds the verb's options to `verb` and returns its action. The
-/// session outlives the action.
+/// Verb is a subcommand of the program. The declaration of a verb adds its options to `verb` and returns its action.
+/// The session outlives the action.
 struct Verb {
   const char* name;
   const char* doc;

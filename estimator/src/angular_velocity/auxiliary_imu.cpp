@@ -36,16 +36,6 @@ Between between(const Vector3d& value, const Vector3d& change, const ImuNeighbou
 AuxiliaryReading::AuxiliaryReading()
     : rate_rad_s(nothing()), force_m_s2(nothing()), rate_sigma_rad_s(nothing()), force_sigma_m_s2(nothing()) {}
 
-bool AuxiliaryReading::same(const AuxiliaryReading& other) const {
-  const auto equal = [](const Vector3d& a, const Vector3d& b) {
-    return ((a.array() == b.array()) || (a.array().isNaN() && b.array().isNaN())).all();
-  };
-  if (rate_along_elements != other.rate_along_elements || force_along_elements != other.force_along_elements)
-    return false;
-  return equal(rate_rad_s, other.rate_rad_s) && equal(force_m_s2, other.force_m_s2) &&
-         equal(rate_sigma_rad_s, other.rate_sigma_rad_s) && equal(force_sigma_m_s2, other.force_sigma_m_s2);
-}
-
 Status align(const AuxiliaryImu& auxiliary_imu, std::span<const ImuSample> samples, std::span<const Clipping> clippings,
              std::span<const ImuSample> primary, double gap_max_s, std::vector<AuxiliaryReading>& out) {
   // During a gap of an auxiliary IMU, its readings are empty.

@@ -13,62 +13,41 @@ namespace tumble {
 
 namespace {
 
-// A flight of at least kHalfScaleRun_s proves that a gyro reports half the true rate. With doubled rates, hand-held
-// motion looks like flight for up to 0.05 s. Real flights are longer.
-constexpr double kHalfScaleRun_s = 0.08;
-constexpr double kAcross = 0.05;    // (minimum lever arm component across a saturated axis)^2 / |lever arm|^2
-constexpr double kBelowRail = 0.1;  // fraction of the reading by which a recovered rate may be below it
+constexpr double kFlightReading_s = 0.01;  // averaging time of readings, so that the sample rate does not matter
+constexpr double kForceMin_m_s2 = 2.5;     // a smaller force of the rotation is mostly noise and bias
+constexpr double kTolerance = 0.25;        // tolerance of the agreement, as a fraction of the force of free flight
+constexpr double kRun_s = 0.02;            // minimum duration of agreement, which excludes chance on the ground
+constexpr double kFlightGapMax_s = 0.1;    // a longer gap resets the current run
+// Minimum flight time of an alternative sensor. Minimum ratio to the flight time of the true sensor, for a body that
+// may be hand-held and for a thrown body.
+constexpr double kAlternativeMin_s = 0.1, kAlternativeRatioMin = 4.0, kThrownRatioMin = 2.0;
+constexpr double kAcross = 0.05;    // minimum squared component of the lever arm across a saturated axis, as a fraction
+constexpr double kBelowRail = 0.1;  // fraction of the saturation level by which a recovered rate may be below the level
 
-struct Axes {
-  std::array<int, 3> axis;
-  std::array<double, 3> factor;
+/// Alternative is a possible fault of the accelerometer, with the signs that correct its readings.
+struct Alternative {
+  std::array<double, 3> sign;
+  const char* name;
 
-  Eigen::Vector3d of(const Eigen::Vector3d& reading) const {
-    return {factor[0] * reading[axis[0]], factor[1] * reading[axis[1]], factor[2] * reading[axis[2]]};
+  Eigen::Vector3d corrected(const Eigen::Vector3d& force) const {
+    return {sign[0] * force[0], sign[1] * force[1], sign[2] * force[2]};
   }
 };
 
-constexpr Axes kUnchangedAxes{{0, 1, 2}, {1, 1, 1}}, kXFlipped{{0, 1, 2}, {-1, 1, 1}}, kYFlipped{{0, 1, 2}, {1, -1, 1}},
-    kZFlipped{{0, 1, 2}, {1, 1, -1}}, kFlipped{{0, 1, 2}, {-1, -1, -1}}, kXYSwapped{{1, 0, 2}, {1, 1, 1}},
-    kYZSwapped{{0, 2, 1}, {1, 1, 1}}, kZXSwapped{{2, 1, 0}, {1, 1, 1}}, kTwice{{0, 1, 2}, {2, 2, 2}},
-    kHalf{{0, 1, 2}, {0.5, 0.5, 0.5}};
-
-/// ReadingHypothesis is a possible fault of a sensor (sign, axis order or scale). `force` and `rate` convert the faulty
-/// readings to correct readings.
-struct ReadingHypothesis {
-  Axes force, rate;
-  const char* name;
-};
-
-constexpr std::array<ReadingHypothesis, FlightSignCheck::kAlternatives> kReadingHypotheses = {{
-    {kUnchangedAxes, kUnchangedAxes, "flight time in s"},
-    {kFlipped, kUnchangedAxes, "flight time in s that agrees with an inverted accelerometer"},
-    {kXFlipped, kUnchangedAxes, "flight time in s that agrees with an inverted accelerometer axis x"},
-    {kYFlipped, kUnchangedAxes, "flight time in s that agrees with an inverted accelerometer axis y"},
-    {kZFlipped, kUnchangedAxes, "flight time in s that agrees with an inverted accelerometer axis z"},
-    {kXYSwapped, kUnchangedAxes, "flight time in s that agrees with exchanged accelerometer axes x and y"},
-    {kYZSwapped, kUnchangedAxes, "flight time in s that agrees with exchanged accelerometer axes y and z"},
-    {kZXSwapped, kUnchangedAxes, "flight time in s that agrees with exchanged accelerometer axes z and x"},
-    {kUnchangedAxes, kFlipped, "flight time in s that agrees with an inverted gyro"},
-    {kUnchangedAxes, kXFlipped, "flight time in s that agrees with an inverted gyro axis x"},
-    {kUnchangedAxes, kYFlipped, "flight time in s that agrees with an inverted gyro axis y"},
-    {kUnchangedAxes, kZFlipped, "flight time in s that agrees with an inverted gyro axis z"},
-    {kUnchangedAxes, kXYSwapped, "flight time in s that agrees with exchanged gyro axes x and y"},
-    {kUnchangedAxes, kYZSwapped, "flight time in s that agrees with exchanged gyro axes y and z"},
-    {kUnchangedAxes, kZXSwapped, "flight time in s that agrees with exchanged gyro axes z and x"},
-    {kUnchangedAxes, kHalf, "flight time in s that agrees with a gyro that reads twice the true rate"},
-    {kUnchangedAxes, kTwice, "flight time in s that agrees with a gyro that reads half the true rate"},
+constexpr std::array<Alternative, FlightSignCheck::kAlternatives> kAlternativeSensors = {{
+    {{1, 1, 1}, "flight time in s"},
+    {{-1, -1, -1}, "flight time in s that a sign error of the accelerometer explains"},
+    {{-1, 1, 1}, "flight time in s that a sign error of accelerometer axis x explains"},
+    {{1, -1, 1}, "flight time in s that a sign error of accelerometer axis y explains"},
+    {{1, 1, -1}, "flight time in s that a sign error of accelerometer axis z explains"},
 }};
 
-/// Corrects a reading for a hypothetical sign, axis order or scale of the sensor: imu_merge.md (I32). The rate of a
-/// single saturated axis follows from the centripetal force. `known` is false if the recovered rate contradicts the
-/// saturated reading.
-FlightSignCheck::Reading convert_reading(const FlightSignCheck::Reading& reading, const ReadingHypothesis& sense,
+/// Corrects a reading for a hypothetical sign of the accelerometer: imu_merge.md (I32). `known` is true
+/// if the centripetal force gives a rate of the saturated axis above the saturation level.
+FlightSignCheck::Reading convert_reading(const FlightSignCheck::Reading& reading, const Alternative& sense,
                                          const Eigen::Vector3d& t) {
   FlightSignCheck::Reading out = reading;
-  out.rate_rad_s = sense.rate.of(reading.rate_rad_s);
-  out.force_m_s2 = sense.force.of(reading.force_m_s2);
-  out.at_rail = sense.rate.of(reading.at_rail);
+  out.force_m_s2 = sense.corrected(reading.force_m_s2);
   if (!reading.known || reading.at_rail.isZero(0.0)) return out;
   int axis = 0;
   out.at_rail.cwiseAbs().maxCoeff(&axis);
@@ -88,7 +67,7 @@ FlightSignCheck::Reading convert_reading(const FlightSignCheck::Reading& reading
 
 /// Returns whether the middle one of three readings agrees with flight, after correction of the hypothetical fault:
 /// imu_merge.md (I31).
-bool agrees_with_flight(const ReadingHypothesis& sense, const std::array<FlightSignCheck::Reading, 3>& readings,
+bool agrees_with_flight(const Alternative& sense, const std::array<FlightSignCheck::Reading, 3>& readings,
                         const FlightSignCheck::Params& params) {
   const Eigen::Vector3d& t = params.lever_arm_m;
   const FlightSignCheck::Reading first = convert_reading(readings[0], sense, t),
@@ -99,15 +78,13 @@ bool agrees_with_flight(const ReadingHypothesis& sense, const std::array<FlightS
   const Eigen::Vector3d &w = middle.rate_rad_s, alpha = (last.rate_rad_s - first.rate_rad_s) / dt_s;
   const Eigen::Vector3d expected = alpha.cross(t) + w.cross(w.cross(t));
   const double size = expected.norm();
-  return size >= params.force_min_m_s2 && (middle.force_m_s2 - expected).norm() <= params.share * size;
+  return size >= kForceMin_m_s2 && (middle.force_m_s2 - expected).norm() <= kTolerance * size;
 }
 
-/// Returns whether the check tests a hypothesis about a sensor fault. For a body that may be hand-held, the check tests
-/// three hypotheses: no fault, an inverted force and a gyro with half scale.
+/// Returns whether the check tests an alternative sensor. For a body that may be hand-held, the check tests only the
+/// accelerometer with three inverted axes.
 bool is_tested(std::size_t sense, FlightSignCheck::Body body) {
-  constexpr std::size_t kSound = 0, kFlippedForce = 1;
-  return body == FlightSignCheck::Body::thrown || sense == kSound || sense == kFlippedForce ||
-         sense == FlightSignCheck::kHalfScaleGyro;
+  return body == FlightSignCheck::Body::thrown || sense <= 1;
 }
 
 }  // namespace
@@ -120,7 +97,7 @@ void FlightSignCheck::step(const ImuSample& sample, State& state) const {
   if (!check_sample(sample).ok()) return;
   if (state.started && sample.time_ns <= state.last_time_ns) return;
   const double dt_s = state.started ? seconds(sample.time_ns - state.last_time_ns) : 0.0;
-  const bool follows = state.started && dt_s <= params_.gap_max_s;
+  const bool follows = state.started && dt_s <= kFlightGapMax_s;
   state.started = true;
   state.last_time_ns = sample.time_ns;
   if (!follows) {
@@ -130,7 +107,7 @@ void FlightSignCheck::step(const ImuSample& sample, State& state) const {
     return;
   }
   state.average.add(sample, dt_s);
-  if (!state.average.full(params_.reading_s, dt_s)) return;
+  if (!state.average.full(kFlightReading_s, dt_s)) return;
   const ImuSample& mean = state.average.mean;
   process_reading(reading_of(mean, state.average.rate_peak_rad_s), state);
   state.average = {};
@@ -160,13 +137,12 @@ void FlightSignCheck::process_reading(const Reading& now, State& state) const {
   const double dt_s = seconds(now.time_ns - first.time_ns);
   for (std::size_t sense = 0; sense < kAlternatives; ++sense) {
     if (!is_tested(sense, params_.body)) continue;
-    if (!agrees_with_flight(kReadingHypotheses[sense], {first, middle, now}, params_)) {
+    if (!agrees_with_flight(kAlternativeSensors[sense], {first, middle, now}, params_)) {
       state.run_s[sense] = 0.0;
       continue;
     }
     state.run_s[sense] += 0.5 * dt_s;
-    if (state.run_s[sense] < (sense == kHalfScaleGyro ? std::max(kHalfScaleRun_s, params_.run_s) : params_.run_s))
-      continue;
+    if (state.run_s[sense] < kRun_s) continue;
     state.flight_duration_s[sense] += 0.5 * dt_s;
     if (sense != 0) state.last_flight_end_ns = now.time_ns;
   }
@@ -179,21 +155,12 @@ Status FlightSignCheck::current_verdict(const State& state) const {
 }
 
 Status FlightSignCheck::verdict(const State& state) const {
-  const bool thrown = params_.body == Body::thrown;
-  const double sound_s =
-      (thrown ? params_.thrown_ratio_min : params_.alternative_ratio_min) * state.flight_duration_s[0];
-  std::size_t longest = 0;
-  double most_s = 0.0;
-  for (std::size_t sense = 1; sense < kAlternatives; ++sense) {
-    const double bound_s =
-        std::max(sense == kHalfScaleGyro ? params_.half_scale_flight_min_s : params_.alternative_flight_min_s, sound_s);
-    if (state.flight_duration_s[sense] <= bound_s || state.flight_duration_s[sense] <= state.flight_duration_s[longest])
-      continue;
-    longest = sense;
-    most_s = bound_s;
-  }
-  if (longest == 0) return {};
-  return {ErrorCode::out_of_range, kReadingHypotheses[longest].name, state.flight_duration_s[longest], most_s};
+  const double ratio = params_.body == Body::thrown ? kThrownRatioMin : kAlternativeRatioMin;
+  const double bound_s = std::max(kAlternativeMin_s, ratio * state.flight_duration_s[0]);
+  const auto longest = std::max_element(state.flight_duration_s.begin() + 1, state.flight_duration_s.end());
+  if (*longest <= bound_s) return {};
+  const auto sense = static_cast<std::size_t>(longest - state.flight_duration_s.begin());
+  return {ErrorCode::out_of_range, kAlternativeSensors[sense].name, *longest, bound_s};
 }
 
 }  // namespace tumble

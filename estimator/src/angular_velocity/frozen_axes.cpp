@@ -15,6 +15,7 @@ constexpr std::array<const char*, 6> kQuantities = {
     "time in s for which gyro z repeats one reading",  "time in s for which accel x repeats one reading",
     "time in s for which accel y repeats one reading", "time in s for which accel z repeats one reading"};
 
+constexpr double kAxisFrozen_s = 0.5;  // longest repetition of a working axis while the body moves
 // minimum duration of a repetition, as a multiple of the longest earlier repetition
 constexpr double kMinRepetitionRatio = 10.0;
 constexpr double kPossibleRailRatio = 0.9;  // fraction of the stated range above which a reading may be saturated
@@ -25,12 +26,6 @@ constexpr double kRotating_rad_s = 0.3;    // change of another gyro axis that i
 constexpr double kMotionForce_m_s2 = 1.0;  // change of another accelerometer axis that indicates motion
 constexpr double kChanging =
     0.2;  // minimum fraction of samples in which another axis changes, for a log five times faster than the sensor
-// A body is at rest if the rate of another axis is below kStill_rad_s and the specific force changes by less than
-// kStill_m_s2.
-constexpr double kStill_rad_s = 0.2, kStill_m_s2 = 0.5;
-// A working axis at rest reads at most kRestRateMax_rad_s (gyro bias) or kRestForceMax_m_s2 (gravity and bias).
-constexpr double kRestRateMax_rad_s = 1.0, kRestForceMax_m_s2 = 15.0;
-
 constexpr bool is_gyro(std::size_t channel) {
   return channel < 3;
 }
@@ -48,22 +43,12 @@ std::array<double, 6> readings(const ImuSample& sample) {
 void start_repetition(std::size_t channel, const std::array<double, 6>& now, TimeNs time_ns, FrozenAxes::Axis& axis) {
   axis.reading = now[channel];
   axis.since_ns = time_ns;
-  axis.repeated_s = axis.samples = axis.stationary_s = 0.0;
+  axis.repeated_s = axis.samples = 0.0;
   axis.device_flagged = axis.frozen = false;
-  axis.stationary_reference = now;
   for (std::size_t k = 0; k < 2; ++k) {
     axis.others_min[k] = axis.others_max[k] = now[other(channel, k)];
     axis.others_changes[k] = 0.0;
   }
-}
-
-/// Returns whether the readings of all axes except `channel` indicate a body at rest and are close to `before`.
-bool others_rest(std::size_t channel, const std::array<double, 6>& now, const std::array<double, 6>& before) {
-  for (std::size_t k = 0; k < now.size(); ++k) {
-    if (k == channel) continue;
-    if (is_gyro(k) ? std::abs(now[k]) > kStill_rad_s : std::abs(now[k] - before[k]) > kStill_m_s2) return false;
-  }
-  return true;
 }
 
 }  // namespace
@@ -113,26 +98,11 @@ void FrozenAxes::track_repetition(std::size_t channel, const std::array<double, 
       axis.others_max[k] = std::max(axis.others_max[k], now[beside]);
       if (now[beside] != state.before[beside]) axis.others_changes[k] += 1.0;
     }
-    if (others_rest(channel, now, axis.stationary_reference)) {
-      axis.stationary_s += dt_s;
-    } else {
-      axis.stationary_s = 0.0;
-      axis.stationary_reference = now;
-    }
   }
-  const double most = is_gyro(channel) ? kRestRateMax_rad_s : kRestForceMax_m_s2;
-  // No motion keeps the rate vector exactly along one axis for `rail_stationary_min_s`. The test of a saturated axis
-  // therefore ignores changes of the other axes.
-  const bool is_at_rail = at_rail(channel, axis);
-  const bool was_stationary = axis.stationary_s >= params_.rail_stationary_min_s ||
-                              (axis.repeated_s >= params_.rail_repetition_max_s && others_move(channel, 0.0, axis));
-  const bool froze = is_at_rail
-                         ? was_stationary && std::abs(axis.reading) >= most
-                         : axis.changing_duration_s >= params_.frozen_s &&
-                               axis.repeated_s >= std::max(params_.frozen_s, kMinRepetitionRatio * axis.longest_s) &&
-                               others_move(channel, kChanging, axis);
+  const bool froze = !at_rail(channel, axis) && axis.changing_duration_s >= kAxisFrozen_s &&
+                     axis.repeated_s >= std::max(kAxisFrozen_s, kMinRepetitionRatio * axis.longest_s) &&
+                     others_move(channel, axis);
   axis.frozen = axis.frozen || froze;
-  axis.ever_frozen = axis.ever_frozen || froze;
 }
 
 bool FrozenAxes::at_rail(std::size_t channel, const Axis& axis) const {
@@ -146,12 +116,12 @@ bool FrozenAxes::at_rail(std::size_t channel, const Axis& axis) const {
 }
 
 /// Returns whether the other axes of the triad change by far more than one quantisation step of the tested axis. The
-/// other axes must change in at least the fraction `changing_share` of the samples.
-bool FrozenAxes::others_move(std::size_t channel, double changing_share, const Axis& axis) const {
+/// other axes must change in at least the fraction kChanging of the samples.
+bool FrozenAxes::others_move(std::size_t channel, const Axis& axis) {
   const double least =
       std::max(is_gyro(channel) ? kRotating_rad_s : kMotionForce_m_s2, kMotionQuanta * axis.smallest_change);
   for (std::size_t k = 0; k < 2; ++k) {
-    const bool changes = axis.others_changes[k] >= changing_share * axis.samples;
+    const bool changes = axis.others_changes[k] >= kChanging * axis.samples;
     if (changes && axis.others_max[k] - axis.others_min[k] >= least) return true;
   }
   return false;
@@ -170,7 +140,7 @@ void FrozenAxes::add_findings(HealthFinding::Kind kind, const std::string& senso
   for (std::size_t c = 0; c < kQuantities.size(); ++c) {
     const Axis& axis = state.axes[c];
     if (!axis.frozen) continue;
-    const Status status{ErrorCode::out_of_range, kQuantities[c], axis.repeated_s, params_.frozen_s};
+    const Status status{ErrorCode::out_of_range, kQuantities[c], axis.repeated_s, kAxisFrozen_s};
     health.add(kind, status, sensor, kNames[c], axis.since_ns);
   }
 }
@@ -179,7 +149,7 @@ void add_finding(HealthFinding::Kind kind, const std::string& sensor, const Froz
                  SensorHealth& health) {
   const auto channel = static_cast<std::size_t>(interval.axis + (interval.triad == Triad::gyro ? 0 : 3));
   const Status status{ErrorCode::out_of_range, kQuantities.at(channel), seconds(interval.to_ns - interval.from_ns),
-                      FrozenAxes::Params{}.frozen_s};
+                      kAxisFrozen_s};
   health.add(kind, status, sensor, kNames.at(channel), interval.from_ns);
 }
 

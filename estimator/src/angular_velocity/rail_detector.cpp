@@ -27,6 +27,12 @@ RailDetector::RailDetector(const Params& params) : params_(params) {
   require_within("clip_leave_ratio", params.clip_leave_ratio, params.clip_enter_ratio, 0.5);
 }
 
+RailDetector::State RailDetector::start() const {
+  State state;
+  for (std::size_t c = 0; c < state.channels.size(); ++c) state.channels[c].rail = params_.known[c];
+  return state;
+}
+
 std::optional<double> RailDetector::stated(int c) const {
   return c < 3 ? params_.stated_gyro_rad_s : params_.stated_accel_m_s2;
 }

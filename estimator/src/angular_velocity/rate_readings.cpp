@@ -11,13 +11,6 @@ namespace tumble {
 
 namespace {
 
-double median_force(std::span<const ImuSample> samples) {
-  std::vector<double> force(samples.size());
-  for (std::size_t k = 0; k < force.size(); ++k) force[k] = samples[k].specific_force_m_s2.norm();
-  std::nth_element(force.begin(), force.begin() + static_cast<std::ptrdiff_t>(force.size() / 2), force.end());
-  return force[force.size() / 2];
-}
-
 void report_rails(const ClippingFinder& finder, const SaturationLevels& rails, RateReport& health) {
   const RailPlanes planes = rails.planes_in_use(), accel_planes = rails.planes_in_use(Triad::accelerometer);
   health.planes = rails.planes;
@@ -33,16 +26,8 @@ void report_rails(const ClippingFinder& finder, const SaturationLevels& rails, R
   }
 }
 
-void suspect_units(std::span<const ImuSample> samples, double rate_max_rad_s, RateReport& health) {
-  const double force = median_force(samples);
-  health.rate_unit_suspect = std::any_of(samples.begin(), samples.end(), [&](const ImuSample& sample) {
-    return sample.angular_velocity_rad_s.cwiseAbs().maxCoeff() > rate_max_rad_s;
-  });
-  health.force_unit_suspect = force > 0.5 && force < 2.0;
-}
-
-// Marks the axes of each sample that were saturated for a part of the averaging window, or that may be saturated at an
-// unknown level.
+// Marks the axes of each sample that were saturated for a part of its averaging window, or may be at an unknown
+// saturation level.
 void mark_possibly_clipped(const RailPlaneFinder::Params& expected, const ClippingFinder& finder,
                            const SaturationLevels& rails, const RailPlanes& planes, double noise_rad_s,
                            std::span<const ImuSample> samples, std::span<RateObservation> observations) {
@@ -83,7 +68,6 @@ RateReadings read_samples(const RateSmoother::Params& params, const ClippingFind
                           std::span<const std::vector<AuxiliaryReading>> auxiliary_imus, RateReport& health) {
   health.samples = samples.size();
   report_rails(rails, found.rails, health);
-  suspect_units(samples, params.model.rate_max_rad_s, health);
 
   RateReadings out{std::vector<RateObservation>(samples.size()), params.model, found.rails.planes_in_use(), {}};
   const double period_s = median_period_s(samples);

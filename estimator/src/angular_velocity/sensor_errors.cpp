@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include "../common/dense.hpp"
@@ -123,13 +124,24 @@ SensorErrors SensorErrors::from(const Vector& v) {
   return out;
 }
 
-void require_known(const KnownSensorErrors& earlier_runs) {
-  for (const double value : earlier_runs.errors.vector()) require_within("learnt errors", value, -0.2, 0.2);
-  for (const double value : earlier_runs.covariance.reshaped())
-    require_within("learnt errors' covariance", value, -1.0, 1.0);
+Status check_known(const KnownSensorErrors& earlier_runs) {
+  const auto exceeds = [](double most) { return [most](double value) { return !(std::abs(value) <= most); }; };
+  const Vector errors = earlier_runs.errors.vector();
+  const auto error = std::find_if(errors.begin(), errors.end(), exceeds(0.2));
+  if (error != errors.end()) return {ErrorCode::out_of_range, "learnt errors", *error, 0.2};
+  const auto all = earlier_runs.covariance.reshaped();
+  const auto entry = std::find_if(all.begin(), all.end(), exceeds(1.0));
+  if (entry != all.end()) return {ErrorCode::out_of_range, "learnt errors' covariance", *entry, 1.0};
   const Vector pivots = earlier_runs.covariance.ldlt().vectorD();
-  require_within("minimum pivot of the covariance of the estimated sensor errors", pivots.minCoeff(),
-                 -1e-9 * pivots.maxCoeff(), 1.0);
+  const double least = -1e-9 * pivots.maxCoeff();
+  if (pivots.minCoeff() >= least) return {};
+  return {ErrorCode::out_of_range, "minimum pivot of the covariance of the estimated sensor errors", pivots.minCoeff(),
+          least};
+}
+
+void require_known(const KnownSensorErrors& earlier_runs) {
+  const Status status = check_known(earlier_runs);
+  if (!status.ok()) throw InvalidParams(status.field, status.value, "at most " + std::to_string(status.bound));
 }
 
 Vector prior_sigmas(const SensorErrorPriors& sizes, double share) {

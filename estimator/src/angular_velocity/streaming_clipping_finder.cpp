@@ -48,6 +48,7 @@ StreamingClippingFinder::State StreamingClippingFinder::start() const {
   State state;
   for (Memory& memory : state.memory) memory.readings.reserve(readings_max_);
   state.work.reserve(readings_max_);
+  state.known.axis_aligned_rails = axis_aligned_rails_.start();
   state.known.planes = planes_[index_of(Triad::gyro)][0].params().known;
   state.known.accel_planes = planes_[index_of(Triad::accelerometer)][0].params().known;
   return state;
@@ -148,15 +149,6 @@ Clipping StreamingClippingFinder::classify(const ImuSample* before, const ImuSam
   for (const Triad triad : {Triad::gyro, Triad::accelerometer})
     out = classify_by_planes(state.known.planes_in_use(triad), triad, out, before, sample, after);
   return out;
-}
-
-bool StreamingClippingFinder::has_room_for(const State& state) const {
-  return std::all_of(state.memory.begin(), state.memory.end(),
-                     [&](const Memory& memory) { return memory.readings.size() <= readings_max_; });
-}
-
-bool StreamingClippingFinder::equal(const State& a, const State& b) {
-  return a.known == b.known && a.memory == b.memory;
 }
 
 }  // namespace tumble

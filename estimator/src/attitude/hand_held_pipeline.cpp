@@ -66,9 +66,4 @@ void HandHeldPipeline::classify_window(const ImuSample& next, State& state) cons
   }
 }
 
-Status HandHeldPipeline::check_state(const State& state) const {
-  if (!clipping_finder_.has_room_for(state.rails)) return {ErrorCode::out_of_range, "rails.readings", 1.0, 0.0};
-  return stream_.check_state(state.stream);
-}
-
 }  // namespace tumble

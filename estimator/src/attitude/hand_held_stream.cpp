@@ -4,7 +4,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "hand_held_problem.hpp"
@@ -53,48 +52,6 @@ HandHeldStream::HandHeldStream(const Params& params)
   delay_ = static_cast<std::size_t>(std::lround(params.lag_s / params.period_s));
   // The buffer has room for twice the nominal sample rate. At higher rates, the stream drops the oldest readings.
   readings_max_ = 2 * static_cast<std::size_t>(std::ceil(params.window_s / params.period_s)) + 4;
-}
-
-Status HandHeldStream::check_state(const State& state) const {
-  const auto size_of = [](const auto& all) { return double(all.size()); };
-  if (state.window.size() > nodes_max_)
-    return {ErrorCode::out_of_range, "carried.window", size_of(state.window), double(nodes_max_)};
-  if (state.readings.size() > readings_max_)
-    return {ErrorCode::out_of_range, "carried.readings", size_of(state.readings), double(readings_max_)};
-  if (state.samples == 0) {
-    if (state.window.empty() && state.readings.empty() && state.first_node == 0) return {};
-    return {ErrorCode::out_of_range, "carried.samples", 0.0, 1.0};
-  }
-  if (state.window.empty() || state.readings.empty()) return {ErrorCode::empty, "carried.window", 0.0, 1.0};
-  for (std::size_t k = 0; k < state.readings.size(); ++k) {
-    const Reading* const before = k > 0 ? &state.readings[k - 1] : nullptr;
-    if (const Status status = check_reading(state.readings[k], before, state.start_ns); !status.ok()) return status;
-  }
-  const std::int64_t last = state.readings.back().node, nodes = static_cast<std::int64_t>(state.window.size());
-  if (state.first_node >= 0 && state.first_node <= last && last - state.first_node + 1 == nodes) return {};
-  return {ErrorCode::out_of_range, "carried.first_node", double(state.first_node), double(last + 1 - nodes)};
-}
-
-Status HandHeldStream::check_reading(const Reading& reading, const Reading* before, TimeNs start_ns) const {
-  const TimeNs time_ns = reading.sample.time_ns;
-  if (before != nullptr) {
-    const Status status = check_stamp_order(time_ns, before->sample.time_ns, params_.body.expert.gap_max_s);
-    if (!status.ok()) return status;
-  }
-  // The difference of two 64-bit time stamps may overflow a signed integer, so the difference is unsigned.
-  const std::uint64_t since_ns = static_cast<std::uint64_t>(time_ns) - static_cast<std::uint64_t>(start_ns);
-  if (time_ns < start_ns || since_ns > static_cast<std::uint64_t>(std::numeric_limits<TimeNs>::max()))
-    return {ErrorCode::time_order, "carried.start_ns", double(start_ns), double(time_ns)};
-  if (reading.end_s != seconds(static_cast<TimeNs>(since_ns)) + 0.5 * params_.period_s)
-    return {ErrorCode::out_of_range, "reading.end_s", reading.end_s, seconds(time_ns)};
-  if (!(reading.centre_s <= reading.end_s && reading.centre_s >= reading.end_s - params_.period_s))
-    return {ErrorCode::out_of_range, "reading.centre_s", reading.centre_s, reading.end_s};
-  const std::int64_t nearest = std::llround(reading.centre_s / params_.body.expert.node_s);
-  const bool falls = before != nullptr && reading.node < before->node;
-  const bool stays = before != nullptr && reading.node == before->node;
-  const bool near = reading.node >= nearest - 1 && reading.node <= nearest + 1;
-  if (reading.node >= 0 && !falls && (stays || near)) return {};
-  return {ErrorCode::out_of_range, "reading.node", double(reading.node), double(nearest)};
 }
 
 HandHeldStream::State HandHeldStream::start() const {

@@ -10,6 +10,14 @@ namespace tumble {
 
 namespace {
 
+// An IMU is frozen if it repeats its reading for kUnitFrozen_s (longer than any sample and hold) while the rates or
+// forces of the other IMUs change by more than the limits, or while gravity rotates. It is used again after
+// kUnfreeze_s.
+constexpr double kUnitFrozen_s = 0.1, kOthersRate_rad_s = 0.03, kOthersForce_m_s2 = 0.3, kGravityRotation_rad = 1.0;
+constexpr double kUnfreeze_s = 0.5;
+// An IMU disagrees if its mean over kMisfitTau_s differs from the median of all IMUs by more than the limits, for
+// kDisagrees_s. The limit of the rate grows by a fraction of the rate, for errors of scale.
+constexpr double kDisagreeRate_rad_s = 0.1, kDisagreeRateRatio = 0.06, kDisagreeForce_m_s2 = 1.0, kDisagrees_s = 0.3;
 constexpr int kMinImusForFault = 3;  // minimum number of IMUs for identifying the faulty IMU
 constexpr double kMisfitTau_s = 0.5;
 constexpr double kComparableRateRatio = 0.8;  // fraction of the gyro's range up to which IMUs are compared
@@ -91,14 +99,14 @@ void ImuMerge::detect_frozen_units(const UnitMask& present, const Vectors& rates
     const bool force_same = watch(forces[k], middle_force, unit.force_repeat);
     const bool railed = rates[k].cwiseAbs().maxCoeff() >= params_.gyro_range_rad_s ||
                         forces[k].cwiseAbs().maxCoeff() >= params_.accel_range_m_s2;
-    const bool rate_frozen = unit.rate_repeat.repeated_s >= params_.expert.frozen.after_s &&
-                             (middle_rate - unit.rate_repeat.others).norm() > params_.expert.frozen.rate_rad_s;
-    const bool force_frozen = unit.force_repeat.repeated_s >= params_.expert.frozen.after_s &&
-                              ((middle_force - unit.force_repeat.others).norm() > params_.expert.frozen.force_m_s2 ||
-                               rotation_across_force_rad(unit.force_repeat) > params_.expert.frozen.turned_rad);
+    const bool rate_frozen = unit.rate_repeat.repeated_s >= kUnitFrozen_s &&
+                             (middle_rate - unit.rate_repeat.others).norm() > kOthersRate_rad_s;
+    const bool force_frozen = unit.force_repeat.repeated_s >= kUnitFrozen_s &&
+                              ((middle_force - unit.force_repeat.others).norm() > kOthersForce_m_s2 ||
+                               rotation_across_force_rad(unit.force_repeat) > kGravityRotation_rad);
     unit.changing_readings_s = rate_same || force_same ? 0.0 : unit.changing_readings_s + dt_s;
     if (unit.frozen) {
-      unit.frozen = unit.changing_readings_s < params_.expert.frozen.unfreeze_after_s;
+      unit.frozen = unit.changing_readings_s < kUnfreeze_s;
     } else if (!railed && (rate_frozen || force_frozen)) {
       unit.frozen = true;
       unit.frozen_since_ns = rate_frozen ? unit.rate_repeat.since_ns : unit.force_repeat.since_ns;
@@ -106,28 +114,28 @@ void ImuMerge::detect_frozen_units(const UnitMask& present, const Vectors& rates
   }
 }
 
-Status ImuMerge::verdict(const State& state) const {
+Status ImuMerge::verdict(const State& state) {
   if (!state.all_frozen) return {};
   double repeated_s = 0.0;
   for (const Unit& unit : state.units) {
     if (unit.frozen) repeated_s = std::max({repeated_s, unit.rate_repeat.repeated_s, unit.force_repeat.repeated_s});
   }
   return {ErrorCode::out_of_range, "time in s for which every IMU repeats one reading while the body rotates",
-          repeated_s, params_.expert.frozen.after_s};
+          repeated_s, kUnitFrozen_s};
 }
 
-void ImuMerge::add_finding(const Unit& unit, const std::string& name, SensorHealth& health) const {
+void ImuMerge::add_finding(const Unit& unit, const std::string& name, SensorHealth& health) {
   using Kind = HealthFinding::Kind;
   const double repeated_s = std::max(unit.rate_repeat.repeated_s, unit.force_repeat.repeated_s);
   if (unit.frozen)
     health.add(Kind::unit_frozen,
-               {ErrorCode::out_of_range, "time in s for which the IMU repeats one reading while the other IMUs change",
-                repeated_s, params_.expert.frozen.after_s},
+               {ErrorCode::out_of_range, "time in s for which the IMU repeats one reading while the others change",
+                repeated_s, kUnitFrozen_s},
                name, "", unit.frozen_since_ns);
   if (unit.disagrees)
     health.add(Kind::unit_disagrees,
-               {ErrorCode::out_of_range, "time in s for which the IMU disagrees with the other IMUs",
-                unit.disagreement_s, params_.expert.disagreeing.after_s},
+               {ErrorCode::out_of_range, "time in s for which the IMU disagrees with the others", unit.disagreement_s,
+                kDisagrees_s},
                name, "", unit.disagrees_since_ns);
 }
 
@@ -148,7 +156,7 @@ void ImuMerge::add_findings(const std::optional<UnitSignCheck::Detected>& mislab
   const double off = gyro_confirmed ? 1.0 - kArmShareMin : kArmShareOff, bound = 1.0 + std::copysign(off, share - 1.0);
   if (std::abs(share - 1.0) <= off) return;
   health.add(share < 0.0 ? Kind::axes_or_signs : Kind::gyro_scale, {ErrorCode::out_of_range, kQuantity, share, bound},
-             "imu", "", {}, 1.0);
+             "imu");
 }
 
 /// Detects IMUs that disagree with the other IMUs for a long time.
@@ -173,13 +181,11 @@ void ImuMerge::detect_disagreeing_units(const UnitMask& present, const Vectors& 
     const double force = std::max(0.0, (forces[k] - middle_force).norm() - turned);
     unit.rate_disagreement_rad_s += share * ((rates[k] - middle_rate).norm() - unit.rate_disagreement_rad_s);
     unit.force_disagreement_m_s2 += share * (force - unit.force_disagreement_m_s2);
-    const double rate_bound =
-        params_.expert.disagreeing.rate_rad_s + params_.expert.disagreeing.rate_share * state.rotation_rate_rad_s;
-    const bool off = unit.rate_disagreement_rad_s > rate_bound ||
-                     unit.force_disagreement_m_s2 > params_.expert.disagreeing.force_m_s2;
+    const double rate_bound = kDisagreeRate_rad_s + kDisagreeRateRatio * state.rotation_rate_rad_s;
+    const bool off = unit.rate_disagreement_rad_s > rate_bound || unit.force_disagreement_m_s2 > kDisagreeForce_m_s2;
     if (off && unit.disagreement_s == 0.0) unit.disagreement_since_ns = time_ns;
     unit.disagreement_s = off ? unit.disagreement_s + h : 0.0;
-    if (unit.disagreement_s < params_.expert.disagreeing.after_s) continue;
+    if (unit.disagreement_s < kDisagrees_s) continue;
     unit.disagrees = true;
     unit.disagrees_since_ns = unit.disagreement_since_ns;
     break;  // the median changes without the faulty IMU, so the next window tests again

@@ -11,12 +11,23 @@
 #include "pivot_sums.hpp"
 #include "tumble/angular_velocity/detail/rail_ratios.hpp"
 #include "tumble/attitude/detail/axis_labels.hpp"
-#include "tumble/common/parameters.hpp"
 
 namespace tumble {
 
 namespace {
 
+constexpr double kPivotReading_s =
+    0.01;                           // averaging time of readings, so that the cost is independent of the sample rate
+constexpr double kSegment_s = 2.0;  // a hand holds a pivot still for about this time
+constexpr double kSegmentRotationMin_rad = 1.0;  // less rotation in a segment does not distinguish the alternatives
+constexpr double kExplained_m_s = 0.3;           // rms velocity of the pivot below which rates explain a segment
+constexpr double kPivotNoise_m_s = 0.03;  // rms velocity due to noise: below it, two alternatives fit equally well
+constexpr double kSegmentGapMax_s = 0.1;  // an unmeasured impact may hide in a longer gap
+// Limits of the decision. The segments overlap by half, so that six segments are three independent ones.
+constexpr double kEvidenceMin = 5.0, kMeanEvidenceMin = 0.6, kBetterSegmentsMin = 6.0, kBetterWorseRatioMin = 4.0;
+constexpr double kPivotDistanceMax_m = 0.25;  // a pivot further away is a rod, whose length the scale would absorb
+constexpr double kScaleErrorMin = 0.025, kScaleErrorMinSigmas = 5.0;
+constexpr double kScaleSegmentsMin = 10.0, kScaleSegmentFractionMin = 0.5;
 constexpr double kScaleStep = 0.05;
 constexpr std::size_t kHalf = kAxisLabels, kTwice = kAxisLabels + 1;  // indices of the gyro scales 1/2 and 2
 constexpr std::size_t kLower = kAxisLabels + 2, kUpper = kAxisLabels + 3, kReadings = kAxisLabels + 4;
@@ -51,7 +62,7 @@ struct ScaleVote {
 /// Segments contains the results of the completed segments of a recording, and the sums of the current segment.
 class Segments {
  public:
-  Segments(const PivotCheckParams& params, const Readings& readings) : params_(params), readings_(readings) {}
+  Segments(double gravity_m_s2, const Readings& readings) : gravity_m_s2_(gravity_m_s2), readings_(readings) {}
 
   void add(double dt_s, const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& force_m_s2) {
     for (std::size_t k = 0; k < kReadings; ++k) {
@@ -59,11 +70,11 @@ class Segments {
     }
     length_s_ += dt_s;
     rotated_rad_ += dt_s * rate_rad_s.norm();
-    if (length_s_ >= params_.segment_s) close();
+    if (length_s_ >= kSegment_s) close();
   }
   /// Completes the current segment of motion. A segment that is shorter than half of the nominal length is discarded.
   void close() {
-    if (length_s_ >= 0.5 * params_.segment_s && rotated_rad_ >= params_.rotation_min_rad) take();
+    if (length_s_ >= 0.5 * kSegment_s && rotated_rad_ >= kSegmentRotationMin_rad) take();
     sums_ = {};
     length_s_ = rotated_rad_ = 0.0;
   }
@@ -87,15 +98,14 @@ class Segments {
     // The residual of a hypothesis has two parts: the unexplained velocity, and the difference between mean force and
     // gravity.
     const auto residual = [&](std::size_t k) {
-      return std::hypot(fits[k].residual_m_s,
-                        length_s_ * (fits[k].gravity_m_s2 - params_.gravity_m_s2) / std::sqrt(12.0));
+      return std::hypot(fits[k].residual_m_s, length_s_ * (fits[k].gravity_m_s2 - gravity_m_s2_) / std::sqrt(12.0));
     };
     const double unchanged_residual = residual(0);
     for (std::size_t k = 1; k < kCompared; ++k) {
       const double otherwise = residual(k);
-      if (std::min(unchanged_residual, otherwise) > params_.explained_rms_m_s) continue;
-      const double noise = params_.noise_m_s;
-      const double gained = 2.0 * std::log(std::max(unchanged_residual, noise) / std::max(otherwise, noise));
+      if (std::min(unchanged_residual, otherwise) > kExplained_m_s) continue;
+      const double gained =
+          2.0 * std::log(std::max(unchanged_residual, kPivotNoise_m_s) / std::max(otherwise, kPivotNoise_m_s));
       evidence[k] += gained;
       ++counted[k];
       better[k] += gained > kClearLogRatio;
@@ -106,17 +116,17 @@ class Segments {
   /// Adds the segment's estimate of the gyro's scale: imu_merge.md (I30).
   void vote(const std::array<PivotFit, kReadings>& fits) {
     const PivotFit& fit = fits[0];
-    if (fit.residual_m_s > params_.explained_rms_m_s) return;
+    if (fit.residual_m_s > kExplained_m_s) return;
     ++explained;
-    if (fit.arm_m > params_.pivot_distance_max_m) return;
+    if (fit.arm_m > kPivotDistanceMax_m) return;
     const auto square = [&](std::size_t k) { return fits[k].residual_m_s * fits[k].residual_m_s; };
     const double curvature = (square(kLower) + square(kUpper) - 2.0 * square(0)) / (kScaleStep * kScaleStep);
     if (!(curvature > 0.0)) return;
     const double step = -(square(kUpper) - square(kLower)) / (2.0 * kScaleStep) / curvature;
-    votes.push_back({step, curvature / std::max(square(0), params_.noise_m_s * params_.noise_m_s)});
+    votes.push_back({step, curvature / std::max(square(0), kPivotNoise_m_s * kPivotNoise_m_s)});
   }
 
-  const PivotCheckParams& params_;
+  double gravity_m_s2_;
   const Readings& readings_;
   std::array<PivotSums, kReadings> sums_{};
   double length_s_ = 0.0, rotated_rad_ = 0.0;
@@ -124,7 +134,7 @@ class Segments {
 
 /// Computes the weighted mean of the segments' gyro scales, with a heteroscedasticity-consistent standard deviation
 /// (White, 1980): imu_merge.md (I30).
-void conclude_scale(const std::vector<ScaleVote>& votes, PivotCheck::Found& found) {
+void conclude_scale(const std::vector<ScaleVote>& votes, PivotCheck& found) {
   double weight = 0.0, sum = 0.0, spread = 0.0;
   for (const ScaleVote& vote : votes) weight += vote.weight, sum += vote.weight * vote.step;
   found.scale_segments = votes.size();
@@ -140,44 +150,41 @@ void conclude_scale(const std::vector<ScaleVote>& votes, PivotCheck::Found& foun
 
 }  // namespace
 
-PivotCheck::PivotCheck(const Params& params) : params_(params) {
-  require_valid_fields(params);
-}
-
-PivotCheck::Found PivotCheck::find(std::span<const ImuSample> samples, std::span<const RateState> rates) const {
+PivotCheck PivotCheck::of(std::span<const ImuSample> samples, double gravity_m_s2, double gyro_range_rad_s,
+                          double accel_range_m_s2) {
   static const Readings readings = all_readings();
   // The check divides the recording twice into segments, offset by half a segment. An event at a boundary between two
   // segments is therefore inside a segment of the other division.
-  std::array<Segments, 2> series = {Segments(params_, readings), Segments(params_, readings)};
+  std::array<Segments, 2> series = {Segments(gravity_m_s2, readings), Segments(gravity_m_s2, readings)};
   double mean_s = 0.0, since_s = 0.0;
   Eigen::Vector3d turned = Eigen::Vector3d::Zero(), gained = Eigen::Vector3d::Zero();
-  const double rail_m_s2 = (1.0 - kNearRailRatio) * params_.accel_range_m_s2;
-  for (std::size_t k = 1; k < std::min(samples.size(), rates.size()); ++k) {
-    const Eigen::Vector3d& force = samples[k].specific_force_m_s2;
+  const auto is_at_rail = [](const Eigen::Vector3d& reading, double range) {
+    return range > 0.0 && reading.cwiseAbs().maxCoeff() >= (1.0 - kNearRailRatio) * range;
+  };
+  for (std::size_t k = 1; k < samples.size(); ++k) {
+    const Eigen::Vector3d &rate = samples[k].angular_velocity_rad_s, &force = samples[k].specific_force_m_s2;
     const double dt_s = seconds(samples[k].time_ns - samples[k - 1].time_ns);
     if (dt_s <= 0.0) continue;
-    const bool at_rail = (rail_m_s2 > 0.0 && force.cwiseAbs().maxCoeff() >= rail_m_s2) ||
-                         (samples[k].device_clip_flags & kClipAccel) != 0;
-    if (dt_s > params_.gap_max_s || at_rail || rates[k].source != RateSource::measured ||
-        !check_sample(samples[k]).ok()) {
+    if (dt_s > kSegmentGapMax_s || is_at_rail(rate, gyro_range_rad_s) || is_at_rail(force, accel_range_m_s2) ||
+        samples[k].device_clip_flags != 0 || !check_sample(samples[k]).ok()) {
       for (Segments& segments : series) segments.close();
       mean_s = since_s = 0.0;
       turned.setZero(), gained.setZero();
       continue;
     }
     mean_s += dt_s;
-    turned += dt_s * rates[k].w_WI_I_rad_s;
+    turned += dt_s * rate;
     gained += dt_s * force;
-    if (mean_s < params_.reading_s - 0.5 * dt_s) continue;
+    if (mean_s < kPivotReading_s - 0.5 * dt_s) continue;
     since_s += mean_s;
     series[0].add(mean_s, turned / mean_s, gained / mean_s);
-    if (since_s > 0.5 * params_.segment_s) series[1].add(mean_s, turned / mean_s, gained / mean_s);
+    if (since_s > 0.5 * kSegment_s) series[1].add(mean_s, turned / mean_s, gained / mean_s);
     mean_s = 0.0;
     turned.setZero(), gained.setZero();
   }
   for (Segments& segments : series) segments.close();
 
-  Found found;
+  PivotCheck found;
   for (std::size_t k = 1; k < kCompared; ++k) {
     const double evidence = series[0].evidence[k] + series[1].evidence[k];
     if (found.reading != 0 && evidence <= found.evidence) continue;
@@ -195,22 +202,20 @@ PivotCheck::Found PivotCheck::find(std::span<const ImuSample> samples, std::span
 }
 
 /// Returns an error if the evidence for a wrong gyro scale or axis exceeds its limits: imu_merge.md (I29), (I30).
-Status PivotCheck::verdict(const Found& found) const {
-  const double least =
-      std::max(params_.evidence_min, params_.mean_evidence_min * static_cast<double>(found.compared_segments));
-  const auto better = static_cast<double>(found.better_segments), worse = static_cast<double>(found.worse_segments);
-  if (found.evidence > least && better >= params_.better_segments_min &&
-      better >= params_.better_worse_ratio_min * worse) {
-    return {ErrorCode::out_of_range, "evidence for other axes, signs or scale of the gyro, from rotation about a pivot",
-            found.evidence, least};
+Status PivotCheck::verdict() const {
+  const double least = std::max(kEvidenceMin, kMeanEvidenceMin * static_cast<double>(compared_segments));
+  const auto better = static_cast<double>(better_segments), worse = static_cast<double>(worse_segments);
+  if (evidence > least && better >= kBetterSegmentsMin && better >= kBetterWorseRatioMin * worse) {
+    return {ErrorCode::out_of_range, "evidence from rotation about a pivot for other axes, signs or scale of the gyro",
+            evidence, least};
   }
-  const double off = std::abs(found.scale - 1.0);
-  const double bound = std::max(params_.scale_error_min, params_.scale_error_min_sigmas * found.scale_sigma);
-  const double better_segments_min = std::max(
-      params_.scale_segments_min, params_.scale_segment_fraction_min * static_cast<double>(found.explained_segments));
-  if (static_cast<double>(found.scale_segments) >= better_segments_min && off > bound) {
-    return {ErrorCode::out_of_range, "scale of the gyro estimated from rotation about a pivot", found.scale,
-            found.scale < 1.0 ? 1.0 - bound : 1.0 + bound};
+  const double off = std::abs(scale - 1.0);
+  const double bound = std::max(kScaleErrorMin, kScaleErrorMinSigmas * scale_sigma);
+  const double better_segments_min =
+      std::max(kScaleSegmentsMin, kScaleSegmentFractionMin * static_cast<double>(explained_segments));
+  if (static_cast<double>(scale_segments) >= better_segments_min && off > bound) {
+    return {ErrorCode::out_of_range, "scale of the gyro estimated from rotation about a pivot", scale,
+            scale < 1.0 ? 1.0 - bound : 1.0 + bound};
   }
   return {};
 }

@@ -78,11 +78,6 @@ RegimeStream::State RegimeStream::start() const {
   return state;
 }
 
-Status RegimeStream::check_state(const State& state) const {
-  if (const Status status = rate_.check_state(state.rate); !status.ok()) return status;
-  return hand_held_.check_state(state.hand_held);
-}
-
 Status RegimeStream::push(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus, State& state,
                           std::optional<RateState>& out) const {
   if (const Status status = rate_.push(sample, auxiliary_imus, state.rate, out); !status.ok()) return status;

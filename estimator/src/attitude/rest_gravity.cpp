@@ -12,53 +12,53 @@ namespace tumble {
 
 namespace {
 
-constexpr double kRested_s = 1.0;        // total duration of rest that the check of gravity's magnitude needs
+// The limits of the rest detector accept any unit of the force and any plausible gyro bias.
+constexpr RestDetector::Params kRests{.rate_max_rad_s = 0.15, .force_min_m_s2 = 0.3};
+constexpr double kMagnitudeErrorMax = 0.15;  // covers 80 mg of bias and 3 % of scale
+// The tolerance of the angle covers bias and pushes at rest. Above its maximum, chance alone would pass.
+constexpr double kAngleMax_sigmas = 5.0, kAngleToleranceMin_rad = 0.3, kAngleToleranceMax_rad = 0.6;
+constexpr double kCorrelation_s = 0.1;        // minimum correlation time of a rate's error
+constexpr double kSpanRotationMin_rad = 1.0;  // less rotation between two rests hides most faults
+constexpr double kSpanMax_s = 60.0;           // the bias of a gyro drifts, so longer spans are not compared
+constexpr double kRestGapMax_s = 0.1;         // an unmeasured impact may hide in a longer gap
+constexpr double kRested_s = 1.0;             // total duration of rest that the check of gravity's magnitude needs
 constexpr double kWrongUnitRatio = 3.0;  // minimum factor for naming a wrong unit; no scale error or bias reaches it
 
 /// Returns parameters of the rest detector that accept any specific force, even far from gravity.
-RestDetector::Params without_force_limits(RestDetector::Params rests) {
+RestDetector::Params without_force_limits() {
+  RestDetector::Params rests = kRests;
   rests.force_max_m_s2 = rests.force_min_m_s2;
   rests.force_min_m_s2 = 0.0;
   return rests;
 }
 
-/// Returns parameters of the rest detector for forces in mg, cm/s^2 or counts, whose numbers (also of the noise) are
-/// larger than in m/s^2. Readings far above gravity at rest prove a wrong unit, because no robot stands still at ten
-/// times gravity.
-RestDetector::Params scaled_to_larger_units(RestDetector::Params rests) {
-  constexpr double kLarger = 100.0;
-  rests.force_min_m_s2 = kLarger;
-  rests.force_max_m_s2 = 1e6;
-  rests.force_spread_m_s2 = std::min(kLarger * rests.force_spread_m_s2, 1e6);
-  return rests;
+/// Returns the largest accepted angle error between two rests, if the rates have the standard deviation `sigma_rad`:
+/// imu_merge.md (I24).
+double allowed_rad(double sigma_rad) {
+  return std::min(kAngleToleranceMax_rad, std::max(kAngleToleranceMin_rad, kAngleMax_sigmas * sigma_rad));
 }
 
 }  // namespace
 
 RestGravity::RestGravity(const Params& params)
-    : params_(params),
-      detector_(params.rests),
-      weightless_(without_force_limits(params.rests)),
-      above_gravity_(scaled_to_larger_units(params.rests)) {
+    : params_(params), detector_(kRests), weightless_(without_force_limits()) {
   require_valid_fields(params);
 }
 
 RestGravity::Step RestGravity::follow(const ImuSample& sample, MagnitudeState& state) const {
   if (!check_sample(sample).ok()) return {};
   double dt_s = 0.0;
-  const Status follows =
-      state.started ? elapsed(sample.time_ns, state.last_time_ns, params_.gap_max_s, dt_s) : Status{};
+  const Status follows = state.started ? elapsed(sample.time_ns, state.last_time_ns, kRestGapMax_s, dt_s) : Status{};
   if (follows.error_code == ErrorCode::time_order) return {};
   state.started = true;
   state.last_time_ns = sample.time_ns;
   if (!follows.ok()) {
-    state.rest = state.weightless = state.above_gravity = {};
+    state.rest = state.weightless = {};
     state.rests = false;
   }
   if (weightless_.observe(sample, state.weightless)) state.weightless_s += dt_s;
-  const bool above_gravity = above_gravity_.observe(sample, state.above_gravity);
   state.rests = detector_.observe(sample, state.rest);
-  if (state.rests || above_gravity) {
+  if (state.rests) {
     state.rest_s += dt_s;
     state.force_sum_m += dt_s * sample.specific_force_m_s2.norm();
   }
@@ -78,7 +78,7 @@ void RestGravity::step(const ImuSample& sample, const RateState& rate, State& st
       state.segment_rad2_s += dt_s * rate.covariance_rad2_s2.trace();
     } else {
       end_segment(state);
-      state.variance_rad2 += dt_s * params_.correlation_s * rate.covariance_rad2_s2.trace();
+      state.variance_rad2 += dt_s * kCorrelation_s * rate.covariance_rad2_s2.trace();
     }
     return;
   }
@@ -107,49 +107,29 @@ void RestGravity::integrate_rotation(const ImuSample& sample, const RateState& r
 /// Ends a clipped segment of readings, and adds its variance. Errors within one clipped segment are correlated:
 /// imu_merge.md (I23).
 void RestGravity::end_segment(State& state) const {
-  state.variance_rad2 += std::max(params_.correlation_s, state.segment_s) * state.segment_rad2_s;
+  state.variance_rad2 += std::max(kCorrelation_s, state.segment_s) * state.segment_rad2_s;
   state.segment_s = state.segment_rad2_s = 0.0;
 }
 
-/// Compares, at the start of a rest, the rotation of gravity since the previous rest with the rotation from the rates:
-/// imu_merge.md (I23).
+/// Compares the specific force integrated between two rests with gravity, as measured at both rests: imu_merge.md
+/// (I25), (I26).
 void RestGravity::finish_span(State& state) const {
   end_segment(state);
-  if (state.last_rest_force_m_s2.isZero(0.0) || state.span_angle_rad < params_.rotation_min_rad ||
-      state.span_s > params_.rest_interval_max_s)
+  if (state.last_rest_force_m_s2.isZero(0.0) || state.span_angle_rad < kSpanRotationMin_rad ||
+      state.span_s > kSpanMax_s)
     return;
-  const Eigen::Vector3d current_force_m_s2 = state.rest.mean_force_m_s2();
-  const double angle_error_rad =
-      (state.rotation.conjugate() * state.last_rest_force_m_s2.normalized() - current_force_m_s2.normalized()).norm();
-  const double sigma_rad = std::sqrt(state.variance_rad2);
   ++state.spans;
-  check_velocity(current_force_m_s2, sigma_rad, state);
-  if (angle_error_rad / allowed_rad(sigma_rad) < state.angle_error_rad / allowed_rad(state.angle_error_sigma_rad))
-    return;
-  state.angle_error_rad = angle_error_rad;
-  state.angle_error_sigma_rad = sigma_rad;
-}
-
-/// Compares the specific force integrated between two rests with gravity, as measured at the current rest: imu_merge.md
-/// (I25), (I26).
-void RestGravity::check_velocity(const Eigen::Vector3d& current_force_m_s2, double sigma_rad, State& state) const {
+  const Eigen::Vector3d current_force_m_s2 = state.rest.mean_force_m_s2();
   const Eigen::Vector3d mean_m_s2 = state.velocity_sum_m_s / state.span_s;
   const double from_start = (mean_m_s2 - state.last_rest_force_m_s2).norm() / state.last_rest_force_m_s2.norm();
   const double from_end =
       (state.rotation.conjugate() * mean_m_s2 - current_force_m_s2).norm() / current_force_m_s2.norm();
   const double share = from_start + from_end;
   const double hidden = 2.0 * state.saturation_deficit_m_s / (state.span_s * state.last_rest_force_m_s2.norm());
-  const double allowed = std::hypot(allowed_rad(sigma_rad), hidden);
+  const double allowed = std::hypot(allowed_rad(std::sqrt(state.variance_rad2)), hidden);
   if (share * state.velocity_error_ratio_max < state.velocity_error_ratio * allowed) return;
   state.velocity_error_ratio = share;
   state.velocity_error_ratio_max = allowed;
-}
-
-/// Returns the largest accepted angle error between two rests, if the rates have the standard deviation `sigma_rad`:
-/// imu_merge.md (I24).
-double RestGravity::allowed_rad(double sigma_rad) const {
-  return std::min(params_.angle_tolerance_max_rad,
-                  std::max(params_.angle_tolerance_min_rad, params_.angle_error_max_sigmas * sigma_rad));
 }
 
 double RestGravity::magnitude_error_ratio(const MagnitudeState& state) const {
@@ -166,24 +146,18 @@ void RestGravity::limit_memory(MagnitudeState& state) {
 
 Status RestGravity::magnitude_verdict(const MagnitudeState& state) const {
   const double size = magnitude_error_ratio(state);
-  if (std::abs(size - 1.0) > params_.magnitude_error_max) {
+  if (std::abs(size - 1.0) > kMagnitudeErrorMax) {
     const bool unit = size > 0.0 && (size < 1.0 / kWrongUnitRatio || size > kWrongUnitRatio);
     return {ErrorCode::out_of_range,
             unit ? "accelerometer unit: specific force at rest (share of gravity)"
                  : "specific force at rest (share of gravity)",
-            size, 1.0 + std::copysign(params_.magnitude_error_max, size - 1.0)};
+            size, 1.0 + std::copysign(kMagnitudeErrorMax, size - 1.0)};
   }
   return {};
 }
 
 Status RestGravity::verdict(const State& state) const {
   if (const Status size = magnitude_verdict(state); !size.ok()) return size;
-  const double allowed = allowed_rad(state.angle_error_sigma_rad);
-  if (state.angle_error_rad > allowed) {
-    return {ErrorCode::out_of_range,
-            "error in rad of gravity's direction after gyro integration from one rest to the next",
-            state.angle_error_rad, allowed};
-  }
   if (state.velocity_error_ratio > state.velocity_error_ratio_max) {
     return {ErrorCode::out_of_range,
             "velocity error after integration from one rest to the next (share of gravity times elapsed time)",

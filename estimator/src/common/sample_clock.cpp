@@ -188,19 +188,6 @@ void SampleClock::update_line(double step_ns, TimeNs stamp_ns, State& state) con
   state.period_ns -= state.weighted_number_sum / determinant * limited_ns;
 }
 
-Status SampleClock::check_state(const State& state) {
-  if (!state.stamp_ns) return {};
-  const auto [early_ns, late_ns] = std::minmax(state.time_ns, *state.stamp_ns);
-  if (!(after_ns(late_ns, early_ns) <= state.period_ns + 1.0))
-    return {ErrorCode::out_of_range, "stamps.time_ns", double(state.time_ns), double(*state.stamp_ns)};
-  if (!state.line_fitted) return {};
-  if (!(state.period_ns > 0.0)) return {ErrorCode::out_of_range, "stamps.period_ns", state.period_ns, 0.0};
-  const double determinant =
-      state.sum * state.weighted_number_squared_sum - state.weighted_number_sum * state.weighted_number_sum;
-  if (!(determinant > 0.0)) return {ErrorCode::out_of_range, "stamps.sum_nn", determinant, 0.0};
-  return {};
-}
-
 Status correct_stamps(const SampleClock& clock, std::span<TimeNs> stamps_ns, double& corrected_jitter_s) {
   corrected_jitter_s = 0.0;
   SampleClock::State state;

@@ -29,18 +29,17 @@ constexpr std::array kMeanings = {
     Meaning{"unit_disagrees", false, "the IMU disagrees with the other IMUs, and its readings are left out"},
     Meaning{"rate_unit", false, "the gyro's readings seem to be in another unit than rad/s; check the unit"},
     Meaning{"force_unit", false, "the accelerometer's readings seem to be in another unit than m/s^2; check the unit"},
-    Meaning{"force_at_rest", true, "the accelerometer contradicts gravity; do not use the estimate"},
+    Meaning{
+        "force_at_rest", true,
+        "the force at rest differs from gravity, probably because of a wrong unit or scale of the accelerometer; do "
+        "not use the estimate"},
     Meaning{"axes_or_signs", true, "axes of the IMU seem to be exchanged or inverted; do not use the estimate"},
     Meaning{
         "flight_forces", true,
-        "the specific force in free flight contradicts the rotation; axes may be inverted or exchanged, or the gyro "
-        "may have a wrong scale; do not use the estimate"},
+        "the specific force in free flight contradicts the rotation; axes of the accelerometer seem to be inverted; do "
+        "not use the estimate"},
     Meaning{"rotation", true, "the gyro contradicts the rotation of the body; do not use the estimate"},
     Meaning{"gyro_scale", true, "the forces of the IMUs contradict the gyros; do not use the estimate"},
-    Meaning{"beyond_range", false, "readings beyond the range of the device are left out"},
-    Meaning{"rounded_stamps", false,
-            "the time stamps are rounded more coarsely than the IMU's period; import the recording again to smooth the "
-            "time stamps"},
     Meaning{"lidar_scale", true, "the scale of the lidar's ranges contradicts the motion measured by the IMU"},
     Meaning{"lidar_calibration", true, "the stated mounting or clock of the lidar seems to be wrong"},
     Meaning{"rig_calibration", false,
@@ -63,13 +62,6 @@ std::string six_digits(double value) {
   std::array<char, 32> text{};
   const auto end = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, 6);
   return std::string(text.data(), end.ptr);
-}
-
-/// Returns how far the value of a finding is beyond its bound, see HealthFinding::confidence.
-double margin(const Status& status, double normal) {
-  const double value = std::abs(status.value - normal), bound = std::abs(status.bound - normal);
-  const double larger = std::max(value, bound);
-  return larger > 0.0 && std::isfinite(larger) ? 1.0 - std::min(value, bound) / larger : 1.0;
 }
 
 }  // namespace
@@ -103,10 +95,9 @@ bool SensorHealth::invalidates_estimate() const {
 }
 
 void SensorHealth::add(Kind kind, const Status& status, std::string sensor, const char* axis,
-                       std::optional<TimeNs> since_ns, double normal) {
+                       std::optional<TimeNs> since_ns) {
   if (status.ok()) return;
-  add(HealthFinding{kind, std::move(sensor), axis, status.field, status.value, status.bound, margin(status, normal),
-                    since_ns});
+  add(HealthFinding{kind, std::move(sensor), axis, status.field, status.value, status.bound, since_ns});
 }
 
 void SensorHealth::add(HealthFinding finding) {

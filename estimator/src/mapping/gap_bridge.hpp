@@ -19,8 +19,6 @@ struct WindowRate {
   TimeNs from_ns, time_ns;
 
   TimeNs middle_ns() const { return from_ns + (time_ns - from_ns) / 2; }
-  template <class Self, class Visitor>
-  static void members(Self& s, Visitor& visit);
 };
 
 /// Appends samples that fill the gap from the end of `before` to the start of `after`, see mapping.md (R44). The

@@ -47,9 +47,6 @@ class InertialTrack {
   /// Deletes the samples that ended by `end_ns`, the end of a sweep.
   void prune_until(TimeNs end_ns);
 
-  template <class Self, class Visitor>
-  static void members(Self& s, Visitor& visit);
-
  private:
   /// InitialRest is the rest at the start of a recording. InitialRest ends with the first motion; its results remain.
   struct InitialRest {
@@ -57,8 +54,6 @@ class InertialTrack {
     std::optional<TimeNs> first_ns;  ///< first sample of the recording
     std::optional<TimeNs> run_ns;    ///< first sample of the current rest
     Eigen::Vector3d gyro_bias_rad_s = Eigen::Vector3d::Zero();
-    template <class Self, class Visitor>
-    static void members(Self& s, Visitor& visit);
   };
 
   void update_rest(const Params& params, const ImuSample& sample, const RateState& rate, MotionSample& next);

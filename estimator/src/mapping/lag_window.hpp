@@ -56,9 +56,6 @@ class LagWindow {
   std::size_t length() const { return length_; }
   const std::deque<WindowSweep>& sweeps() const { return sweeps_; }
 
-  template <class Self, class Visitor>
-  static void members(Self& s, Visitor& visit);
-
  private:
   std::size_t length_ = 1;
   std::deque<WindowSweep> sweeps_;

@@ -136,13 +136,6 @@ void LocalMap::remove_sweeps_since(std::uint32_t first_sweep) {
   seen_from_W_m_.resize(first_sweep);
 }
 
-bool LocalMap::has_sweep_origins() const {
-  for (std::uint32_t index = 0; index < map_.index_end(); ++index) {
-    if (map_.exists(index) && map_.sweep(index) >= seen_from_W_m_.size()) return false;
-  }
-  return true;
-}
-
 std::vector<MapPoint> LocalMap::to_map_points(const Params& params) const {
   return mapping::to_map_points(map_, seen_from_W_m_, params.expert.matching.neighbours,
                                 params.expert.matching.distance_m);

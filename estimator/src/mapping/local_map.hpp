@@ -67,11 +67,6 @@ class LocalMap {
   std::size_t bytes() const { return map_.bytes() + seen_from_W_m_.capacity() * sizeof(Eigen::Vector3f); }
   std::vector<MapPoint> to_map_points(const Params& params) const;
 
-  /// Returns whether each point of a loaded map has a valid sweep number.
-  bool has_sweep_origins() const;
-  template <class Self, class Visitor>
-  static void members(Self& s, Visitor& visit);
-
  private:
   /// Counts for each map point how many sweeps saw through it.
   void check_free_space(const FreeSpaceGrid& sight);

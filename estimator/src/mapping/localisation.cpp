@@ -5,14 +5,17 @@
 #include <cmath>
 
 #include "tumble/common/imu.hpp"
-#include "unknowns.hpp"
 
 namespace tumble {
 
 namespace {
 
+// 1.4e-4 is the probability of a larger chi-square value with nine degrees of freedom. Two of 1000 sweeps with correct
+// covariances exceed the value with a probability of 1 %.
+constexpr double kContradictionChi2Min = 32.9;
+
 double innovation_max() {
-  return std::sqrt(mapping::unknowns::kAgreementChi2Max / SweepUnknowns::kMotionSize);
+  return std::sqrt(kContradictionChi2Min / SweepUnknowns::kMotionSize);
 }
 
 }  // namespace

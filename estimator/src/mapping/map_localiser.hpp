@@ -30,9 +30,6 @@ class MapLocaliser {
   /// Returns `ok` if there is no prior map or if the run is localised in the prior map; otherwise `degenerate`.
   Status status() const;
 
-  template <class Self, class Visitor>
-  static void members(Self& s, Visitor& visit);
-
  private:
   void propose(const std::vector<SurfacePoint>& points, const Eigen::Vector3d& p_WI_m);
   bool passes(const FramePose& pose) const;

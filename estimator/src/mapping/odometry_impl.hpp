@@ -96,13 +96,6 @@ struct LidarInertialOdometry::Impl {
   std::vector<PoseState> poses_along(const SweepTrajectory& motion, TimeNs end_ns,
                                      const Registration::Matrix& errors) const;
   std::vector<PoseState> poses_of(const mapping::WindowSweep& sweep) const;
-
-  template <class Self, class Visitor>
-  static void members(Self& s, Visitor& visit);
-  /// Checks that the members of a loaded state are consistent with each other. Returns the first violated condition.
-  Status check_state() const;
-  Status check_other() const;
-
   Params params;
   std::optional<Eigen::Isometry3d> start_pose;  // position and heading of the IMU where the map starts
   std::optional<StartTilt> start_tilt;

@@ -20,16 +20,16 @@ Status LidarInertialOdometry::use_map(PriorMap map) {
 void LidarInertialOdometry::use_map_of(const LidarInertialOdometry& other) {
   impl_->localiser = other.impl_->localiser;
   impl_->localiser.restart(impl_->start_pose);
-  if (!impl_->start_pose && has_prior_map() && impl_->localiser.map().T_MI)
-    set_start_pose(*impl_->localiser.map().T_MI);
+  const PriorMap* const map = prior_map();
+  if (!impl_->start_pose && map != nullptr && map->T_MI) set_start_pose(*map->T_MI);
 }
 
 Status LidarInertialOdometry::localised() const {
   return impl_->localiser.status();
 }
 
-bool LidarInertialOdometry::has_prior_map() const {
-  return impl_->localiser.has_map();
+const PriorMap* LidarInertialOdometry::prior_map() const {
+  return impl_->localiser.has_map() ? &impl_->localiser.map() : nullptr;
 }
 
 /// After a tracking failure, and during an unconfirmed relocalisation, the local map may be wrong and is not compared

@@ -45,14 +45,6 @@ void SpatialHash::clear() {
   size_ = 0;
 }
 
-std::vector<std::uint64_t> SpatialHash::keys() const {
-  std::vector<std::uint64_t> out;
-  out.reserve(size_);
-  std::copy_if(keys_.begin(), keys_.end(), std::back_inserter(out), [](std::uint64_t key) { return key != kFree; });
-  std::sort(out.begin(), out.end());
-  return out;
-}
-
 void SpatialHash::grow() {
   SpatialHash larger(keys_.size());
   for (std::size_t slot = 0; slot < keys_.size(); ++slot) {

@@ -21,6 +21,7 @@ constexpr double kLeast = 0.02, kScaleDeviations = 5.0;
 constexpr double kSpan_s = 0.4;
 constexpr double kChange_m_s = 0.5;  // minimum change of velocity; noise dominates smaller changes
 constexpr std::size_t kChangesMin = 5, kChangesMax = 1000;
+constexpr int kDisjointMin = 4;       // minimum number of changes without a common sweep; fewer do not determine sigma
 constexpr std::size_t kSpanMax = 64;  // maximum number of buffered sweeps
 constexpr int kIterations = 10;
 constexpr double kBias_m_s2 = 0.05;  // constant error of the acceleration, from accelerometer bias and tilt
@@ -108,29 +109,65 @@ std::optional<Change> change_until(std::size_t last, std::size_t span, const Swe
                     (middle.p_WA_m - from.p_WA_m) / seconds(middle.time_ns - from.time_ns)};
 }
 
+/// Returns the number of changes that share no sweep with each other.
+template <class Changes>
+int disjoint_changes(const Changes& changes) {
+  int count = 0;
+  std::optional<TimeNs> last_ns;
+  for (const Change& change : changes) {
+    if (last_ns && seconds(change.time_ns - *last_ns) < 2.0 * kSpan_s) continue;
+    last_ns = change.time_ns;
+    ++count;
+  }
+  return count;
+}
+
+/// Returns the variance of Σ w D·e. The residuals e of changes that share sweeps are correlated. The weights of the
+/// pairs are those of Newey and West, 1987, with equal variances of the three axes.
+template <class Changes>
+double score_variance(const Changes& changes, const std::vector<Eigen::Vector3d>& weighted) {
+  double variance = 0.0;
+  for (std::size_t k = 0; k < changes.size(); ++k) {
+    for (std::size_t l = k + 1; l-- > 0;) {
+      const double pair = 1.0 - seconds(changes[k].time_ns - changes[l].time_ns) / (2.0 * kSpan_s);
+      if (pair <= 0.0) break;
+      const double product =
+          weighted[k].dot(weighted[l]) * changes[k].imu_change_m_s.dot(changes[l].imu_change_m_s) / 3.0;
+      variance += (k == l ? 1.0 : 2.0) * pair * product;
+    }
+  }
+  return variance;
+}
+
 template <class Changes>
 SweepScale fit(const Changes& changes) {
   SweepScale out;
   out.changes = changes.size();
-  if (changes.size() < kChangesMin) return out;
-  std::vector<double> off(changes.size());
+  const int disjoint = disjoint_changes(changes);
+  if (changes.size() < kChangesMin || disjoint < kDisjointMin) return out;
+  std::vector<Eigen::Vector3d> residuals(changes.size());
+  std::vector<double> sizes(changes.size());
   for (int i = 0; i < kIterations; ++i) {
-    std::transform(changes.begin(), changes.end(), off.begin(),
-                   [&](const Change& c) { return (c.sweeps_change_m_s - out.scale * c.imu_change_m_s).norm(); });
-    std::vector<double> sorted = off;
+    for (std::size_t k = 0; k < changes.size(); ++k) {
+      residuals[k] = changes[k].sweeps_change_m_s - out.scale * changes[k].imu_change_m_s;
+      sizes[k] = residuals[k].norm();
+    }
+    std::vector<double> sorted = sizes;
     std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
     const double deviation = std::max(1e-6, kPerMedian * sorted[sorted.size() / 2]);
-    double together = 0.0, squared = 0.0, residual = 0.0;
+    double together = 0.0, squared = 0.0;
     Eigen::Vector3d by_bias = Eigen::Vector3d::Zero();
     for (std::size_t k = 0; k < changes.size(); ++k) {
-      const double weight = std::min(1.0, kHuber * deviation / std::max(off[k], 1e-12));
+      const double weight = std::min(1.0, kHuber * deviation / std::max(sizes[k], 1e-12));
       together += weight * changes[k].imu_change_m_s.dot(changes[k].sweeps_change_m_s);
       squared += weight * changes[k].imu_change_m_s.squaredNorm();
       by_bias += weight * kSpan_s * changes[k].imu_change_m_s;
-      residual += weight * weight * off[k] * off[k] * changes[k].imu_change_m_s.squaredNorm() / 3.0;
+      residuals[k] *= weight;
     }
     out.scale = together / squared;
-    // heteroscedasticity-consistent: White, 1980
+    if (i + 1 < kIterations) continue;
+    // the factor of `disjoint` is the correction for the estimated scale
+    const double residual = score_variance(changes, residuals) * disjoint / (disjoint - 1.0);
     out.sigma = std::sqrt(residual + kBias_m_s2 * kBias_m_s2 * by_bias.squaredNorm()) / squared;
   }
   return out;

@@ -42,9 +42,6 @@ class WorldCovariance {
   /// Returns the standard deviation of the map's vertical.
   double tilt_sigma_rad() const { return params_.tilt_sigma_rad; }
 
-  template <class Self, class Visitor>
-  static void members(Self& s, Visitor& visit);
-
  private:
   Pose start_mounting_jacobian(const Eigen::Vector3d& p_WI_m) const;
 

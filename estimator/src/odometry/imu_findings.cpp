@@ -6,7 +6,8 @@
 #include <cstddef>
 
 #include "tumble/angular_velocity/detail/flight_sign_check.hpp"
-#include "tumble/angular_velocity/rate_model_params.hpp"
+#include "tumble/attitude/detail/pivot_check.hpp"
+#include "tumble/attitude/detail/rest_gravity.hpp"
 #include "tumble/attitude/imu_merge.hpp"
 #include "tumble/odometry/imu_sheet.hpp"
 
@@ -23,13 +24,6 @@ constexpr double kSlopeTolerance = 0.02, kSlopeAgreementMin = 0.99;
 // with wrong axes.
 constexpr double kRepeatedFraction = 0.8;
 
-double largest_rate_rad_s(std::span<const ImuSample> samples) {
-  double largest = 0.0;
-  for (const ImuSample& sample : samples)
-    largest = std::max(largest, sample.angular_velocity_rad_s.cwiseAbs().maxCoeff());
-  return largest;
-}
-
 double rate_max_so_far_rad_s(std::span<const ImuSample> samples) {
   double fastest = 0.0;
   for (const ImuSample& sample : samples) fastest = std::max(fastest, sample.angular_velocity_rad_s.norm());
@@ -37,35 +31,47 @@ double rate_max_so_far_rad_s(std::span<const ImuSample> samples) {
 }
 
 RestGravity rest_gravity(const CheckedImu& imu) {
-  RestGravity::Params params;
-  params.gravity_m_s2 = imu.gravity_m_s2;
-  params.accel_range_m_s2 = imu.accel_range_m_s2;
-  return RestGravity(params);
+  return RestGravity({.gravity_m_s2 = imu.gravity_m_s2, .accel_range_m_s2 = imu.accel_range_m_s2});
 }
 
-/// Returns an error if the specific forces seem to be in g instead of m/s^2 (RateReport::force_unit_suspect).
-Status force_unit(std::span<const ImuSample> samples) {
-  constexpr double kLeast_m_s2 = 0.5, kMost_m_s2 = 2.0;
-  std::vector<double> forces;
-  for (const ImuSample& sample : samples) forces.push_back(sample.specific_force_m_s2.norm());
-  if (forces.empty()) return {};
-  const auto middle = forces.begin() + static_cast<std::ptrdiff_t>(forces.size() / 2);
-  std::nth_element(forces.begin(), middle, forces.end());
-  if (!(*middle > kLeast_m_s2 && *middle < kMost_m_s2)) return {};
-  return {ErrorCode::out_of_range, "median of the specific force in m/s^2", *middle, kMost_m_s2};
+/// Adds the findings of check_readings() to `health`, and returns whether the rotation of gravity confirms the gyro.
+bool check_readings(const CheckedImu& imu, std::span<const ImuSample> samples, SensorHealth& health) {
+  const RestGravity gravity = rest_gravity(imu);
+  RestGravity::MagnitudeState at_rest;
+  const ImuPlausibility plausibility(plausibility_params(imu.gravity_m_s2, imu.merged ? 0.0 : imu.gyro_range_rad_s));
+  ImuPlausibility::State state;
+  for (const ImuSample& sample : samples) {
+    gravity.step(sample, at_rest);
+    plausibility.step(sample, state);
+  }
+  add_findings(plausibility, state, kImu, health);
+  health.add(Kind::force_at_rest, gravity.magnitude_verdict(at_rest), kImu);
+  const PivotCheck pivots =
+      PivotCheck::of(samples, imu.gravity_m_s2, imu.merged ? 0.0 : imu.gyro_range_rad_s, imu.accel_range_m_s2);
+  health.add(Kind::rotation, pivots.verdict(), kImu);
+  return confirms_gyro(plausibility, state);
 }
 
-/// Returns the kind of the finding that ImuPlausibility::verdict() reports.
-Kind kind_of(const ImuPlausibility& plausibility, const ImuPlausibility::State& state, const Status& verdict) {
-  if (verdict.value == plausibility.force_ratio(state)) return Kind::force_at_rest;
-  if (plausibility.frozen_s(state) > 0.0) return Kind::frozen_sensor;
-  return plausibility.better_axis_labels(state) ? Kind::axes_or_signs : Kind::rotation;
+/// Checks the forces in flights.
+void check_flights(const CheckedImu& imu, std::span<const ImuSample> samples, std::optional<double> carried_share,
+                   SensorHealth& health) {
+  const bool thrown = carried_share && *carried_share < kRepeatedFraction;
+  const FlightSignCheck sense({.body = thrown ? FlightSignCheck::Body::thrown : FlightSignCheck::Body::may_be_hand_held,
+                               .lever_arm_m = imu.lever_arm_I_m,
+                               .gyro_range_rad_s = imu.gyro_range_rad_s});
+  FlightSignCheck::State state;
+  for (const ImuSample& sample : samples) sense.step(sample, state);
+  health.add(Kind::flight_forces, sense.verdict(state), kImu);
 }
 
-/// Returns an error if the rates seem to be in degrees per second instead of rad/s (RateReport::rate_unit_suspect).
-Status rate_unit(std::span<const ImuSample> samples) {
-  const double largest = largest_rate_rad_s(samples), most = RateModelParams{}.rate_max_rad_s;
-  return largest > most ? Status{ErrorCode::out_of_range, "angular_velocity_rad_s", largest, most} : Status{};
+/// Checks that `rates`, one per sample, rotate gravity correctly from each rest to the next rest.
+void check_rests(const CheckedImu& imu, std::span<const ImuSample> samples, std::span<const RateState> rates,
+                 SensorHealth& health) {
+  const RestGravity gravity = rest_gravity(imu);
+  RestGravity::State state;
+  for (std::size_t k = 0; k < std::min(samples.size(), rates.size()); ++k) gravity.step(samples[k], rates[k], state);
+  health.add(gravity.magnitude_verdict(state).ok() ? Kind::rotation : Kind::force_at_rest, gravity.verdict(state),
+             kImu);
 }
 
 }  // namespace
@@ -79,9 +85,8 @@ ImuPlausibility::Params plausibility_params(double gravity_m_s2, double gyro_ran
 
 void add_findings(const ImuPlausibility& plausibility, const ImuPlausibility::State& state, const std::string& sensor,
                   SensorHealth& health) {
-  const Status verdict = plausibility.verdict(state);
-  const Kind kind = kind_of(plausibility, state, verdict);
-  health.add(kind, verdict, sensor, "", {}, kind == Kind::force_at_rest ? 1.0 : 0.0);
+  health.add(plausibility.frozen_s(state) > 0.0 ? Kind::frozen_sensor : Kind::rotation, plausibility.verdict(state),
+             sensor);
 }
 
 bool confirms_gyro(const ImuPlausibility& plausibility, const ImuPlausibility::State& state) {
@@ -89,97 +94,32 @@ bool confirms_gyro(const ImuPlausibility& plausibility, const ImuPlausibility::S
          plausibility.rotation_agreement(state) > kSlopeAgreementMin;
 }
 
-void ImuFindings::add(const ImuFindings& other) {
-  health.add(other.health);
-  frozen_axes.insert(frozen_axes.end(), other.frozen_axes.begin(), other.frozen_axes.end());
-  if (other.readings) readings = other.readings;
-  if (other.rests) rests = other.rests;
-  if (other.pivots) pivots = other.pivots;
-}
-
-ImuFindings check_readings(const CheckedImu& imu, std::span<const ImuSample> samples) {
-  const RestGravity gravity = rest_gravity(imu);
-  RestGravity::State at_rest;
-  const ImuPlausibility plausibility(plausibility_params(imu.gravity_m_s2, imu.merged ? 0.0 : imu.gyro_range_rad_s));
-  ImuPlausibility::State state;
-  for (const ImuSample& sample : samples) {
-    gravity.step(sample, {}, at_rest);
-    plausibility.step(sample, state);
-  }
-  ImuFindings out;
-  out.readings = {gravity.magnitude_error_ratio(at_rest),         plausibility.force_ratio(state),
-                  plausibility.unexplained_rotation_ratio(state), plausibility.rotation_slope(state),
-                  plausibility.rotation_agreement(state),         plausibility.frozen_s(state),
-                  plausibility.better_axis_labels(state),         confirms_gyro(plausibility, state)};
-  out.health.add(Kind::rate_unit, rate_unit(samples), kImu);
-  out.health.add(Kind::force_unit, force_unit(samples), kImu);
-  add_findings(plausibility, state, kImu, out.health);
-  out.health.add(Kind::force_at_rest, gravity.magnitude_verdict(at_rest), kImu, "", {}, 1.0);
-  return out;
-}
-
-ImuFindings check_flights(const CheckedImu& imu, std::span<const ImuSample> samples,
-                          std::optional<double> carried_share) {
-  FlightSignCheck::Params params;
-  params.lever_arm_m = imu.lever_arm_I_m;
-  params.gyro_range_rad_s = imu.gyro_range_rad_s;
-  const bool thrown = carried_share && *carried_share < kRepeatedFraction;
-  params.body = thrown ? FlightSignCheck::Body::thrown : FlightSignCheck::Body::may_be_hand_held;
-  const FlightSignCheck sense(params);
-  FlightSignCheck::State state;
-  for (const ImuSample& sample : samples) sense.step(sample, state);
-  ImuFindings out;
-  out.health.add(Kind::flight_forces, sense.verdict(state), kImu);
-  return out;
-}
-
-ImuFindings check_rests(const CheckedImu& imu, std::span<const ImuSample> samples, std::span<const RateState> rates) {
-  const RestGravity gravity = rest_gravity(imu);
-  ImuFindings out;
-  RestGravity::State& state = out.rests.emplace();
-  for (std::size_t k = 0; k < std::min(samples.size(), rates.size()); ++k) gravity.step(samples[k], rates[k], state);
-  const Status magnitude = gravity.magnitude_verdict(state);
-  out.health.add(magnitude.ok() ? Kind::rotation : Kind::force_at_rest, gravity.verdict(state), kImu, "", {},
-                 magnitude.ok() ? 0.0 : 1.0);
-  return out;
-}
-
-ImuFindings check_pivots(const CheckedImu& imu, std::span<const ImuSample> samples, std::span<const RateState> rates) {
-  PivotCheck::Params params;
-  params.gravity_m_s2 = imu.gravity_m_s2;
-  params.accel_range_m_s2 = imu.accel_range_m_s2;
-  const PivotCheck pivots(params);
-  ImuFindings out;
-  out.pivots = pivots.find(samples, rates);
-  out.health.add(Kind::rotation, pivots.verdict(*out.pivots), kImu);
+SensorHealth check_readings(const CheckedImu& imu, std::span<const ImuSample> samples) {
+  SensorHealth out;
+  (void)check_readings(imu, samples, out);
   return out;
 }
 
 ImuFindings check_frozen(const CheckedImu& imu, std::span<const ImuSample> samples) {
-  FrozenAxes::Params params;
-  params.gyro_range_rad_s = imu.gyro_range_rad_s;
-  params.accel_range_m_s2 = imu.accel_range_m_s2;
-  ImuFindings out;
-  out.frozen_axes = find_frozen_axes(FrozenAxes(params), samples);
+  const FrozenAxes detector({.gyro_range_rad_s = imu.gyro_range_rad_s, .accel_range_m_s2 = imu.accel_range_m_s2});
+  ImuFindings out{{}, find_frozen_axes(detector, samples)};
   for (const FrozenAxis& axis : out.frozen_axes) add_finding(Kind::frozen_axis, kImu, axis, out.health);
   return out;
 }
 
-ImuFindings check_merged(const CheckedImu& imu, const MergedRecordings& merged) {
-  ImuFindings out;
-  out.health.add(merged.faults);
-  out.add(check_readings(imu, merged.samples));
-  ImuMerge::add_findings(merged.mislabelled_axes, merged.lever_arm_agreement, out.readings->gyro_confirmed, out.health);
+SensorHealth check_merged(const CheckedImu& imu, const MergedRecordings& merged) {
+  SensorHealth out = merged.faults;
+  const bool gyro_confirmed = check_readings(imu, merged.samples, out);
+  ImuMerge::add_findings(merged.mislabelled_axes, merged.lever_arm_agreement, gyro_confirmed, out);
   return out;
 }
 
 ImuFindings check_recording(const CheckedImu& imu, std::span<const ImuSample> samples, std::span<const RateState> rates,
                             std::optional<double> carried_share) {
-  ImuFindings out = check_flights(imu, samples, carried_share);
-  out.add(check_readings(imu, samples));
-  out.add(check_rests(imu, samples, rates));
-  out.add(check_pivots(imu, samples, rates));
-  out.add(check_frozen(imu, samples));
+  ImuFindings out = check_frozen(imu, samples);
+  check_flights(imu, samples, carried_share, out.health);
+  (void)check_readings(imu, samples, out.health);
+  check_rests(imu, samples, rates, out.health);
   return out;
 }
 

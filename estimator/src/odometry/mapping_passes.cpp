@@ -168,7 +168,7 @@ bool MappedRecording::calibration_is_off() const {
 
 void MappedRecording::add_findings(const SweepScale& scale, SensorHealth& health) const {
   using Kind = HealthFinding::Kind;
-  health.add(Kind::lidar_scale, scale.verdict(), "lidar", "", {}, 1.0);
+  health.add(Kind::lidar_scale, scale.verdict(), "lidar");
   health.add(Kind::vertical_unknown, mapper.check_vertical(), "");
   health.add(Kind::tracking_lost, localisation.verdict(), "");
   if (calibration_is_off()) health.add(Kind::lidar_calibration, verdict_on(calibration_deviations), "lidar");

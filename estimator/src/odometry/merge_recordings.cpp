@@ -165,7 +165,7 @@ Status run(const ImuMerge& merge, double gap_max_s, const Units& units, ImuMerge
       if (after_gap) delete_motion(state);
     }
     if (Status status = merge.step(now, state, merged); !status.ok()) return status;
-    if (Status status = merge.verdict(state); !status.ok()) return status;
+    if (Status status = ImuMerge::verdict(state); !status.ok()) return status;
     if (merged) out.push_back(*merged);
   }
   for (ImuSample& sample : out) sample.time_ns = time.in_recording(sample.time_ns);
@@ -243,18 +243,18 @@ void erase_unit(Units& units, std::size_t unit) {
   units.accel_elements.erase(units.accel_elements.begin() + at);
 }
 
-/// Excludes the IMUs that ImuMerge classified as faulty. Returns whether there is a faulty IMU.
-bool exclude_found(const ImuMerge& merge, const ImuMerge::State& state, Units& units, SensorHealth& faults) {
+/// Excludes the IMUs that ImuMerge classified as faulty. Returns whether ImuMerge found a faulty IMU.
+bool exclude_found(const ImuMerge::State& state, Units& units, SensorHealth& faults) {
   bool any = false;
   for (std::size_t k = units.index.size(); k-- > 0;) {
     const ImuMerge::Unit& unit = state.units[k];
     if (unit.frozen) {
       any = true;
       exclude(units.samples[k], unit.frozen_since_ns);
-      merge.add_finding(unit, name(units, k), faults);
+      ImuMerge::add_finding(unit, name(units, k), faults);
     } else if (unit.disagrees) {
       any = true;
-      merge.add_finding(unit, name(units, k), faults);
+      ImuMerge::add_finding(unit, name(units, k), faults);
       erase_unit(units, k);
     }
   }
@@ -291,7 +291,7 @@ Status merge_recordings(std::span<const UnitRecording> recordings, ImuMerge::Par
   auto state = std::make_unique<ImuMerge::State>();
   const ImuMerge first(params);
   if (Status status = run(first, params.gap_max_s, units, *state, out.samples); !status.ok()) return status;
-  const bool faulty = exclude_found(first, *state, units, out.faults);
+  const bool faulty = exclude_found(*state, units, out.faults);
   set_units(units, params);
   const ImuMerge merge(params);
   if (faulty) {

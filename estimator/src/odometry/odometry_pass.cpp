@@ -168,7 +168,7 @@ void OdometryPass::start_rate_estimation(const RegimeStream::Params& rate) {
 }
 
 void OdometryPass::adopt_map(OdometryPass&& other) {
-  if (mapper_.has_prior_map()) other.mapper_.use_map_of(mapper_);
+  if (mapper_.prior_map() != nullptr) other.mapper_.use_map_of(mapper_);
   mapper_ = std::move(other.mapper_);
   scale_ = std::move(other.scale_);
   localisation_ = other.localisation_;

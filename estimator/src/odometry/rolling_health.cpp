@@ -22,15 +22,15 @@ void add_forces_at_rest(const MergedChecks& checks, std::size_t count, SensorHea
   };
   bool all = true;
   for (std::size_t unit = 0; unit < count; ++unit) all = all && !verdict(unit).ok();
-  if (all) health.add(Kind::force_at_rest, verdict(0), "imu", "", {}, 1.0);
+  if (all) health.add(Kind::force_at_rest, verdict(0), "imu");
   for (std::size_t unit = 0; unit < count && !all; ++unit)
-    health.add(Kind::unit_disagrees, verdict(unit), unit_name(unit, count), "", {}, 1.0);
+    health.add(Kind::unit_disagrees, verdict(unit), unit_name(unit, count));
 }
 
 }  // namespace
 
 SensorHealth RollingOdometry::health() const {
-  if (is_whole()) return whole_ ? whole_->findings.health : SensorHealth{};
+  if (is_whole()) return whole_ ? whole_->health : SensorHealth{};
   SensorHealth out;
   add_frozen(frozen_, out);
   const std::size_t count = params_.units.size();
@@ -43,7 +43,7 @@ SensorHealth RollingOdometry::health() const {
     if (silent_s >= kUnitSilent_s)
       out.add(Kind::unit_silent, {ErrorCode::out_of_range, "time in s without readings", silent_s, kUnitSilent_s}, name,
               "", last_ns);
-    imu_merge_.add_finding(imu_merge_state_->units[unit], name, out);
+    ImuMerge::add_finding(imu_merge_state_->units[unit], name, out);
   }
   add_forces_at_rest(checks_, count, out);
   add_findings(checks_.plausibility, checks_.plausibility_state, "imu", out);

@@ -189,7 +189,7 @@ Status RollingOdometry::add_inliers(std::span<const ImuSample> samples) {
     return status;
   }
   if (Status status = imu_merge_.step(judged, *merge_state_buffer_, merged); !status.ok()) return status;
-  if (Status status = imu_merge_.verdict(*merge_state_buffer_); !status.ok()) return status;
+  if (Status status = ImuMerge::verdict(*merge_state_buffer_); !status.ok()) return status;
   if (merged) {
     if (Status status = process_accepted_sample(*merged); !status.ok()) return status;
   }
@@ -251,7 +251,8 @@ std::optional<RollingOdometry::Pose> RollingOdometry::take() {
 }
 
 RollingOdometry::Calibration RollingOdometry::calibration() const {
-  const RollingNominal& constants = live_ ? state_->live.nominal : state_->constants;
+  const bool newest = live_ || !state_->committed.started;
+  const RollingNominal& constants = newest ? state_->live.nominal : state_->constants;
   return {-constants.lever_arm_error_m, params_.radius_m + constants.radius_error_m, state_->radius_sigma_m};
 }
 
@@ -268,7 +269,7 @@ void RollingOdometry::end_run() {
   for (OutlierFilter::State& unit : outlier_filter_state_) OutlierFilter::finish(unit);
   delayed_samples_.reset();
   const std::size_t before = results_.size();
-  if (!live_) smoother_.finish(*state_, results_);
+  if (!live_ && !finished_) smoother_.finish(*state_, results_);
   for (std::size_t k = before; k < results_.size(); ++k) results_[k] = transform_to_world(results_[k]);
 }
 

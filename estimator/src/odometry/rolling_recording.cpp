@@ -42,10 +42,10 @@ Status RollingOdometry::finish_whole_recording() {
   const auto whole = std::make_shared<MergedFindings>();
   MergedRecordings& merged = whole->merged;
   const Status merge_status = merge_recordings(recordings, odometry::merge_params(params_), merged);
-  whole->findings.health = merged.faults;
+  whole->health = merged.faults;
   whole_ = whole;
   if (!merge_status.ok()) return merge_status;
-  whole->findings = check_merged({.gravity_m_s2 = params_.gravity_m_s2, .merged = true}, merged);
+  whole->health = check_merged({.gravity_m_s2 = params_.gravity_m_s2, .merged = true}, merged);
   smoother_ = RollingSmoother(smoother_params(params_, merged));
   for (const ImuSample& sample : merged.samples) {
     // start_run() replaces state_

@@ -1,42 +1,45 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tumble/odometry/detail/saved_map.hpp"
 
-#include "../mapping/odometry_members.hpp"
-#include "saved_state.hpp"
+#include "saved_bytes.hpp"
+#include "tumble/mapping/detail/prior_map.hpp"
 
 namespace tumble {
 
 namespace {
 
-std::uint64_t layout_of_map() {
-  StateLayout layout;
-  const std::vector<MapPoint> points;
-  layout("map.points", points);
-  return layout.digest();
+constexpr std::size_t kPointBytes = 28;
+
+/// Visits the numbers of a point: three of the position, three of the normal and the standard deviation.
+template <class Visit, class Point>
+void visit_point(Visit& visit, Point& point) {
+  visit("point.position_W_m", point.position_W_m);
+  visit("point.normal_W", point.normal_W);
+  visit("point.sigma_m", point.sigma_m);
 }
 
 }  // namespace
 
 std::vector<std::byte> save_map(std::span<const MapPoint> points) {
-  std::vector<std::byte> bytes(odometry::kSavedHeader);
-  StateWriter out(bytes);
-  out.length("map.points", points.size());
-  for (const MapPoint& point : points) out("map.point", point);
-  odometry::seal(odometry::SavedKind::map, layout_of_map(), bytes);
-  return bytes;
+  odometry::SavedWriter out;
+  out.reserve(sizeof(std::uint64_t) + kPointBytes * points.size());
+  out("map.points", std::uint64_t{points.size()});
+  for (const MapPoint& point : points) visit_point(out, point);
+  return std::move(out).finish(odometry::SavedKind::map);
 }
 
 Status load_map(std::span<const std::byte> bytes, std::vector<MapPoint>& points) {
-  std::span<const std::byte> payload;
-  if (const Status status = odometry::open(odometry::SavedKind::map, layout_of_map(), bytes, payload); !status.ok())
-    return status;
-  PriorMap map;
-  StateReader in(payload);
-  in("map.points", map.points);
-  in.require("bytes after the map", in.left().empty(), double(in.left().size()), 0.0);
+  odometry::SavedReader in(odometry::SavedKind::map, bytes);
+  std::uint64_t count = 0;
+  in("map.points", count);
+  in.require("map.points", in.left().size() % kPointBytes == 0 && count == in.left().size() / kPointBytes,
+             double(count), double(in.left().size()) / kPointBytes);
   if (!in.status().ok()) return in.status();
-  if (const Status status = check_map_points(map.points); !status.ok()) return status;
-  points = std::move(map.points);
+  std::vector<MapPoint> loaded(count);
+  for (MapPoint& point : loaded) visit_point(in, point);
+  if (!in.status().ok()) return in.status();
+  if (const Status status = check_map_points(loaded); !status.ok()) return status;
+  points = std::move(loaded);
   return {};
 }
 

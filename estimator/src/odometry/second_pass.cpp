@@ -50,7 +50,7 @@ void SecondPass::abandon() {
   pass_.reset();
   sweeps_.clear();
   samples_ = {};
-  next_sample_ = next_sweep_ = 0;  // the indices refer to cleared buffers; check_state() requires 0
+  next_sample_ = next_sweep_ = 0;
 }
 
 void SecondPass::store(const ImuSample& sample) {

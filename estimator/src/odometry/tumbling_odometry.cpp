@@ -46,6 +46,7 @@ constexpr double kSweepsMax_hz = 20.0;  // maximum sweep rate of a lidar, for th
 
 TumblingOdometry::TumblingOdometry(const Params& params)
     : params_(params),
+      stated_(params.stated_calibration()),
       stamp_order_(params.expert.rate.rate.gap_max_s),
       outlier_filter_(outlier_params(params)),
       sample_clock_(params.expert.stamps),
@@ -177,14 +178,14 @@ SensorHealth TumblingOdometry::health() const {
   if (is_whole()) return whole_ ? whole_->health : SensorHealth{};
   using Kind = HealthFinding::Kind;
   SensorHealth out = pass_.rates().rate().health(pass_.rate_state().rate);
-  out.add(Kind::force_at_rest, pass_.check_force_at_rest(), "imu", "", {}, 1.0);
+  out.add(Kind::force_at_rest, pass_.check_force_at_rest(), "imu");
   add_findings(plausibility_, plausibility_state_, "imu", out);
-  out.add(Kind::lidar_scale, pass_.sweep_scale().verdict(), "lidar", "", {}, 1.0);
+  out.add(Kind::lidar_scale, pass_.sweep_scale().verdict(), "lidar");
   out.add(Kind::vertical_unknown, mapper().check_vertical(), "");
   out.add(Kind::not_localised, mapper().localised(), "");
   const Localisation& localisation = pass_.localisation();
   out.add(Kind::tracking_lost, localisation.current_verdict(), "", "", localisation.lost_since_ns());
-  out.add(Kind::lidar_calibration, params_.stated_calibration().verdict(mapper().calibration()), "lidar");
+  out.add(Kind::lidar_calibration, stated_.verdict(mapper().calibration()), "lidar");
   return out;
 }
 
@@ -212,8 +213,8 @@ void TumblingOdometry::register_sweep(TimeNs start_ns, TimeNs end_ns, std::vecto
   positions_.observe(out.report);
   out.position_frame = positions_.frame();
   second_pass_.store(start_ns, end_ns, std::move(points), reading, out.report.verdict);
-  // The second pass has no prior map, so its frame differs from the frame of the localised first pass.
-  if (mapper().has_prior_map() && mapper().localised().ok()) second_pass_.abandon();
+  // the second pass has no prior map, so its frame differs from the localised first pass
+  if (mapper().prior_map() != nullptr && mapper().localised().ok()) second_pass_.abandon();
   const bool applied_before = second_pass_.applied();
   second_pass_.advance(pass_);
   if (second_pass_.applied() != applied_before) positions_.restart_fit();
@@ -316,12 +317,14 @@ void TumblingOdometry::set_gyro_offset(const Eigen::Vector3d& offset_rad_s) {
   gyro_offset_state_.decided = true;
   RegimeStream::Params rate = rate_params(params_);
   rate.rate.model.nominal.gyro_bias_rad_s = offset_rad_s;
+  if (rate.rate.model.calibration) rate.rate.model.calibration->constants.gyro_bias_rad_s = offset_rad_s;
   pass_.start_rate_estimation(rate);
   second_pass_.set_gyro_offset(offset_rad_s);
 }
 
 void TumblingOdometry::reset() {
   const auto fresh = std::make_unique<TumblingOdometry>(params_);
+  fresh->stated_ = stated_;
   fresh->restart_count_ = restart_count_;
   fresh->dropped_sweeps_ = dropped_sweeps_;
   fresh->early_sweeps_ = early_sweeps_;

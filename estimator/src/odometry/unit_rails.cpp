@@ -3,6 +3,8 @@
 
 #include <cstddef>
 
+#include "saved_rails.hpp"
+
 namespace tumble {
 
 namespace {
@@ -25,6 +27,13 @@ StreamingClippingFinder::Params clipping_finder_params(const ImuSheet& sheet) {
 UnitRails::UnitRails(std::span<const ImuSheet> sheets) {
   for (const ImuSheet& sheet : sheets)
     units_.push_back({StreamingClippingFinder(clipping_finder_params(sheet)), sheet});
+}
+
+void UnitRails::start_from(std::size_t unit, const SaturationLevels& rails) {
+  StreamingClippingFinder::Params params = clipping_finder_params(units_[unit].sheet);
+  odometry::start_from_rails(rails, params.clipping.axis_aligned_rails, params.clipping.planes,
+                             params.clipping.accel_planes);
+  units_[unit].watch = StreamingClippingFinder(params);
 }
 
 UnitRails::State UnitRails::start() const {
@@ -56,15 +65,6 @@ void UnitRails::observe(std::span<const ImuSample> samples, State& state) const 
     units_[k].watch.axis_aligned_rails().classify(samples[k], rails.known.axis_aligned_rails);
     state[k].before = samples[k];
   }
-}
-
-Status UnitRails::check_state(const State& state) const {
-  for (std::size_t k = 0; k < state.size(); ++k) {
-    const bool room = k < units_.size() ? units_[k].watch.has_room_for(state[k].rails)
-                                        : StreamingClippingFinder::equal(state[k].rails, {}) && !state[k].before;
-    if (!room) return {ErrorCode::out_of_range, "rails.readings", 1.0, 0.0};
-  }
-  return {};
 }
 
 }  // namespace tumble

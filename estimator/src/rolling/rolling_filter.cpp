@@ -247,6 +247,17 @@ RollingMode RollingFilter::most_probable_mode(const State& state) {
   return 2.0 * state.bump_probability > state.slip_probability ? RollingMode::bump : RollingMode::slip;
 }
 
+RollingCalibration RollingFilter::calibration(const State& state) {
+  RollingCalibration out{
+      rolling::constants_of(state.nominal),
+      state.hypotheses[0].P.bottomRightCorner<RollingCalibration::kSize, RollingCalibration::kSize>()};
+  constexpr int kSlope = rolling::kSlope - rolling::kGyroBias;  // the slope belongs to the floor
+  out.constants.segment<2>(kSlope).setZero();
+  out.covariance.middleRows<2>(kSlope).setZero();
+  out.covariance.middleCols<2>(kSlope).setZero();
+  return out;
+}
+
 RollingEstimate RollingFilter::estimate(const State& state) {
   RollingEstimate out;
   out.time_ns = state.last_time_ns;
@@ -267,11 +278,6 @@ RollingEstimate RollingFilter::estimate(const State& state) {
   out.at_rest = state.at_rest;
   out.uncertain = state.uncertain;
   return out;
-}
-
-Status RollingFilter::check_state(const State& state) {
-  if (!state.started || state.count >= 1) return {};
-  return {ErrorCode::out_of_range, "live.count", double(state.count), 1.0};
 }
 
 }  // namespace tumble

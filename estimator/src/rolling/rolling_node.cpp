@@ -67,8 +67,13 @@ bool starts_in_motion(const RollingParams& params, const Eigen::Vector3d& rate_I
 RollingNominal start_nominal(const RollingParams& params, const Eigen::Quaterniond& q_WI,
                              const Eigen::Vector3d& rate_I_rad_s) {
   RollingNominal nominal;
+  if (params.calibration) {
+    Vector x = Vector::Zero();
+    x.tail<RollingCalibration::kSize>() = params.calibration->constants;
+    move_linearisation_point(x, nominal);
+  }
   nominal.q_WI = q_WI;
-  nominal.p_WI_m = q_WI * params.lever_arm_m;
+  nominal.p_WI_m = q_WI * (params.lever_arm_m + nominal.lever_arm_error_m);
   nominal.last_rate_I_rad_s = rate_I_rad_s;
   if (starts_in_motion(params, rate_I_rad_s)) {
     const Eigen::Vector3d w_W = q_WI * rate_I_rad_s;
@@ -93,8 +98,13 @@ void set_prior(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s,
   prior.segment<9>(kGyroScale).setConstant(squared(params.expert.prior.gyro_scale_sigma));
   prior[kDelay] = squared(params.expert.prior.accel_delay_sigma_s);
   prior.segment<3>(kLeverArm).setConstant(squared(params.lever_arm_sigma_m));
-  prior.segment<2>(kSlope).setConstant(squared(kLevelSlopeSigma));
   prior[kRadius] = squared(params.radius_sigma_m);
+  if (params.calibration) {
+    const Eigen::Matrix<double, 6, 1> bias_variance = prior.segment<6>(kGyroBias);
+    P.bottomRightCorner<RollingCalibration::kSize, RollingCalibration::kSize>() = params.calibration->covariance;
+    prior.segment<6>(kGyroBias) += bias_variance;
+  }
+  prior.segment<2>(kSlope).setConstant(squared(kLevelSlopeSigma));
 }
 
 namespace {
@@ -382,6 +392,14 @@ void update(const Row& row, double measured, double variance, Vector& x, Covaria
 
 void update(int index, double measured, double variance, Vector& x, Covariance& P) {
   x += component_update(index, measured - x[index], variance, P);
+}
+
+Eigen::Matrix<double, RollingCalibration::kSize, 1> constants_of(const RollingNominal& nominal) {
+  Eigen::Matrix<double, RollingCalibration::kSize, 1> out;
+  out << nominal.gyro_bias_rad_s, nominal.accel_bias_m_s2, nominal.accel_scale.reshaped(),
+      nominal.gyro_scale.reshaped(), nominal.accel_delay_s, nominal.lever_arm_error_m, nominal.slope,
+      nominal.radius_error_m;
+  return out;
 }
 
 /// Adds the estimated errors x to the nominal states: rolling.md (R1).

@@ -16,6 +16,7 @@ namespace tumble::rolling {
 inline constexpr int kAttitude = 0, kVelocity = 3, kPosition = 6, kGyroBias = 9, kAccelBias = 12, kAccelScale = 15,
                      kGyroScale = 24, kDelay = 33, kLeverArm = 34, kSlope = 37, kRadius = 39;
 inline constexpr int kStates = 40;
+static_assert(kStates - kGyroBias == RollingCalibration::kSize);
 
 using Vector = Eigen::Matrix<double, kStates, 1>;
 using Row = Eigen::Matrix<double, 1, kStates>;
@@ -106,6 +107,9 @@ void update(const Row& row, double measured, double variance, Vector& x, Covaria
 
 /// Applies a Kalman update with a measurement of a single state.
 void update(int index, double measured, double variance, Vector& x, Covariance& P);
+
+/// Returns the constants of a nominal state, in the order of the error state from the gyro bias on.
+Eigen::Matrix<double, RollingCalibration::kSize, 1> constants_of(const RollingNominal& nominal);
 
 /// Adds the estimated error `x` to the nominal trajectory and constants.
 void move_linearisation_point(const Vector& x, RollingNominal& nominal);

@@ -15,7 +15,6 @@ namespace {
 
 // Maximum number of preallocated samples and nodes. With a longer lag, the memory grows during the run.
 constexpr std::size_t kPreallocatedMax = 1'000'000;
-constexpr std::size_t kSamplesMaxFactor = 4;  // maximum number of samples, as a multiple of the preallocated number
 
 RollingParams scale_noise(RollingParams params, double share) {
   params.expert.contact.grip_sigma_m_s *= share;
@@ -172,31 +171,6 @@ RollingSmoother::RollingSmoother(const Params& p) : params_(p), filter_(p.filter
 
 std::size_t RollingSmoother::preallocated_samples() const {
   return static_cast<std::size_t>(std::ceil((params_.lag_s + params_.block_s + 1.0) * params_.rate_max_hz));
-}
-
-Status RollingSmoother::check_state(const State& state) const {
-  const RollingParams& filter = params_.filter;
-  if (const Status status = RollingFilter::check_state(state.live); !status.ok()) return status;
-  const std::size_t most = lag_nodes_ + block_nodes_;
-  if (params_.lag_s < kWholeRun && state.steps.size() > most)
-    return {ErrorCode::out_of_range, "rolling.steps", double(state.steps.size()), double(most)};
-  const std::size_t samples_most = kSamplesMaxFactor * preallocated_samples();
-  if (params_.lag_s < kWholeRun && state.samples.size() > samples_most)
-    return {ErrorCode::out_of_range, "rolling.samples", double(state.samples.size()), double(samples_most)};
-  const FinalPassState& committed = state.committed;
-  for (std::size_t k = committed.started ? 0 : 1; k < state.samples.size(); ++k) {
-    const TimeNs before_ns = k > 0 ? state.samples[k - 1].time_ns : committed.last_time_ns;
-    // A node may be within a gap, so the first interval starts at the node instead of the previous sample.
-    const TimeNs from_ns = k == 0 && committed.gap_step > 0 ? committed.gap_start_ns : before_ns;
-    const Status status = check_stamp_order(state.samples[k].time_ns, from_ns, filter.expert.gap.gap_max_s);
-    if (!status.ok()) return status;
-  }
-  if (committed.gap_step == 0) return {};
-  if (state.samples.empty()) return {ErrorCode::empty, "rolling.samples", 0.0, 1.0};
-  const double gap_s = seconds(state.samples.front().time_ns - committed.gap_start_ns);
-  const int pieces = rolling::gap_pieces(filter, gap_s);
-  if (committed.gap_step < pieces) return {};
-  return {ErrorCode::out_of_range, "committed.gap_piece", double(committed.gap_step), double(pieces)};
 }
 
 Status RollingSmoother::step(const ImuSample& sample, State& state, std::vector<RollingEstimate>& out) const {

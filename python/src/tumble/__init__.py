@@ -11,6 +11,7 @@ Attitude        TumbleAttitude, Vqf, Strapdown
 Sphere          RollingSmoother, RollingFilter (live)
 Mapper          LidarInertialOdometry
 Recordings      read and write recordings with ground truth; rate, tumbling and rolling process a whole recording
+Data sets       read_broad, read_repoimu, read_airbrakes
 Estimates       read_tum, write_tum, read_estimate
 Figures         plot (Matplotlib); point_errors: distances of returns from their true positions
 The program     odometry (trajectory and map from a bag), record, run, estimate, score, sweep, results; serve and describe_method add a Python function as a method
@@ -62,6 +63,7 @@ from ._tumble import (
 )
 from . import plot, sheets
 from .errors import TumbleError
+from .datasets import read_airbrakes, read_broad, read_repoimu
 from .estimates import Estimate, RateTable, Trajectory, read_estimate, read_tum, write_tum
 from .method import describe_method, serve
 from .placing import point_errors
@@ -77,6 +79,6 @@ __all__ = [
     "RateStream", "RateTable", "Rates", "Recording", "RegimeReport", "RegimeSmoother", "RegimeStream", "RigCalibration", "RollingFilter", "RollingMode", "RollingOdometry",
     "RollingPoses", "RollingSmoother", "Saave", "Series", "SeriesTruth", "SphereUnit", "Strapdown", "Sweep", "SweepCalibration", "SweepReport", "SweepScale", "SweepVerdict", "Trajectory",
     "Truth", "Tumble", "TumbleAttitude", "TumbleError", "TumblingOdometry", "Vqf", "call", "describe_method", "estimate",
-    "find_rails", "odometry", "plot", "point_errors", "program", "rails_parameters", "rate", "read", "read_estimate", "read_tum", "record", "results", "rolling", "run",
+    "find_rails", "odometry", "plot", "point_errors", "program", "rails_parameters", "rate", "read", "read_airbrakes", "read_broad", "read_estimate", "read_repoimu", "read_tum", "record", "results", "rolling", "run",
     "score", "score_rows", "serve", "sheet_of", "sheets", "sweep", "tumbling", "tumbling_options", "write", "write_tum",
 ]

@@ -12,43 +12,23 @@
 
 namespace tumble::baselines {
 
-/// ClippedBaseline estimates clipped angular rates from the gyro alone, with one of three models of the rate during
-/// clipping.
+/// ClippedBaseline estimates clipped angular rates from the gyro alone. It bridges each gap of clipped samples by a
+/// cubic that matches the rate and its derivative at both ends of the gap. The cubic interpolation suits gaps that are
+/// short compared with the motion.
 ///
 /// ClippedBaseline estimates each gyro axis independently. The estimate is limited to the range from the saturation
 /// level to a maximum rate. ClippedBaseline ignores the accelerometer.
 ///
-/// - The model `interpolate` bridges each gap of clipped samples by a cubic that matches the rate and its derivative at
-///   both ends of the gap. The cubic interpolation suits gaps that are short compared with the motion.
-/// - The model `reject` is a causal Kalman filter with a random-walk rate, so the estimated rate is constant over a
-///   gap. Between lidar corrections, Point-LIO also keeps the rate constant during saturation. The `reject` model suits
-///   gaps shorter than the time between corrections by another sensor.
-/// - The model `constant_jerk` is a smoother with a stationary Matern 5/2 process, which combines white snap with a
-///   bounded rate (`rate_sigma_rad_s`). The smoother of `constant_jerk` uses clipped readings as hard lower limits of
-///   the rate's magnitude. The `constant_jerk` model suits swings without impacts and gaps up to about 2 / lambda =
-///   0.15 s, with lambda = (3 snap_psd / (16 rate_sigma^2))^(1/5). In longer gaps, the rate that `constant_jerk`
-///   estimates returns towards the saturation level. In longer gaps, the variance that `constant_jerk` reports belongs
-///   to a curve above the saturation level.
-///
-/// An impact at the start or end of a gap gives `interpolate` and `constant_jerk` a wrong derivative of the rate. On
-/// simulated tumbles of the rig, `interpolate` and `constant_jerk` have a larger mean error than the clipped reading.
-/// ClippedBaseline neglects impacts within a gap and the coupling between the axes of a tumbling body.
+/// An impact at the start or end of a gap gives a wrong derivative of the rate. On simulated tumbles of the rig, the
+/// cubic has a larger mean error than the clipped reading. ClippedBaseline neglects impacts within a gap and the
+/// coupling between the axes of a tumbling body.
 class ClippedBaseline {
  public:
-  enum class Kind { interpolate, reject, constant_jerk };
   struct Params {
-    Kind kind = Kind::interpolate;
     RailDetector::Params rails = {};
-    bool tilted_rails = false;  ///< also detects tilted rails (ClippingFinder); the published method does not
-    /// The number `gyro_noise_density` is the noise density of the gyro [rad/s/sqrt(Hz)].
+    bool tilted_rails = false;  ///< also detects tilted rails (ClippingFinder), unlike the published method
+    /// Noise density of the gyro [rad/s/sqrt(Hz)].
     double gyro_noise_density = 5.236e-4;
-    /// The model `reject` assumes white angular acceleration with the density `acceleration_psd` [rad^2/s^3].
-    double acceleration_psd = 1e3;
-    /// The model `constant_jerk` assumes white angular snap with the density `snap_psd` [rad^2/s^7].
-    double snap_psd = 1e9;
-    /// The model `constant_jerk` assumes that the rate of one axis has the standard deviation `rate_sigma_rad_s`
-    /// [rad/s].
-    double rate_sigma_rad_s = 20.0;
     double rate_max_rad_s = 50.0;  ///< largest rate about one axis in a gap
     double gap_max_s = 1.0;        ///< longest accepted time between samples
 
@@ -61,15 +41,6 @@ class ClippedBaseline {
                          "1: also search for tilted saturation limits; 0: treat each axis separately, as published",
                          FieldRank::basic));
       visit(p.gyro_noise_density, {"gyro_noise_density", "rad/s/sqrt(Hz)", 1e-9, 1.0, "noise density of the gyro"});
-      visit(p.acceleration_psd, {"acceleration_psd_rad2_s3", "rad^2/s^3", 1e-12, 1e12,
-                                 "power spectral density of the white angular acceleration that drives the rate; "
-                                 "Point-LIO's configurations use 1000",
-                                 FieldRank::basic});
-      visit(p.snap_psd, {"snap_psd_rad2_s7", "rad^2/s^7", 1e-12, 1e15,
-                         "power spectral density of the white angular snap that drives the jerk", FieldRank::basic});
-      visit(p.rate_sigma_rad_s,
-            {"rate_sigma_rad_s", "rad/s", 1e-3, 1e4,
-             "standard deviation of the rate over long times; bounds the uncertainty in long gaps", FieldRank::basic});
       visit(p.rate_max_rad_s, {"rate_max_rad_s", "rad/s", 1.0, 1e4, "largest estimated rate"});
       visit(p.gap_max_s, {"gap_max_s", "s", 1e-6, 3600.0,
                           "maximum time between two samples; a longer gap ends the run with an error"});

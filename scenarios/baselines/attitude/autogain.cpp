@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kCodeFullRate_rad_s = 2.0;
 constexpr double kCodeDeadZone = 0.1;
-/// Above this sin(pitch), roll and yaw cannot be separated, so the filter skips the complementary step.
+/// At gimbal lock (|sin(pitch)| above this value), roll and yaw cannot be separated; the complementary step is skipped.
 constexpr double kGimbalLock = 0.999;
 
 double current_roll(const Eigen::Quaterniond& q) {
@@ -28,8 +28,8 @@ double current_yaw(const Eigen::Quaterniond& q) {
   return std::atan2(2.0 * (q.w() * q.z() + q.x() * q.y()), 1.0 - 2.0 * (q.y() * q.y() + q.z() * q.z()));
 }
 
-/// Performs the published complementary step, equation (A25) of attitude.md. The complementary step rotates the
-/// attitude towards the roll and pitch that the accelerometer measures, at the current yaw.
+/// Performs the published complementary step, equation (A25) of attitude.md: rotates the attitude towards the roll and
+/// pitch that the accelerometer measures, at the current yaw.
 Eigen::Quaterniond towards_roll_and_pitch(const Eigen::Quaterniond& q, const Eigen::Vector3d& f, double share,
                                           bool keep_roll) {
   const double sin_pitch = 2.0 * (q.w() * q.y() - q.x() * q.z());

@@ -10,25 +10,25 @@
 
 namespace tumble::baselines {
 
-/// AutogainProfile selects the function of the angular rate that weights the gyro against the accelerometer.
+/// AutogainProfile selects the function of the angular rate that sets the weights of gyro and accelerometer.
 enum class AutogainProfile : std::uint8_t {
   paper,     ///< eq 2: 0 up to `lower`, (|w_k| - lower)^2 / (upper - lower)^2, 1 from `upper`
-  code2021,  ///< the authors' code of 2021: min(1, (w_k / 2)^2); below 0.1 the gains, but not the factors, use 0
-  smooth,    ///< smoothstep of the rate's norm between the same bounds; continuous and independent of the mounting
+  code2021,  ///< authors' code of 2021: min(1, (w_k / 2)^2); the gains (not the factors) use 0 below 0.1
+  smooth,    ///< smoothstep of the rate's norm between the bounds of `paper`; continuous, independent of the mounting
 };
 
 /// AutogainGains contains the correction factors and gains that Autogain uses for one sample.
 struct AutogainGains {
   Eigen::Vector3d factor = Eigen::Vector3d::Zero();  ///< f_x, f_y, f_z (eq 2); all equal in the smooth profile
-  double beta = 0.0;                                 ///< eq 3, as used by the gains
+  double beta = 0.0;                                 ///< beta (eq 3), from which the gains are computed
   double madgwick_rad_s = 0.0;                       ///< gamma (eq 4): gain of the Madgwick step
   double slerp_share = 0.0;                          ///< alpha (eq 5): share of the complementary step
 };
 
 /// Autogain estimates attitude with the published filter for a rolling sphere (Zevering et al., IEEE MFI 2021, eqs
-/// 2-5). The filter applies Madgwick's correction, with a gain that grows with the rate, then a complementary
-/// correction, with a weight that falls with the rate. During slow rotation the filter relies on the accelerometer even
-/// if the body accelerates. Autogain estimates neither gyro bias nor heading.
+/// 2-5). The filter first applies Madgwick's correction, whose gain grows with the rate. The filter then applies a
+/// complementary correction, whose weight falls with the rate. During slow rotation, the filter relies on the
+/// accelerometer even if the body accelerates. Autogain estimates neither gyro bias nor heading.
 class Autogain {
  public:
   struct Params {
@@ -37,13 +37,12 @@ class Autogain {
     double tau_s = 0.396;      ///< time constant of the complementary step at rest (0.02 per sample at 125 Hz)
     double lower_rad_s = 0.1;  ///< unused by code2021
     double upper_rad_s = 2.1;  ///< above lower_rad_s; unused by code2021
-    /// If `roll_error_2021` is true, the complementary step has the same error as the authors' code of 2021. In the
-    /// authors' code, the check for gimbal lock is always true. Because of the error in this check, the target attitude
-    /// keeps the current roll, so the filter never corrects roll. The option serves to reproduce the attitudes in the
-    /// authors' recordings.
+    /// true: the complementary step contains the error of the authors' code of 2021, to reproduce the attitudes in the
+    /// authors' recordings. In the authors' code, the check for gimbal lock is always true. The target attitude
+    /// therefore keeps the current roll, and the filter never corrects roll.
     bool roll_error_2021 = false;
-    /// If `tilt_form` is true, the complementary step is the smallest rotation that corrects the tilt, instead of a
-    /// step in roll, pitch and yaw. The `smooth` profile always uses the smallest rotation.
+    /// true: the complementary step is the smallest rotation that corrects the tilt, instead of a step in roll, pitch
+    /// and yaw. The `smooth` profile always uses the smallest rotation.
     bool tilt_form = false;
     double gap_max_s = 1.0;
 

@@ -10,13 +10,13 @@
 namespace tumble::baselines {
 
 /// Complementary estimates attitude by a complementary filter. The filter integrates the gyro exactly, then applies the
-/// fraction 1 - exp(-dt / tau) of the smallest rotation that levels the specific force. The estimated attitude is
-/// steady at rest, but an acceleration that lasts longer than tau causes an error. The complementary filter does not
-/// estimate the gyro bias.
+/// fraction 1 - exp(-dt / tau) of the smallest rotation that aligns the specific force with the vertical. The attitude
+/// is steady at rest, but an acceleration that lasts longer than tau causes an error. The filter does not estimate the
+/// gyro bias.
 class Complementary {
  public:
   struct Params {
-    double tau_s = 0.396;  ///< 0.02 per sample at 125 Hz, as published for the sphere
+    double tau_s = 0.396;  ///< time constant of the correction: 0.02 per sample at 125 Hz, as published for the sphere
     double gap_max_s = 1.0;
 
     /// Calls the visitor with each parameter's reference, name, unit and limits.

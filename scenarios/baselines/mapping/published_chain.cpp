@@ -28,9 +28,9 @@ TimeNs rounded_offset(const LidarPoint& point, TimeNs step_ns) {
 }
 
 /// Returns the time of the registered pose: the start of the sweep, or the common time if all points have the same
-/// time. With a common time, registration at the start of the sweep would feed velocity errors back by v' = v_true + (v
-/// - v''). The recursion v' = v_true + (v - v'') is unstable, because it has the root -1.6. Points spread over the
-/// sweep halve the term (v - v''), which gives the roots 0.5 and -1.
+/// time. If a common time were replaced by the start of the sweep, the velocity feedback would be unstable. The
+/// recursion v' = v_true + (v - v'') has the root -1.6. Points spread over the sweep halve the term (v - v''), which
+/// gives the roots 0.5 and -1.
 TimeNs registered_at(const Sweep& sweep, TimeNs step_ns) {
   if (sweep.points.empty()) return sweep.start_ns;
   const auto [first, last] = std::minmax_element(
@@ -185,7 +185,7 @@ bool PublishedChain::registers(const Sweep& sweep, TimeNs at_ns, std::span<const
   return true;
 }
 
-/// The distance of each new point is measured to the points that were in the map before this sweep.
+/// Inserts the points that are far from all points that were in the map before this sweep.
 void PublishedChain::extend(std::span<const TrimmedIcp::Point> points, const Eigen::Isometry3d& T_WL,
                             SweepReport& report) {
   const Eigen::Isometry3f move = T_WL.cast<float>();
@@ -204,7 +204,7 @@ void PublishedChain::extend(std::span<const TrimmedIcp::Point> points, const Eig
   icp_.forget_normals();
 }
 
-/// Fills the report with the poses of the sweep in the map's frame.
+/// Fills the report with the poses during the sweep in the map frame.
 void PublishedChain::report_poses(const Sweep& sweep, SweepReport& report) {
   const auto at = [&](TimeNs time_ns) {
     return pose_state(T_map_odom_ * odometry_.pose(time_ns), T_map_odom_.linear() * odometry_.velocity_m_s(time_ns),

@@ -17,17 +17,20 @@
 namespace tumble::baselines {
 
 /// PublishedChain estimates trajectory and map from given rates with the published mapping chain (Deschenes et al.,
-/// ICRA 2024). PublishedChain has the constants of the authors' launch files. Madgwick's filter estimates attitude, and
-/// accelerometer odometry estimates position with velocity feedback from registration. The chain deskews each sweep,
-/// weights its points by time, and registers the voxelised points to a map by trimmed point-to-plane registration. Each
-/// sweep is deskewed to its start, or to the common time of its points. The published chain inserts points only where
-/// the map is empty. Each known error of the published chain has a parameter that switches it; the defaults are those
-/// of the launch files.
+/// ICRA 2024) and the constants of its launch files.
+///
+/// - Madgwick's filter estimates attitude. Accelerometer odometry estimates position, with velocity feedback from
+///   registration.
+/// - Each sweep is deskewed to its start, or to the common time of its points. The points of the sweep are weighted by
+///   time and voxelised.
+/// - Trimmed point-to-plane registration aligns the sweep to the map. Points are inserted only where the map is empty.
+///
+/// One parameter switches each known error of the published chain. The defaults are those of the launch files.
 class PublishedChain {
  public:
   struct Params {
-    Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< lidar in IMU axes
-    Eigen::AlignedBox3d own_body_L;  ///< returns inside belong to the robot; an empty box keeps all
+    Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< pose of the lidar in IMU axes
+    Eigen::AlignedBox3d own_body_L;  ///< points inside belong to the robot and are removed; empty: removes none
     double skew_sigma_m_s = 0.25;
     TrimmedIcp::Params icp;
     bool late_velocity = true, voxel_averages_time = true, abort_ends_mapping = false;
@@ -88,16 +91,16 @@ class PublishedChain {
     std::span<const LidarPoint> points;
   };
 
-  /// Stores the samples of a whole recording, and `rates` with one angular rate per sample, which replaces the gyro
-  /// reading. The data of `samples` must outlive the PublishedChain.
+  /// Stores the samples of a whole recording, and one angular rate per sample, which replaces the gyro reading. The
+  /// data of `samples` must outlive the PublishedChain.
   PublishedChain(const Params& params, std::span<const ImuSample> samples, std::span<const RateState> rates);
 
-  /// Returns whether the IMU samples extend beyond the end of the sweep.
+  /// Returns true if the IMU samples extend beyond the end of the sweep.
   bool covers(const Sweep& sweep) const;
-  /// Registers a sweep to the map; `covers` must accept the sweep, and its time must be later than all earlier sweeps.
-  /// Returns `out_of_range`, without change of the state, if a point's time is after the last IMU sample. Returns
-  /// `empty`, `degenerate` (all points have one time) or `too_few` (points in range) without registration; the odometry
-  /// still advances.
+  /// Registers a sweep to the map. `covers(sweep)` must be true, and the sweep must be later than all earlier sweeps.
+  /// Returns `out_of_range`, with unchanged state, if a point is later than the last IMU sample. Returns `empty`,
+  /// `degenerate` (all points have one time) or `too_few` (points in range) if the sweep is not registered; the
+  /// odometry still advances.
   Status add(const Sweep& sweep, SweepReport& report);
   /// Returns the points of the map with normals that point towards the sensor.
   std::vector<MapPoint> map() const;

@@ -12,12 +12,12 @@
 namespace tumble::baselines {
 
 /// PublishedImuOdometry computes attitude by Madgwick's filter and position from the accelerometer, in the odometry
-/// frame "odom". PublishedChain uses PublishedImuOdometry for deskewing and as initial pose of the registration. The
-/// estimated position is constant until registration supplies the first velocity.
+/// frame "odom". PublishedChain uses the result for deskewing and as initial pose of the registration. The position is
+/// constant until registration supplies the first velocity.
 class PublishedImuOdometry {
  public:
-  /// Stores the IMU samples and `rates`, which contains one angular rate per sample that replaces the gyro reading. The
-  /// data of `samples` must outlive the PublishedImuOdometry.
+  /// Stores the IMU samples, and one angular rate per sample, which replaces the gyro reading. The data of `samples`
+  /// must outlive the PublishedImuOdometry.
   PublishedImuOdometry(double madgwick_gain_rad_s, std::span<const ImuSample> samples,
                        std::span<const RateState> rates);
 
@@ -27,11 +27,11 @@ class PublishedImuOdometry {
   /// again.
   void feed_back(const Eigen::Vector3d& velocity_m_s, TimeNs time_ns);
 
-  /// Returns the pose of the IMU at `time_ns`. The pose between two samples is interpolated: position linearly and
-  /// attitude by slerp. Before the first sample, the pose is constant.
+  /// Returns the pose of the IMU at `time_ns`, interpolated between samples (position linearly, attitude by slerp).
+  /// Before the first sample, the pose is constant.
   Eigen::Isometry3d pose(TimeNs time_ns) const;
-  /// Returns the integrated velocity at the first sample at or after `time_ns`, without velocity feedback that arrived
-  /// after this sample.
+  /// Returns the integrated velocity at the first sample at or after `time_ns`. Later velocity feedback has no effect
+  /// on the returned velocity.
   const Eigen::Vector3d& velocity_m_s(TimeNs time_ns) const;
 
  private:

@@ -18,21 +18,21 @@ namespace tumble::baselines {
 
 /// RigidOdometry registers sweeps to a map, with a motion prediction from the caller. Like most lidar odometries,
 /// RigidOdometry deskews each sweep once, to its end, and corrects only the end pose. Published lidar odometries differ
-/// in the motion prediction (`Motion`) and in how they use the registered pose; the caller implements both.
+/// in their motion prediction (`Motion`) and in their use of the registered pose. The caller implements both.
 ///
 /// RigidOdometry neglects motion errors within the sweep, mounting errors and clock offsets, and does not recover after
 /// a tracking failure.
 class RigidOdometry {
  public:
   struct Params {
-    Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< lidar in the axes of the given motion
+    Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< pose of the lidar in the axes of `Motion`
     double range_min_m = 0.3;
     double range_max_m = 100.0;
-    Eigen::AlignedBox3d own_body_L;  ///< returns inside belong to the robot; an empty box keeps all
-    double sweep_voxel_m = 0.25;     ///< the filter registers one point per voxel of a sweep
+    Eigen::AlignedBox3d own_body_L;  ///< points inside belong to the robot and are removed; empty: removes none
+    double sweep_voxel_m = 0.25;     ///< voxel size; the registration uses one point per voxel of a sweep
     double map_voxel_m = 0.5;
     double map_spacing_m = 0.1;
-    /// If `extend_always` is true, unregistered sweeps are inserted into the map at the predicted pose, as in most
+    /// true: sweeps without successful registration are inserted into the map at the predicted pose, as in most
     /// published methods.
     bool extend_always = true;
     double degenerate_sigma_m = 0.15;  ///< as in LidarInertialOdometry
@@ -71,15 +71,15 @@ class RigidOdometry {
 
   /// Motion is the predicted motion over a time interval, with the uncertainty at the end of the interval.
   struct Motion {
-    MotionState start;                  ///< time_ns at or before the sweep's start
+    MotionState start;                  ///< state at or before the sweep's start
     std::vector<MotionSample> samples;  ///< from the start to the sweep's end
-    double gravity_m_s2 = 0.0;          ///< gravity in the samples' specific force
+    double gravity_m_s2 = 0.0;          ///< gravity in the specific force of `samples`
     Eigen::Matrix<double, 9, 9> end_covariance = Eigen::Matrix<double, 9, 9>::Zero();
   };
 
   explicit RigidOdometry(const Params& params);
 
-  /// Registers the points of a sweep from `start_ns` to `end_ns` to the map. The errors of add_sweep are those of
+  /// Registers the points of a sweep from `start_ns` to `end_ns` to the map. Returns the same errors as
   /// LidarInertialOdometry::add_sweep.
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points, const Motion& motion,
                    LidarInertialOdometry::SweepReport& report);

@@ -15,29 +15,28 @@
 namespace tumble::baselines {
 
 /// TrimmedIcp aligns a sweep to a map by point-to-plane registration with k matches per point, as the published chain
-/// does. The registration estimates the fraction of matches to keep from the data (Chetverikov et al., 2005; Phillips
-/// et al., 2007, with lambda). The registration weights each match by the inverse variances of both points. Each
+/// does. The registration keeps only the closest matches, and determines their number from the data (Chetverikov et
+/// al., 2005; Phillips et al., 2007, with lambda). Each match is weighted by the inverse variances of both points. Each
 /// iteration solves normal equations that are linearised for small angles.
 ///
-/// The registration result has no measure of observability. If a direction is unobservable, as in a corridor, the
-/// registration still reports success. LidarInertialOdometry, in contrast, detects unobservable directions. The cost of
-/// an iteration is proportional to the number of points times k.
+/// TrimmedIcp does not measure observability: along a corridor, the registration still reports success.
+/// LidarInertialOdometry detects unobservable directions. The cost of an iteration is proportional to the number of
+/// points times k.
 class TrimmedIcp {
  public:
   struct Params {
     int neighbours = 8;  ///< matches per point
     double match_distance_m = 1.0;
-    int normal_neighbours = 20;  ///< for the map's normals
-    double trim_min = 0.5;       ///< smallest share of matches to keep
+    int normal_neighbours = 20;  ///< neighbours for the normal of a map point
+    double trim_min = 0.5;       ///< smallest fraction of the matches to keep
     double trim_max = 0.7;
     double trim_lambda = 2.35;
-    /// If `count_unmatched_slots` is true, TrimmedIcp has the same error as the authors' code. In the authors' code,
-    /// the kept fraction refers to all match slots, although the sorted list of distances omits slots without a match.
-    /// The authors' code therefore reads beyond the end of the sorted list. TrimmedIcp stops at the end of the sorted
-    /// list.
+    /// true: contains the error of the authors' code. In the authors' code, the kept fraction refers to all match
+    /// slots, although the sorted distances omit slots without a match. The code therefore reads beyond the end of the
+    /// sorted list. TrimmedIcp stops at the end.
     bool count_unmatched_slots = false;
     int iterations_max = 40;
-    double step_m = 0.01;  ///< both means over two increments must be below their bound
+    double step_m = 0.01;  ///< converged if the mean step over two iterations is below both bounds
     double step_rad = 0.001;
     double correction_max_m = 15.0;
     double correction_max_rad = 1.1;
@@ -70,21 +69,21 @@ class TrimmedIcp {
   };
   struct Point {
     Eigen::Vector3f position_m;
-    float variance_m2 = 0.0f;  ///< along its ray, and from residual distortion
+    float variance_m2 = 0.0f;  ///< variance along the ray, plus residual distortion
   };
   struct Result {
     RegistrationVerdict verdict = RegistrationVerdict::too_few;
-    Eigen::Isometry3d T = Eigen::Isometry3d::Identity();  ///< the prior if not converged
+    Eigen::Isometry3d T = Eigen::Isometry3d::Identity();  ///< aligning pose, or the prior if not converged
     int iterations = 0;
     std::size_t matched_slots = 0;
-    double kept_share = 0.0;  ///< of the matched slots
+    double kept_share = 0.0;  ///< kept fraction of the matched slots
   };
 
   explicit TrimmedIcp(const Params& params);
 
   /// Estimates the pose that aligns `points` to `map`, starting from the pose `prior`. As in the published chain, a
-  /// registration that reaches the iteration limit counts as a success. Returns an error if there are no matches or if
-  /// the correction exceeds its limit.
+  /// registration that reaches the iteration limit counts as success. Returns an error if no point has a match or the
+  /// correction exceeds its limit.
   Result align(std::span<const Point> points, const Eigen::Isometry3d& prior, const VoxelMap& map);
 
   /// Returns how many of the sorted squared distances d^2 the registration keeps. The kept fraction f minimises (sum of

@@ -47,8 +47,8 @@ Eigen::Vector3d AutogainFusion::accelerated(const ImuSample& sample, const Eigen
                                             State& state) const {
   const double length = sample.specific_force_m_s2.norm();
   const double unit = params_.direction_only ? std::max(length, kForceMin_m_s2) : params_.gravity_m_s2;
-  // The specific force is a mean over the averaging window, so gravity is subtracted at the attitude in the middle of
-  // the window.
+  // The specific force is a mean over the averaging window, so gravity is rotated by the attitude in the middle of the
+  // window.
   const Eigen::Quaterniond q_mid = q_WI * so3::exp(-0.5 * dt_s * sample.angular_velocity_rad_s);
   const Eigen::Vector3d up_I = q_mid.conjugate() * Eigen::Vector3d::UnitZ();
   const Eigen::Vector3d linear_g = sample.specific_force_m_s2 / unit - up_I;
@@ -63,7 +63,7 @@ Eigen::Vector3d AutogainFusion::accelerated(const ImuSample& sample, const Eigen
   return q_WI * gated_I;
 }
 
-/// Limits both velocities, computes the vertical velocity, and returns the weighted mean (eqs 12 and 13).
+/// Limits the integrated velocity (eq 12), computes the vertical velocity, and returns the weighted mean (eq 13).
 Eigen::Vector3d AutogainFusion::fuse(const Eigen::Vector3d& v_acc_W, const Eigen::Vector3d& v_rot_W) const {
   Eigen::Vector2d acc = v_acc_W.head<2>(), rot = v_rot_W.head<2>();
   const double speed = rot.norm();

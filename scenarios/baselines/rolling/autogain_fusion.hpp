@@ -12,28 +12,27 @@ namespace tumble::baselines {
 
 /// AutogainFusion estimates the position of a rolling sphere on a flat floor from the rolling velocity and the
 /// integrated acceleration (Zevering et al., IEEE MFI 2021, eqs 6-13). The filter uses the integrated acceleration only
-/// during rotation. The filter limits the integrated acceleration to slightly more than the rolling velocity, then
-/// averages both velocities. Only the sign of the integrated acceleration affects the result, so the path of a sphere
-/// that rolls without slip is up to half too short. AutogainFusion is a baseline for comparisons; its options select
-/// the variants of the paper and of the authors' code.
+/// during rotation, limits it to `limiter` times the rolling velocity, and averages both velocities. The limit usually
+/// leaves only the sign of the integrated acceleration, so the path of a sphere without slip is up to half too short.
+/// AutogainFusion is a baseline; its options select the variants of the paper and of the authors' code.
 class AutogainFusion {
  public:
   struct Params {
     double radius_m = 0.145;
     double gravity_m_s2 = 9.80665;
-    double limiter = 1.2;              ///< |v_acc| to this times |v_rot|; 1.1 in the code
+    double limiter = 1.2;              ///< maximum of |v_acc| / |v_rot|; 1.1 in the code
     double rotation_weight = 0.5;      ///< eq 13
     double acceleration_weight = 0.5;  ///< eq 13
     Autogain::Params autogain = {};    ///< only for the factors of eq 2
 
-    // Each option switches one difference between the paper and the authors' code. The default options follow the
-    // paper's equations as printed.
+    // Each option switches one difference between the paper and the authors' code. The defaults follow the printed
+    // equations.
     bool integrate_in_body = true;    ///< eq 7 in the rotating frame, without w x v; false integrates in W
     bool direction_only = false;      ///< as in the code: subtracts gravity from f / |f|, without multiplying by g
     bool recursive_coupling = false;  ///< as in the code: eq 8 scales the integral itself at each sample
-    bool limit_per_axis = true;       ///< limits along the world's axes; false limits the horizontal vector
-    bool shrink_per_axis = true;      ///< eq 12 subtracts v_z^2 from each axis; false once from the horizontal vector
-    bool vertical_by_norm = false;    ///< as in the code: limits |v_z| by |v_rot|; false by the mean of both sizes
+    bool limit_per_axis = true;       ///< limits along each world axis; false: limits the horizontal vector
+    bool shrink_per_axis = true;      ///< eq 12 subtracts v_z^2 from each axis; false: from the horizontal vector
+    bool vertical_by_norm = false;    ///< as in the code: |v_z| <= |v_rot|; false: |v_z| <= (|v_rot,x| + |v_rot,y|) / 2
 
     double gap_max_s = 1.0;
 

@@ -10,8 +10,8 @@
 namespace tumble::baselines {
 
 /// RollingOdometry computes the position of a rolling sphere's centre G from the angular velocity. On a plane with
-/// normal n, the velocity of the centre is v = r w_W x n; the trapezoid rule integrates the velocity. The position is
-/// exact without slip; RollingOdometry does not detect slip, sliding and height changes.
+/// normal n, the velocity of the centre is v = r w_W x n, which is integrated by the trapezoid rule. The position is
+/// exact without slip. RollingOdometry does not detect slip, sliding and height changes.
 class RollingOdometry {
  public:
   struct Params {
@@ -38,9 +38,9 @@ class RollingOdometry {
 
   explicit RollingOdometry(const Params& params);
 
-  /// Computes the position at `time_ns` from the position at the previous sample. The parameter `w_I_rad_s` is the mean
-  /// rate over the sample's averaging window, as an IMU measures it; `q_WI` is the attitude at the end of the window.
-  /// On error, `state` keeps its content.
+  /// Computes the position at `time_ns` from the position at the previous sample. `w_I_rad_s` is the mean rate over the
+  /// sample's averaging window, as an IMU measures it. `q_WI` is the attitude at the end of the window. On error,
+  /// `state` keeps its content.
   Status step(TimeNs time_ns, const Eigen::Vector3d& w_I_rad_s, const Eigen::Quaterniond& q_WI, State& state) const;
 
  private:

@@ -10,8 +10,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Determines the unit of the specific force. If the caller sets no unit and the readings are in g, the function
-/// converts them to m/s^2.
+/// Determines the unit of the specific force. If the caller sets no unit and the readings are in g, converts them to
+/// m/s^2.
 AccelUnit take_in_g(const std::string& topic, const BagReading& reading, sim::ImuRecord& imu,
                     std::vector<std::string>& notes) {
   if (reading.accel_unit || !is_in_g(imu)) return reading.accel_unit.value_or(AccelUnit::m_s2);
@@ -61,13 +61,13 @@ sim::ImuRecord read_imu(const OpenedBag& bag, SensorMountings& places, const std
       [&](const ros::Imu& message, const MessageOrigin& origin) { left_out.guard([&] { take(message, origin); }); },
       &left_out);
   const std::string where = bag.place + ": topic " + topic;
-  if (imu.time_ns.empty() && left_out.count() == 0 && reading.imu_topics.empty()) return imu;  // there are no messages
+  if (imu.time_ns.empty() && left_out.count() == 0 && reading.imu_topics.empty()) return imu;  // no messages
   const std::string bursts = leave_out_faulty([&](std::size_t k) { return bag.place_of(topic, numbers[k]); },
                                               [&](std::size_t k) { return stamps.disorder(k); }, left_out, imu);
   const std::string lost = left_out.note(imu.time_ns.size());
   const AccelUnit accel_unit = take_in_g(topic, reading, imu, notes);
   finish_readings(where, accel_unit, imu);
-  // By definition, the messages are in rad/s, but not every driver follows the definition.
+  // ROS defines rad/s, but not every driver complies.
   const std::string evened = even_out_stamps(imu);
   const std::string units = rates_text(where, imu, reading.gyro_unit);
   for (const std::string& remark :

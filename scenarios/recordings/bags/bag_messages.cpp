@@ -18,14 +18,13 @@ std::array<double, kCount> array_of(const Vector& vector) {
   return out;
 }
 
-/// Returns the covariance of one sample, whose variance is the squared noise density times the bandwidth of the output
-/// rate.
+/// Returns the covariance of one sample: the squared noise density times the output rate, on the diagonal.
 std::array<double, 9> covariance_of(double density_sqrt_hz, std::int64_t period_ns) {
   const double variance = density_sqrt_hz * density_sqrt_hz / (static_cast<double>(period_ns) * 1e-9);
   return {variance, 0, 0, 0, variance, 0, 0, 0, variance};
 }
 
-/// Sets the variances of three rows of the covariance to -1, which means unknown.
+/// Sets three variances of the covariance to -1, which means unknown.
 void set_unknown(std::size_t first_row, std::array<double, 36>& covariance) {
   constexpr std::size_t kRows = 6;
   for (std::size_t row = first_row; row < first_row + 3; ++row) covariance[row * kRows + row] = -1.0;
@@ -36,7 +35,7 @@ struct NamedType {
   ros::PointField::Type type;
 };
 
-/// Creates a PointCloud2 message of `points` zero points with consecutive 4-byte fields.
+/// Creates a PointCloud2 message with consecutive 4-byte fields and `points` points, all zero.
 ros::PointCloud2 empty_cloud(std::initializer_list<NamedType> fields, std::size_t points, const ros::Header& header) {
   ros::PointCloud2 out;
   out.header = header;
@@ -101,7 +100,7 @@ ros::Odometry odometry_message(const BagTrack::Pose& pose, const std::string& ch
   out.child_frame_id = child;
   out.position = array_of<3>(pose.p_WB_m);
   out.orientation_xyzw = array_of<4>(pose.q_WB.coeffs());
-  out.pose_covariance = array_of<36>(pose.covariance);  // row order equals column order: the matrix is symmetric
+  out.pose_covariance = array_of<36>(pose.covariance);  // symmetric: rows equal columns
   if (!pose.exact && pose.covariance.topLeftCorner<3, 3>().isZero(0.0)) set_unknown(0, out.pose_covariance);
   if (!pose.exact && pose.covariance.bottomRightCorner<3, 3>().isZero(0.0)) set_unknown(3, out.pose_covariance);
   if (pose.v_WB_B_m_s.allFinite())

@@ -7,7 +7,7 @@
 #include "scenarios/recordings/bags/bag.hpp"
 #include "scenarios/recordings/bags/ros_messages.hpp"
 
-/// The functions in bag_messages.hpp convert sensor readings, poses and points of estimates to messages (bag.hpp).
+/// bag_messages.hpp converts sensor readings, poses and points of estimates to messages (bag.hpp).
 namespace tumble::scenarios {
 
 ros::Header header_of(std::int64_t stamp_ns, const std::string& frame);

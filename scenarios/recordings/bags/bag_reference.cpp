@@ -17,7 +17,7 @@ constexpr const char* kOdometry = "nav_msgs/Odometry";
 constexpr const char* kPoseStamped = "geometry_msgs/PoseStamped";
 constexpr const char* kTransformStamped = "geometry_msgs/TransformStamped";
 
-/// NamedPoses contains the poses of a topic and the frame that their messages name; "" if they name no frame.
+/// NamedPoses contains the poses of a topic and the frame that their messages name; empty if they name none.
 struct NamedPoses {
   std::vector<ReferencePose> poses;
   std::string frame;
@@ -29,7 +29,7 @@ ReferencePose pose_in(const ros::TransformStamped& message) {
   return pose;
 }
 
-/// The function reads Odometry and PoseStamped messages.
+/// Converts an Odometry or PoseStamped message.
 template <class Message>
 ReferencePose pose_in(const Message& message) {
   ReferencePose pose{0, Eigen::Vector3d::Map(message.position.data()), {}};
@@ -66,8 +66,8 @@ NamedPoses reference_poses(const OpenedBag& bag, const std::string& topic, Stamp
                              kPoseStamped, kTransformStamped));
 }
 
-/// Returns the mounting of the reference frame: the user's choice, or else the frame that the messages name, if the bag
-/// contains its transform.
+/// Returns the mounting of the reference frame: the user's choice, or else that of the frame in the messages, if the
+/// bag contains its transform.
 Eigen::Isometry3d pose_of_reference(const std::string& topic, const std::string& frame, const SensorMountings& places,
                                     const BagReading& reading, Imported& out) {
   const Eigen::Isometry3d body = Eigen::Isometry3d::Identity();

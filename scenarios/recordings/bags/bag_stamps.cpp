@@ -17,10 +17,10 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr std::int64_t kSaid_ns = 1'000'000;
-/// If the header stamp is more than kAhead_ns later than the record stamp, the two stamps belong to different clocks.
+/// A header stamp later than its record stamp by more than this value comes from another clock.
 constexpr std::int64_t kAhead_ns = 10'000'000;
-/// kSteady_ns is the largest normal delay between header and record; beyond this delay, the clocks drift or stamps are
-/// not measurement times.
+/// Largest normal delay from header to record. For a larger delay, the clocks drift or the stamps are not measurement
+/// times.
 constexpr std::int64_t kSteady_ns = 500'000'000;
 
 std::string seconds_text(std::int64_t time_ns) {
@@ -29,7 +29,7 @@ std::string seconds_text(std::int64_t time_ns) {
   return text.data();
 }
 
-/// kLast_ns is the latest time that a header can store.
+/// Latest time that a header can store.
 constexpr std::int64_t kLast_ns = 4294967295 * kSecond_ns;
 
 /// Returns the difference of two time stamps without overflow.
@@ -39,7 +39,7 @@ std::int64_t between(std::int64_t from_ns, std::int64_t to_ns) {
   return to_ns > from_ns ? std::numeric_limits<std::int64_t>::max() : std::numeric_limits<std::int64_t>::min();
 }
 
-/// Describes how a time stamp differs from the previous time stamp.
+/// Describes the difference between a time stamp and the previous one.
 std::string course(std::int64_t before_ns, std::int64_t now_ns) {
   if (now_ns > before_ns) return "increases by " + seconds_text(between(before_ns, now_ns));
   if (now_ns < before_ns) return "decreases by " + seconds_text(between(now_ns, before_ns));

@@ -19,9 +19,9 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// A difference above kClocksApart_s between header and record stamps gives a note.
+/// A larger difference between header and record stamps gives a note.
 constexpr double kClocksApart_s = 1e-3;
-/// A note is made if points are later than their record by more than kAhead_s; smaller differences between the clocks
+/// Points that are later than their record by more than this value give a note. Smaller differences between the clocks
 /// of two computers are normal.
 constexpr double kAhead_s = 0.01;
 
@@ -32,8 +32,7 @@ void read_clouds(const OpenedBag& bag, const std::string& topic, LeftOut& left_o
   bag.read<ros::PointCloud2>(topic, take, &left_out);
 }
 
-/// Points that are later than their own record cannot have been measured yet, so their times must count from another
-/// start than the stamp.
+/// Points later than their own record cannot have been measured, so their times do not count from the stamp.
 void note_points_to_come(const std::string& topic, const BuiltSweeps& built, const std::vector<std::int64_t>& records,
                          std::vector<std::string>& notes) {
   std::vector<double> ahead_s;
@@ -50,8 +49,8 @@ void note_points_to_come(const std::string& topic, const BuiltSweeps& built, con
                   topic, std::to_string(middle_s)));
 }
 
-/// Stores the start of each sweep whose stamp is in order. The list `numbers` contains the positions of the messages to
-/// which the stamps belong.
+/// Stores the start of each sweep whose stamp is in order. `numbers` contains the positions of the messages with these
+/// stamps.
 void keep_in_order(const OpenedBag& bag, const std::string& topic, const BagStamps& stamps,
                    const std::vector<std::size_t>& numbers, CloudHeaders& out) {
   const std::vector<bool> in_order = stamps_in_order(stamps.times_ns());
@@ -76,7 +75,7 @@ CloudHeaders read_headers(const OpenedBag& bag, const std::string& topic, const 
   std::vector<std::size_t> numbers;
   read_clouds(bag, topic, out.left_out, [&](const auto& message, const MessageOrigin& origin) {
     out.frame = without_slash(message.header.frame_id);
-    if (out.left_out_as_map(reading)) return;  // a map may have constant stamps
+    if (out.left_out_as_map(reading)) return;  // clouds of a map may have equal stamps
     out.starts.resize(origin.number + 1);
     const std::int64_t header_ns = stamp_of(message.header);
     const std::uint64_t now = content_of(message);

@@ -11,21 +11,21 @@
 #include "scenarios/recordings/bags/sensor_places.hpp"
 #include "scenarios/recordings/left_out.hpp"
 
-/// The functions in bag_sweeps.hpp read the point cloud topics of a bag.
+/// bag_sweeps.hpp reads the point cloud topics of a bag.
 namespace tumble::scenarios {
 
-/// CloudHeaders contains the stamps and the frame of a topic's clouds, from a first pass that skips the points.
+/// CloudHeaders contains the stamps and the frame of a topic's clouds, from a first pass without points.
 struct CloudHeaders {
   std::vector<std::int64_t> stamps;  ///< sweep starts, in order
-  std::int64_t period_ns = 0;        ///< stated, or the median step of the stamps
-  /// The list `starts` contains the start of the sweep in each message; empty for duplicate and skipped messages.
+  std::int64_t period_ns = 0;        ///< period from the user, or the median step of the stamps
+  /// Start of the sweep in each message; empty for duplicate and skipped messages.
   std::vector<std::optional<std::int64_t>> starts;
   LeftOut left_out{"clouds"};
   std::string remark;
-  bool follow_records = true;  ///< records appear to use the headers' clock and are later than the stamps
+  bool follow_records = true;  ///< records seem to use the headers' clock and are later than the stamps
   std::string frame;
-  /// Returns whether the caller did not choose the topic and its frame belongs to no sensor. Clouds in a frame without
-  /// a sensor are a map, or points that were already transformed.
+  /// Returns true if the caller did not choose the topic and its frame belongs to no sensor: a map, or transformed
+  /// points.
   bool left_out_as_map(const BagReading& reading) const {
     return reading.lidar_topics.empty() && (frame == "world" || frame == "map" || frame == "odom");
   }

@@ -13,10 +13,10 @@
 
 #include "scenarios/recordings/bags/ros1_archives.hpp"
 
-/// The classes in cdr_archives.hpp encode messages in ROS 2's format CDR by the library Fast-CDR.
+/// The classes in cdr_archives.hpp encode messages in the CDR format of ROS 2, by the library Fast-CDR.
 namespace tumble::scenarios::ros {
 
-/// CdrBound computes an upper bound of a message's size in bytes, including padding.
+/// CdrBound computes an upper bound of the size of a message in bytes, including padding.
 class CdrBound {
  public:
   void operator()(std::uint8_t) { bytes += 1; }

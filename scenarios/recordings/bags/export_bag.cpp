@@ -19,15 +19,15 @@ namespace {
 constexpr std::int64_t kTruthStep_ns = 5000000, kClockStep_ns = 10000000;
 constexpr const char *kWorld = "world", *kBody = "body";
 
-/// Event is an item to write, with the time at which a listener would receive it; a sweep is received at its end.
+/// Event is an item to write, with the time at which a subscriber would receive it. A sweep is received at its end.
 struct Event {
   enum Kind { imu, sweep, truth, pose, cloud };
   std::int64_t time_ns;
   Kind kind;
-  std::size_t of, index;  ///< index of the sensor or track, and of its reading
+  std::size_t of, index;  ///< index of the sensor or track, and index of the reading
 };
 
-/// Adds the true poses at a reduced rate, without times at which a reference is unknown.
+/// Adds the true poses at a reduced rate, except at times at which a reference is unknown.
 void add_truth(const StoredTruth& truth, std::vector<Event>& events) {
   constexpr std::size_t kSegment = 16384;
   const auto step = static_cast<std::size_t>(std::max<std::int64_t>(kTruthStep_ns / truth.period_ns, 1));
@@ -142,8 +142,8 @@ class Export {
     return origin_ns_ + time_ns;
   }
 
-  /// The first message of the primary IMU is written first. Readers take the first IMU in a bag as primary, but another
-  /// IMU may have an earlier reading.
+  /// Writes the first message of the primary IMU first. Readers take the first IMU in a bag as primary, but another IMU
+  /// may have an earlier reading.
   void begin_with_imus(std::vector<Event>& events) {
     const std::vector<Event> first = first_readings(imus_.size(), events);
     const auto earlier = [](const Event& a, const Event& b) { return a.time_ns < b.time_ns; };
@@ -197,7 +197,7 @@ class Export {
         return write_pose(pose_of(*writing_.truth, event.index), "truth", body_, stamp);
       case Event::pose: {
         const BagTrack& track = writing_.tracks[event.of];
-        // The truth determines the frame of the body; without a truth, the first track determines it.
+        // The truth moves the frame of the body; without a truth, the first track does.
         const bool body = event.of == 0 && writing_.truth == nullptr;
         return write_pose(track.poses[event.index], track.name, body ? body_ : track.name, stamp);
       }
@@ -212,7 +212,7 @@ class Export {
     bag_.write("/tf", stamp, ros::TFMessage{{transform_message(pose.p_WB_m, pose.q_WB, child, header)}});
   }
 
-  /// Whether a cloud is empty is known only after its creation.
+  /// Whether a cloud has points is known only after its creation.
   void write_cloud(const Event& event) {
     const BagTrack& track = writing_.tracks[event.of];
     const BagCloud cloud = track.cloud(track, event.index);
@@ -226,9 +226,9 @@ class Export {
   const BagWriting& writing_;
   BagWriter& bag_;
   std::int64_t origin_ns_;
-  std::vector<SensorNames> imus_, lidars_;  ///< of the written sensors, which come first
+  std::vector<SensorNames> imus_, lidars_;  ///< names of the written sensors
   std::string body_;                        ///< frame of the body
-  std::optional<std::int64_t> tick_ns_;     ///< last message of the clock
+  std::optional<std::int64_t> tick_ns_;     ///< time of the latest message of the clock
 };
 
 void write_bag(const sim::Sensors& sensors, const BagWriting& writing, BagWriter& bag) {

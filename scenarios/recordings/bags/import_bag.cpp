@@ -45,7 +45,8 @@ StaticFrames read_frames(const OpenedBag& bag) {
   return frames;
 }
 
-/// Adds a note for each lidar topic that cannot be read: raw packets, compressed clouds, and clouds of ROS 0.
+/// Adds a note for each lidar topic that cannot be read: raw packets, compressed clouds, and the old message type
+/// PointCloud.
 void note_unread_clouds(const OpenedBag& bag, std::vector<std::string>& notes) {
   for (const BagTopic& topic : bag.topics) {
     const auto has = [&](const char* word) { return topic.type.find(word) != std::string::npos; };
@@ -62,7 +63,7 @@ void note_unread_clouds(const OpenedBag& bag, std::vector<std::string>& notes) {
   }
 }
 
-/// Throws BadInput if the sensors do not overlap in time, because they then have no common clock.
+/// Throws BadInput if the recorded times of the sensors do not overlap, because the sensors then have no common clock.
 void require_one_clock(const sim::Sensors& sensors, bool by_headers, const std::filesystem::path& path) {
   struct Span {
     std::string name;
@@ -91,8 +92,8 @@ void require_one_clock(const sim::Sensors& sensors, bool by_headers, const std::
   }
 }
 
-/// TopicsOfKind reads all topics of one kind: IMU or lidar. If the user did not choose the topics, an error message
-/// names the option that skips the faulty topic.
+/// TopicsOfKind reads all topics of one kind: IMU or lidar. If the user chose no topics, an error message names the
+/// option that skips the faulty topic.
 class TopicsOfKind {
  public:
   TopicsOfKind(const std::vector<std::string>& topics, bool chosen, bool leave_out, const char* option)
@@ -155,8 +156,7 @@ void add_lidars(const OpenedBag& bag, SensorMountings& places, const BagReading&
   };
   const std::vector<std::string> topics = bag.chosen(reading.lidar_topics, is_cloud_type, kCloud);
   TopicsOfKind(topics, chosen, reading.leave_out_topics, "--lidar-topic").read(out.notes, read);
-  // The mapping methods use the first lidar in the list. The topics of depth cameras, whose points have no times, may
-  // come first in the bag.
+  // Mapping methods use the first lidar. Topics of depth cameras, whose points have no times, may be first in the bag.
   const auto is_timed = [](const auto& each) { return has_timed_points(each.second.lidar); };
   if (!chosen) std::stable_partition(lidars.begin(), lidars.end(), is_timed);
   if (lidars.size() > 1 && !chosen) {

@@ -13,11 +13,11 @@
 
 #include "scenarios/recordings/bags/mcap_records.hpp"
 
-/// The classes in mcap_bytes.hpp encode and decode records of MCAP files.
+/// mcap_bytes.hpp encodes and decodes the records of MCAP files.
 namespace tumble::scenarios::mcap {
 
 inline constexpr std::string_view kMagic("\x89MCAP0\r\n", 8);
-inline constexpr std::uint64_t kHeadBytes = 9;  ///< of a record: kind and length
+inline constexpr std::uint64_t kHeadBytes = 9;  ///< bytes of a record's kind and length
 
 /// BadRecord is the exception for a record that ends before its last field.
 struct BadRecord : std::runtime_error {
@@ -42,8 +42,7 @@ class Put {
   std::string bytes;
 };
 
-/// Take reads fields from the front of a byte range, and checks the bounds. Throws BadRecord if the bytes end before
-/// the field.
+/// Take reads fields from the front of a byte range. Throws BadRecord if the bytes end before the field does.
 class Take {
  public:
   explicit Take(std::string_view bytes) : left(bytes) {}
@@ -96,8 +95,8 @@ std::string to_bytes(Record record, std::string_view tail = {}) {
   return std::move(out.bytes.append(content.bytes).append(tail));
 }
 
-/// Decodes an MCAP record from its bytes. Fields that later versions of the format append are ignored. Throws BadRecord
-/// if the bytes end before the last field.
+/// Decodes an MCAP record from its bytes. Additional fields of later versions of the format are ignored. Throws
+/// BadRecord if the bytes end before the last field.
 template <class Record>
 Record from_bytes(std::string_view content) {
   Record record;

@@ -15,9 +15,9 @@ namespace tumble::scenarios::mcap {
 
 namespace {
 
-/// kBytesMax is the largest size of a chunk (compressed or not), of a record outside chunks, and of the summary.
+/// Largest size of a chunk (compressed or not), of a record outside chunks, and of the summary.
 constexpr std::uint64_t kBytesMax = 1u << 28;
-/// kLooseBytes is the block size for reading records outside chunks.
+/// Block size for reading records outside chunks.
 constexpr std::uint64_t kLooseBytes = 1u << 22;
 constexpr std::uint64_t kFooterBytes = kHeadBytes + 20, kDataEndBytes = kHeadBytes + 4;
 
@@ -25,7 +25,7 @@ std::string in_bytes(std::uint64_t bytes) {
   return std::to_string(bytes) + " bytes";
 }
 
-/// Compares the header of a chunk with its entry in the chunk index.
+/// Returns true if the header of a chunk equals its entry in the chunk index.
 bool agree(const ChunkIndex& a, const ChunkIndex& b) {
   return a.message_start_time == b.message_start_time && a.message_end_time == b.message_end_time &&
          a.chunk_start_offset == b.chunk_start_offset && a.chunk_length == b.chunk_length &&
@@ -178,7 +178,7 @@ void File::check_groups(std::string_view summary, std::string_view groups) const
   });
 }
 
-/// The reader uses the chunk index if the index is complete. A file without an index is scanned.
+/// Uses the chunk index if it is complete; otherwise the file is scanned.
 void File::take_indexed(std::vector<ChunkIndex> chunks) {
   if (chunks.empty()) return;
   std::sort(chunks.begin(), chunks.end(),
@@ -199,14 +199,15 @@ void File::take_indexed(std::vector<ChunkIndex> chunks) {
     }
     free = at + each.chunk_length + each.message_index_length;
     for (const auto& [channel, place] : each.message_index_offsets) {
-      if (!channels_.contains(channel)) return segments_.clear();  // the summary does not repeat the channels: scan
+      if (!channels_.contains(channel)) return segments_.clear();  // the summary lacks the channels: scan the file
       if (place < at + each.chunk_length || place >= free)
         fail(place,
              fmt::format("a message index must follow its chunk at byte {}, but does not: the file is damaged", at));
     }
     segments_.push_back({at, each.chunk_length, each.message_start_time, each.message_end_time, each});
   }
-  // The index omits messages outside chunks, so the file is scanned if any message is missing in the index.
+  // The index lacks messages outside chunks. Without statistics, such messages cannot be excluded, so the file is
+  // scanned.
   if (!statistics_ || channels_.empty()) segments_.clear();
 }
 
@@ -258,7 +259,7 @@ std::optional<MessageIndex> File::index_of(const Segment& segment, std::uint16_t
 
 /// Reads the header of a chunk and returns it in the form of an index entry.
 ChunkIndex File::head_of_chunk(std::uint64_t at, std::uint64_t bytes, std::uint32_t* crc) {
-  constexpr std::uint64_t kMost = kHeadBytes + 8 + 8 + 8 + 4 + 4 + 64 + 8;  // including the name of the compression
+  constexpr std::uint64_t kMost = kHeadBytes + 8 + 8 + 8 + 4 + 4 + 64 + 8;  // includes the name of the compression
   std::string head = text(at, std::min(bytes, kMost));
   if (head.size() < kHeadBytes || static_cast<std::uint8_t>(head[0]) != kChunk)
     fail(at, "this record must be a chunk: the file is damaged");

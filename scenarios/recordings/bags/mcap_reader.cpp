@@ -16,10 +16,10 @@ namespace mcap {
 
 namespace {
 
-/// kWaitingMax limits the size of the messages that wait because a later chunk may contain an earlier message.
+/// Limit of the size of messages that wait because a later chunk may contain an earlier message.
 constexpr std::uint64_t kWaitingMax = 1u << 30;
 
-/// Returns whether the messages have CDR encoding; otherwise they have ROS 1 encoding.
+/// Returns true for messages with CDR encoding, and false for ROS 1 encoding.
 bool is_cdr(const Channel& channel, const Schema& schema) {
   return channel.message_encoding == "cdr" && (schema.encoding == "ros2msg" || schema.encoding == "ros2idl");
 }
@@ -27,8 +27,8 @@ bool is_ros1(const Channel& channel, const Schema& schema) {
   return channel.message_encoding == "ros1" && schema.encoding == "ros1msg";
 }
 
-/// TopicWalk iterates over the messages of one topic of one file by time; memory contains one chunk and the chunks that
-/// overlap it in time.
+/// TopicWalk iterates over the messages of one topic of one file by time. Memory contains one chunk, and the chunks
+/// that overlap it in time.
 class TopicWalk {
  public:
   TopicWalk(File& file, std::set<std::uint16_t> channels, const BagReader::Take& take)
@@ -106,7 +106,7 @@ class TopicWalk {
     while (!waiting_.empty() && waiting_.begin()->first < time_ns) give_first();
   }
   void give_first() {
-    // ROS times cannot exceed int64, so the reader limits larger times to int64.
+    // ROS times are limited to int64.
     const std::uint64_t time_ns = std::min<std::uint64_t>(waiting_.begin()->first, INT64_MAX);
     ros::Bytes bytes = std::move(waiting_.begin()->second);
     waiting_bytes_ -= bytes.size();
@@ -178,8 +178,8 @@ class McapReader : public BagReader {
     return channel.schema_id == 0 ? none : file.schemas().at(channel.schema_id);
   }
 
-  /// Returns the type name in the form of ROS 1. If the topic contains no ROS messages, the function returns the type
-  /// with its encoding, which no reader accepts.
+  /// Returns the type name in the form of ROS 1. If the messages are not ROS messages, returns the type with its
+  /// encoding, which no reader accepts.
   static std::string type_of(const File& file, const Channel& channel) {
     const Schema& schema = schema_of(file, channel);
     if (is_cdr(channel, schema)) return ros1_type(schema.name);

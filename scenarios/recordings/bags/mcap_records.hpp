@@ -7,10 +7,10 @@
 #include <utility>
 #include <vector>
 
-/// The header mcap_records.hpp defines the record types of MCAP files (mcap.dev/spec, version 0). Each type lists its
-/// fields in the order of the specification. All numbers are little-endian. Each text has a prefix with its length (32
-/// bits). Each list or map has a prefix with its size in bytes. An encoded record consists of its kind (8 bits), its
-/// length (64 bits) and its content; mcap_bytes.hpp encodes and decodes records.
+/// mcap_records.hpp defines the record types of MCAP files (mcap.dev/spec, version 0), with their fields in the order
+/// of the specification. Numbers are little-endian. A text is preceded by its length (32 bits); a list or map is
+/// preceded by its size in bytes. An encoded record consists of its kind (8 bits), its length (64 bits) and its content
+/// (mcap_bytes.hpp).
 namespace tumble::scenarios::mcap {
 
 enum Op : std::uint8_t {
@@ -37,8 +37,8 @@ struct Header {
 };
 struct Footer {
   static constexpr Op op = kFooter;
-  std::uint64_t summary_start = 0, summary_offset_start = 0;  ///< 0: missing
-  std::uint32_t summary_crc = 0;  ///< of the bytes from the summary's start to this number; 0 for any CRC: not stated
+  std::uint64_t summary_start = 0, summary_offset_start = 0;  ///< 0: the section is missing
+  std::uint32_t summary_crc = 0;  ///< CRC from the summary's start to this field; 0: not stated
 };
 struct Schema {
   static constexpr Op op = kSchema;
@@ -48,19 +48,19 @@ struct Schema {
 };
 struct Channel {
   static constexpr Op op = kChannel;
-  std::uint16_t id = 0, schema_id = 0;  ///< schema 0: none
+  std::uint16_t id = 0, schema_id = 0;  ///< schema_id 0: no schema
   std::string topic, message_encoding;
   std::map<std::string, std::string> metadata;
   bool operator==(const Channel&) const = default;
 };
-/// Message is the header of a message, before its bytes.
+/// Message is the header of a message.
 struct Message {
   static constexpr Op op = kMessage;
   std::uint16_t channel_id = 0;
   std::uint32_t sequence = 0;
   std::uint64_t log_time = 0, publish_time = 0;
 };
-/// Chunk is the header of a chunk, before its records.
+/// Chunk is the header of a chunk.
 struct Chunk {
   static constexpr Op op = kChunk;
   std::uint64_t message_start_time = 0, message_end_time = 0, uncompressed_size = 0;
@@ -71,12 +71,12 @@ struct Chunk {
 struct MessageIndex {
   static constexpr Op op = kMessageIndex;
   std::uint16_t channel_id = 0;
-  std::vector<std::pair<std::uint64_t, std::uint64_t>> entries;  ///< log time, offset in the uncompressed chunk
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> entries;  ///< log time, and offset in the uncompressed chunk
 };
 struct ChunkIndex {
   static constexpr Op op = kChunkIndex;
   std::uint64_t message_start_time = 0, message_end_time = 0, chunk_start_offset = 0, chunk_length = 0;
-  std::map<std::uint16_t, std::uint64_t> message_index_offsets;  ///< file offsets by channel
+  std::map<std::uint16_t, std::uint64_t> message_index_offsets;  ///< offset in the file, by channel
   std::uint64_t message_index_length = 0;
   std::string compression;
   std::uint64_t compressed_size = 0, uncompressed_size = 0;
@@ -96,7 +96,7 @@ struct SummaryOffset {
 };
 struct DataEnd {
   static constexpr Op op = kDataEnd;
-  std::uint32_t data_section_crc = 0;  ///< of all bytes before this record
+  std::uint32_t data_section_crc = 0;  ///< CRC of all bytes before this record; 0: not stated
 };
 
 template <class Archive>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The functions in mcap_scan.cpp scan the data of MCAP files whose summary is missing or incomplete.
+// Scans the data of MCAP files whose summary is missing or incomplete.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,10 +11,10 @@ namespace tumble::scenarios::mcap {
 namespace {
 
 constexpr std::uint64_t kRecordMax = 1u << 28;
-/// kSegmentBytes is the largest size of a segment of records outside chunks.
+/// Largest size of a segment of records outside chunks.
 constexpr std::uint64_t kSegmentBytes = 1u << 22;
 
-/// Extends the time range of a segment to include `time_ns`.
+/// Extends the time range of a segment to `time_ns`.
 void cover(Segment& segment, bool& empty, std::uint64_t time_ns) {
   segment.first_ns = empty ? time_ns : std::min(segment.first_ns, time_ns);
   segment.last_ns = empty ? time_ns : std::max(segment.last_ns, time_ns);

@@ -20,7 +20,7 @@ namespace mcap {
 
 namespace {
 
-/// The writer closes a chunk when the chunk reaches kChunkBytes.
+/// A chunk that reaches this size is closed.
 constexpr std::size_t kChunkBytes = 1u << 20;
 
 /// Output is the output file with a checksum of all written bytes.

@@ -10,14 +10,14 @@
 #include "scenarios/recordings/left_out.hpp"
 #include "sim/parameters.hpp"
 
-/// The class OpenedBag reads the messages of an open bag.
+/// OpenedBag reads the messages of an open bag.
 namespace tumble::scenarios {
 
 /// MessageOrigin contains the location of a message for error messages, and the time of its record.
 struct MessageOrigin {
   std::string where;
   std::int64_t record_ns;
-  std::size_t number;  ///< position in the topic
+  std::size_t number;  ///< index of the message in its topic
 };
 
 /// OpenedBag is an open bag with its topics, and its location for error messages.
@@ -48,8 +48,7 @@ struct OpenedBag {
     return place + ": message " + std::to_string(message) + " of " + name;
   }
 
-  /// Returns the topics in `names`, which must have a suitable type. Without names, the function returns all topics of
-  /// a suitable type.
+  /// Returns the topics in `names`, whose type must be suitable; if `names` is empty, all topics of a suitable type.
   std::vector<std::string> chosen(const std::vector<std::string>& names, bool (*fits)(const std::string& type),
                                   const std::string& wanted) const {
     std::vector<std::string> out = names;
@@ -63,8 +62,8 @@ struct OpenedBag {
     return out;
   }
 
-  /// Calls `take(message, origin)` for each message of the topic. The list `left_out` counts messages that cannot be
-  /// decoded. If `left_out` is null, a message that cannot be decoded throws BadInput.
+  /// Calls `take(message, origin)` for each message of the topic. A message that cannot be decoded is counted in
+  /// `left_out`; if `left_out` is null, it throws BadInput.
   template <class Message, class Take>
   void read(const std::string& name, Take&& take, LeftOut* left_out = nullptr) const {
     std::size_t number = 0;

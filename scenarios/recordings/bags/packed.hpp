@@ -5,15 +5,15 @@
 #include <string>
 #include <string_view>
 
-/// The functions in packed.hpp compress and decompress the chunks of bags, and compute checksums.
+/// packed.hpp compresses and decompresses the chunks of bags, and computes checksums.
 namespace tumble::scenarios {
 
 /// Compresses the bytes to an LZ4 frame with independent blocks of at most 4 MiB, without checksums.
 std::string packed_lz4(std::string_view plain);
 
-/// Decompresses any LZ4 frame (linked blocks, checksums, content size) or a series of Zstandard frames to exactly
-/// `bytes` bytes. The memory grows with the decompressed data, so a wrong size in the file cannot exhaust the memory.
-/// Throws BadInput, without a location, if the data are damaged or have another size.
+/// Decompresses any LZ4 frame (linked blocks, checksums, content size), or a series of Zstandard frames, to `bytes`
+/// bytes. Memory grows with the decompressed data, so a wrong size in the file cannot exhaust it. Throws BadInput,
+/// without a location, if the data are damaged or have another size.
 std::string unpacked_lz4(std::string_view packed, std::uint64_t bytes);
 std::string unpacked_zstd(std::string_view packed, std::uint64_t bytes);
 

@@ -23,13 +23,13 @@ namespace {
 
 using std::filesystem::path;
 
-/// Returns an upper bound of the decompressed size; sensor messages compress by a few dozen times at most.
+/// Returns an upper bound of the decompressed size; sensor messages compress by a factor of a few dozen at most.
 constexpr std::uint64_t most_of(std::uint64_t packed_bytes) {
   constexpr std::uint64_t kAlways = 64u << 20, kBagRatioMax = 200;
   return kAlways + kBagRatioMax * packed_bytes;
 }
 
-/// Returns the size limit for decompressing a file to a folder.
+/// Returns the size limit for a file that is decompressed to a folder.
 std::uint64_t most_bytes(const path& file, const path& folder) {
   constexpr std::uint64_t kLeftFree = 64u << 20;
   const std::uint64_t free = std::filesystem::space(folder).available;
@@ -67,7 +67,7 @@ void unpack(const path& file, const path& to) {
   if (!unpacked.flush()) fail("cannot be unpacked into " + to.parent_path().string());
 }
 
-/// UnpackedFiles is a reader of decompressed files, which its destructor removes.
+/// UnpackedFiles reads decompressed files and removes them at its end.
 class UnpackedFiles : public BagReader {
  public:
   UnpackedFiles(const std::vector<path>& files,

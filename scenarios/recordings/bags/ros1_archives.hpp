@@ -9,15 +9,14 @@
 #include <string>
 #include <vector>
 
-/// The classes in ros1_archives.hpp encode and decode messages in ROS 1's little-endian layout. The decoder checks
-/// every length against the remaining bytes before it allocates memory.
+/// ros1_archives.hpp encodes and decodes messages in the little-endian layout of ROS 1. The decoder checks every length
+/// against the remaining bytes before it allocates memory.
 namespace tumble::scenarios::ros {
 
 using Bytes = std::vector<std::uint8_t>;
 static_assert(std::endian::native == std::endian::little, "ROS 1 messages are written in the byte order of memory");
 
-/// BadMessage is the exception for a message that ends before its last field, or that claims more data than it
-/// contains.
+/// BadMessage is the exception for a message that is shorter than its fields.
 struct BadMessage : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

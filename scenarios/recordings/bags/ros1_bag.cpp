@@ -30,7 +30,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// TypedBytes contains the bytes of a message with its type, in the form that librosbag requires.
+/// TypedBytes contains the bytes of a message and its type, as librosbag requires.
 struct TypedBytes {
   std::string type, md5sum, definition;
   ros::Bytes bytes;
@@ -40,7 +40,7 @@ struct TypedBytes {
 
 }  // namespace tumble::scenarios
 
-// The library librosbag requires the following traits of a message type.
+// librosbag requires these traits of a message type.
 namespace ros {
 using tumble::scenarios::TypedBytes;
 namespace message_traits {
@@ -75,7 +75,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// QuietBag suppresses the log messages of librosbag during the object's lifetime.
+/// QuietBag suppresses the log messages of librosbag during its lifetime.
 class QuietBag {
  public:
   QuietBag() { console_bridge::noOutputHandler(); }
@@ -121,7 +121,7 @@ TypedBytes typed(const ros::Odometry& message) {
 TypedBytes typed(const ros::TransformStamped& message) {
   return typed_as<geometry_msgs::TransformStamped>(message);
 }
-// The build has no headers for these three types; the checksums are those of the message definitions.
+// The build lacks headers of these three types; the checksums are those of the message definitions.
 TypedBytes typed(const ros::TFMessage& message) {
   const std::string inner = ::ros::message_traits::Definition<geometry_msgs::TransformStamped>::value();
   return {ros::type_of(message), "94810edda583a504dfda3829e70d7eec",
@@ -163,8 +163,8 @@ class Ros1BagWriter : public BagWriter {
   }
 
  private:
-  /// Returns the connection header of a latched topic, which sends its last message to new listeners; null selects
-  /// librosbag's default.
+  /// Returns the connection header of a latched topic, whose last message is sent to new subscribers; null selects the
+  /// default of librosbag.
   boost::shared_ptr<::ros::M_string> connection_of(const std::string& topic, const TypedBytes& message) {
     if (topic != "/tf_static") return nullptr;
     return boost::make_shared<::ros::M_string>(::ros::M_string{{"topic", topic},
@@ -185,7 +185,7 @@ class Ros1BagWriter : public BagWriter {
   }
 
   /// Abandons the bag after an error. The destructor of librosbag's bag writes the file, and an exception on a full
-  /// disk would end the program. If closing fails here, the bag object remains in memory until the process ends.
+  /// disk would end the program. If closing fails here, the bag object stays in memory until the process ends.
   void give_up() {
     if (!bag_) return;
     const QuietBag quiet;
@@ -202,7 +202,7 @@ class Ros1BagWriter : public BagWriter {
   std::unique_ptr<rosbag::Bag> bag_;
 };
 
-/// Bag files that are more than kPartsApart_s apart in time count as separate recordings.
+/// Bag files that are farther apart in time are separate recordings.
 constexpr double kPartsApart_s = 60.0;
 
 class Ros1BagReader : public BagReader {
@@ -290,7 +290,7 @@ class Ros1BagReader : public BagReader {
   void open_unpacked(const std::filesystem::path& file) {
     const std::filesystem::path folder = std::filesystem::temp_directory_path();
     require_room(file, folder);
-    // The decompressed file is unlinked once it is open, so it disappears with the reader or the process; until then, a
+    // The decompressed file is unlinked once it is open, so it disappears with the reader or the process. Until then, a
     // signal handler removes it.
     const OutputFile unpacked(folder / "tumble_unpacked.bag");
     copy_ros1_bag(file, unpacked.unfinished(), [](Ros1Chunk& chunk) {
@@ -305,7 +305,7 @@ class Ros1BagReader : public BagReader {
     open(unpacked.unfinished());
   }
 
-  /// The function checks the free disk space first, because a full disk affects other programs.
+  /// Checks the free disk space first, because a full disk affects other programs.
   static void require_room(const std::filesystem::path& file, const std::filesystem::path& folder) {
     const std::uint64_t needed = bytes_unpacked(file), free = std::filesystem::space(folder).available;
     if (needed <= free) return;

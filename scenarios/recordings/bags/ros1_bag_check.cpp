@@ -74,7 +74,7 @@ class Walk {
     return out;
   }
 
-  /// Returns the length stored at `at`, after a check that the item with this length ends before `end`.
+  /// Returns the length stored at `at`, after checking that the item of this length ends before `end`.
   std::uint32_t length(std::uint64_t at, std::uint64_t end, const char* what, std::uint32_t most) {
     if (end - at < sizeof(std::uint32_t))
       fail(at, fmt::format("the file ends within the length of {}; the bag may be truncated", what));
@@ -155,7 +155,7 @@ class Walk {
     if (!record.fields.contains("topic")) fail(record.at, "a connection has no topic");
     if (record.data_bytes > kRecordHeaderMax)
       fail(record.at, "a connection record is larger than 1 MiB, which is the maximum");
-    fields(record.at, text(record.data_at, record.data_bytes));  // type information is also a header
+    fields(record.at, text(record.data_at, record.data_bytes));  // type information has the form of a header
   }
 
   void chunk(const CheckedRecord& record) {
@@ -222,9 +222,9 @@ class Walk {
   std::ifstream stream_;
   std::uint64_t bytes_ = 0;
   std::set<std::uint64_t> chunks_;
-  std::map<std::uint64_t, std::uint64_t> infos_;  ///< position of the record, chunk that it refers to
+  std::map<std::uint64_t, std::uint64_t> infos_;  ///< position of a record, position of the chunk that it refers to
   std::set<std::uint32_t> connections_;
-  std::optional<std::set<std::uint64_t>> messages_;  ///< message offsets in the preceding chunk; empty if compressed
+  std::optional<std::set<std::uint64_t>> messages_;  ///< message offsets in the preceding chunk; empty: compressed
   std::uint32_t chunk_bytes_ = 0;
 };
 

@@ -25,7 +25,7 @@ struct RawRecord {
   std::string header;
   std::uint32_t data_bytes = 0;
 
-  /// Returns the offset and length of a field's value in the header, or nothing if the field is missing.
+  /// Returns offset and length of a field's value in the header; empty if the field is missing.
   std::optional<std::pair<std::size_t, std::size_t>> find(const std::string& name) const {
     for (std::size_t place = 0; place + 4 <= header.size();) {
       std::uint32_t size = 0;
@@ -115,7 +115,7 @@ class Records {
   std::string magic_;
 };
 
-/// Copy is the new bag that copy_ros1_bag writes.
+/// Copy is the output bag of copy_ros1_bag.
 class Copy {
  public:
   explicit Copy(const std::filesystem::path& path) : path_(path), stream_(path, std::ios::binary) {}
@@ -151,7 +151,7 @@ std::string changed_chunk(RawRecord& record, std::string data, const std::functi
   Ros1Chunk chunk{record.text("compression"), record.number<std::uint32_t>("size"), std::move(data)};
   change(chunk);
   record.header.clear();
-  // The order of the header fields is that of ROS.
+  // Header fields have the order of ROS.
   append_field(record.header, "compression=" + chunk.compression);
   append_field(record.header, "op=" + std::string(1, static_cast<char>(ros1::kChunk)));
   append_field(record.header, "size=" + bytes_of(chunk.unpacked_bytes));
@@ -183,7 +183,7 @@ void copy_ros1_bag(const std::filesystem::path& from, const std::filesystem::pat
   Records records(from);
   Copy copy(to);
   copy.put(records.magic());
-  std::map<std::uint64_t, std::uint64_t> places;  // record positions, old and new
+  std::map<std::uint64_t, std::uint64_t> places;  // old and new positions of records
   std::optional<RawRecord> first;
   std::uint64_t first_at = 0;
   for (RawRecord record; records.next(record);) {

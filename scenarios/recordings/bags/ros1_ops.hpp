@@ -3,8 +3,7 @@
 
 #include <cstdint>
 
-/// The header ros1_ops.hpp lists the kinds of records in a ROS 1 bag. The field "op" in the header of a record is the
-/// kind of the record.
+/// Kinds of records in a ROS 1 bag: values of the field "op" in the header of a record.
 namespace tumble::scenarios::ros1 {
 
 enum Op : std::uint8_t { kMessage = 2, kFile = 3, kIndex = 4, kChunk = 5, kChunkInfo = 6, kConnection = 7 };

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <SQLiteCpp/SQLiteCpp.h>
-#include <unistd.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
@@ -40,10 +39,9 @@ class Ros2BagWriter : public BagWriter {
     const std::string name = std::filesystem::weakly_canonical(folder).filename().string();
     file_ = folder / ((name.empty() ? "recording" : name) + "_0.db3");
     summary_ = {"sqlite3", file_.filename().string()};
-    part_ = file_.string() + "." + std::to_string(getpid()) + ".part";
+    part_.emplace(file_);
     guarded([&] {
-      std::filesystem::remove(part_);
-      database_ = std::make_unique<SQLite::Database>(part_.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+      database_ = std::make_unique<SQLite::Database>(part_->unfinished().string(), SQLite::OPEN_READWRITE);
       database_->exec("PRAGMA journal_mode=OFF; PRAGMA synchronous=OFF");
       database_->exec(
           "CREATE TABLE schema(schema_version INTEGER PRIMARY KEY, ros_distro TEXT NOT NULL);"
@@ -63,8 +61,6 @@ class Ros2BagWriter : public BagWriter {
   ~Ros2BagWriter() override {
     insert_.reset();
     database_.reset();
-    std::error_code ignored;
-    std::filesystem::remove(part_, ignored);
   }
   bool begin_with(const std::vector<BagTopic>& topics) override {
     guarded([&] {
@@ -80,8 +76,8 @@ class Ros2BagWriter : public BagWriter {
       insert_.reset();
       database_->exec("COMMIT");
       database_.reset();
-      std::filesystem::rename(part_, file_);
     });
+    part_->move_into_place();
     replace_file(folder_ / "metadata.yaml", ros2_metadata(summary_));
     output_->keep();
   }
@@ -96,7 +92,7 @@ class Ros2BagWriter : public BagWriter {
     }
   }
 
-  /// Returns the id of a topic in the database; a new topic is registered first.
+  /// Returns the id of a topic in the database, after registering a new topic.
   std::int64_t number_of(const BagTopic& topic) {
     const std::size_t known = summary_.topics.size();
     const std::size_t place = summary_.place_of(topic);
@@ -112,8 +108,7 @@ class Ros2BagWriter : public BagWriter {
     return static_cast<std::int64_t>(place) + 1;
   }
 
-  /// Stores the definition of a message type, for readers without ROS. The type hash may be empty, because readers
-  /// accept an empty hash.
+  /// Stores the definition of a message type, for readers without ROS. Readers accept an empty type hash.
   void define(const std::string& type) {
     SQLite::Statement statement(
         *database_,
@@ -140,16 +135,17 @@ class Ros2BagWriter : public BagWriter {
     });
   }
 
-  path folder_, file_, part_;
+  path folder_, file_;
   std::optional<OutputFolder> output_;
+  std::optional<OutputFile> part_;  ///< destroyed before the folder
   std::unique_ptr<SQLite::Database> database_;
   std::unique_ptr<SQLite::Statement> insert_;
   Ros2Summary summary_;
-  std::set<std::string> defined_;  ///< types already defined
+  std::set<std::string> defined_;  ///< types whose definition is stored
 };
 
-/// StoredBag contains the files of a ROS 2 bag in order, their storage ("sqlite3" or "mcap"), and their compression:
-/// "", "file" or "message".
+/// StoredBag contains the files of a ROS 2 bag in order, their storage ("sqlite3" or "mcap"), and their compression
+/// ("", "file" or "message").
 struct StoredBag {
   std::string kind = "sqlite3";
   std::vector<path> files;
@@ -157,7 +153,7 @@ struct StoredBag {
   std::string note = {};
 };
 
-/// Returns the compression of the bag from its metadata.
+/// Returns the compression of the bag according to its metadata.
 std::string packed_by(const YAML::Node& root, const path& metadata) {
   const auto text = [&](const char* key) {
     std::string out = root[key] ? root[key].as<std::string>("") : "";
@@ -191,6 +187,24 @@ void add_unlisted(const path& folder, StoredBag& bag) {
   bag.files.insert(bag.files.end(), found.begin(), found.end());
 }
 
+/// Returns the files of a bag whose folder has no metadata.yaml, if the names of the files differ only by a number.
+StoredBag parts_in(const path& folder) {
+  std::set<path> parts;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    const std::string ending = lower_extension(entry.path());
+    if (ending == ".mcap" || ending == ".db3") parts.insert(entry.path());
+  }
+  if (parts.empty()) fail_at(folder, "the folder has no metadata.yaml, so it is not a ROS 2 bag");
+  StoredBag out{.kind = lower_extension(*parts.begin()) == ".mcap" ? "mcap" : "sqlite3", .files = {*parts.begin()}};
+  add_unlisted(folder, out);
+  if (out.files.size() < parts.size())
+    fail_at(folder,
+            "the folder has no metadata.yaml, and the names of its bags differ by more than a number; create "
+            "metadata.yaml with 'ros2 bag reindex', or import one bag at a time");
+  out.note = "caution: the folder has no metadata.yaml; the import reads its bags as parts of one recording";
+  return out;
+}
+
 StoredBag storage_of(const path& bag) {
   if (!std::filesystem::is_directory(bag)) {
     const bool packed = lower_extension(bag) == ".zstd";
@@ -199,8 +213,7 @@ StoredBag storage_of(const path& bag) {
         .kind = lower_extension(name) == ".mcap" ? "mcap" : "sqlite3", .files = {bag}, .packed = packed ? "file" : ""};
   }
   const path metadata = bag / "metadata.yaml";
-  if (!std::filesystem::is_regular_file(metadata))
-    fail_at(bag, "the folder has no metadata.yaml, so it is not a ROS 2 bag");
+  if (!std::filesystem::is_regular_file(metadata)) return parts_in(bag);
   StoredBag out;
   try {
     const YAML::Node root = YAML::LoadFile(metadata.string())["rosbag2_bagfile_information"];
@@ -209,8 +222,12 @@ StoredBag storage_of(const path& bag) {
       fail_at(metadata, fmt::format("the storage is '{}'; it must be sqlite3 or mcap", out.kind));
     out.packed = packed_by(root, metadata);
     for (const YAML::Node& each : root["relative_file_paths"]) {
-      const path name = path(each.as<std::string>()).filename();  // only files within the folder
+      const path name = path(each.as<std::string>()).filename();  // only files within the folder are read
       out.files.push_back(bag / name);
+      if (!std::filesystem::exists(out.files.back()))
+        fail_at(out.files.back(),
+                "no such file, although metadata.yaml lists it; copy the file into the "
+                "folder, or remove its line from metadata.yaml");
     }
   } catch (const YAML::Exception& error) {
     std::string what = error.what();

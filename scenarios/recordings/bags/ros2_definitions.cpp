@@ -13,8 +13,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// The map contains the fields of ROS 2's common messages, one type and name per line
-/// (github.com/ros2/common_interfaces, rcl_interfaces).
+/// Fields of common ROS 2 messages, one type and name per line (github.com/ros2/common_interfaces, rcl_interfaces).
 const std::map<std::string, std::string>& definitions() {
   static const std::map<std::string, std::string> all = {
       {"builtin_interfaces/Time", "int32 sec\nuint32 nanosec\n"},
@@ -53,7 +52,7 @@ const std::map<std::string, std::string>& definitions() {
   return all;
 }
 
-/// Appends the definitions of all messages that the definition `text` contains, each once, outer before inner.
+/// Appends the definitions of the messages that `text` contains, each once, outer before inner.
 void append_inner(const std::string& text, std::set<std::string>& there, std::string& out) {
   std::istringstream words(text);
   for (std::string word; words >> word;) {
@@ -91,8 +90,7 @@ std::string ros2_definition(const std::string& type) {
 std::string ros2_qos(const std::string& topic) {
   if (topic != "/tf_static") return "";
   const std::string forever = "\n    sec: 9223372036\n    nsec: 854775807\n";
-  // The numbers are those of rmw: history keep last, reliability reliable, durability transient local, liveliness
-  // automatic.
+  // Numbers of rmw: history keep last, reliability reliable, durability transient local, liveliness automatic.
   return "- history: 1\n  depth: 1\n  reliability: 1\n  durability: 1\n  deadline:" + forever +
          "  lifespan:" + forever + "  liveliness: 1\n  liveliness_lease_duration:" + forever +
          "  avoid_ros_namespace_conventions: false";

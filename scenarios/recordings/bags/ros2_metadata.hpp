@@ -18,11 +18,11 @@ struct Ros2Summary {
   std::string storage;  ///< "sqlite3" or "mcap"
   std::string file;     ///< file name in the folder
   std::vector<Topic> topics = {};
-  std::int64_t first_ns = 0, last_ns = 0;  ///< range of the messages' stamps
+  std::int64_t first_ns = 0, last_ns = 0;  ///< smallest and largest time stamp
 
-  /// Returns the index of a topic in the list; a new topic is appended.
+  /// Returns the index of a topic in the list, after appending a new topic.
   std::size_t place_of(const BagTopic& topic);
-  /// Counts a message of a topic and extends the time range of the bag to its stamp.
+  /// Counts a message of a topic, and extends the time range of the bag to its stamp.
   void count(const BagTopic& topic, std::int64_t stamp_ns);
 };
 

@@ -11,10 +11,10 @@
 #include "scenarios/recordings/bags/ros1_archives.hpp"
 #include "scenarios/recordings/bags/ros_fields.hpp"
 
-/// The functions in ros_bytes.hpp encode and decode messages in ROS 1's little-endian layout and ROS 2's CDR format.
+/// ros_bytes.hpp encodes and decodes messages in the little-endian layout of ROS 1 and in the CDR format of ROS 2.
 namespace tumble::scenarios::ros {
 
-/// Converts a message to bytes, or bytes to a message. Decoding throws BadMessage if the bytes are damaged.
+/// Converts a message to bytes and back. Decoding throws BadMessage if the bytes are damaged.
 template <class Message>
 Bytes to_ros1(Message message) {
   Ros1Writer writer;

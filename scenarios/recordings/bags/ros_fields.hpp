@@ -7,16 +7,15 @@
 
 #include "scenarios/recordings/bags/ros_messages.hpp"
 
-/// The header ros_fields.hpp lists the fields of each message type in the order of the message definition. ROS 1 and
-/// ROS 2 encode the fields of a message differently. The archives (encoders and decoders) in ros_bytes.hpp implement
-/// both encodings.
+/// ros_fields.hpp lists the fields of each message type in the order of the message definition. The archives (encoders
+/// and decoders) in ros_bytes.hpp implement the encodings of ROS 1 and ROS 2.
 ///
 /// An archive must have the following members:
-/// - The member operator()(uint8 | uint32 | uint64 | float | text | array of doubles) handles one field.
-/// - The member ros1_only(uint32) handles a field that ROS 2 removed.
-/// - The member count(number of entries, minimum bytes of an entry) handles the length before a list. A decoder returns
-///   the stored length.
-/// - The member raw(first byte, bytes) handles a block of bytes.
+/// - operator()(uint8 | uint32 | uint64 | float | text | array of doubles) handles one field.
+/// - ros1_only(uint32) handles a field that ROS 2 removed.
+/// - count(number of entries, minimum bytes of an entry) handles the length before a list. A decoder returns the stored
+///   length.
+/// - raw(first byte, bytes) handles a block of bytes.
 namespace tumble::scenarios::ros {
 
 template <class Archive, class Entry, class Fields>

@@ -7,7 +7,7 @@
 #include <variant>
 #include <vector>
 
-/// The header ros_messages.hpp defines the message types of an exported recording; ros_fields.hpp lists their fields.
+/// ros_messages.hpp defines the message types of an exported recording; ros_fields.hpp lists their fields.
 namespace tumble::scenarios::ros {
 
 struct Header {
@@ -19,7 +19,7 @@ struct Header {
 struct Imu {
   Header header;
   std::array<double, 4> orientation_xyzw = {0, 0, 0, 1};
-  std::array<double, 9> orientation_covariance = {-1};  ///< -1 first: no attitude
+  std::array<double, 9> orientation_covariance = {-1};  ///< first element -1: attitude unknown
   std::array<double, 3> angular_velocity = {};
   std::array<double, 9> angular_velocity_covariance = {};
   std::array<double, 3> linear_acceleration = {};
@@ -56,7 +56,7 @@ struct Odometry {
   std::array<double, 3> position = {};
   std::array<double, 4> orientation_xyzw = {0, 0, 0, 1};
   std::array<double, 36> pose_covariance = {};
-  std::array<double, 3> linear_velocity = {}, angular_velocity = {};  ///< in the child's frame
+  std::array<double, 3> linear_velocity = {}, angular_velocity = {};  ///< in axes of the child frame
   std::array<double, 36> twist_covariance = {};
 };
 
@@ -77,7 +77,7 @@ struct Clock {
 
 /// LivoxPoint is one point of a Livox lidar (Livox-SDK/livox_ros_driver, README: "Livox pointcloud custom message").
 struct LivoxPoint {
-  std::uint32_t offset_time = 0;  ///< ns after the message's `timebase`
+  std::uint32_t offset_time = 0;  ///< ns after `timebase` of the message
   float x = 0, y = 0, z = 0;      ///< m
   std::uint8_t reflectivity = 0, tag = 0, line = 0;
 };
@@ -85,14 +85,14 @@ struct LivoxPoint {
 /// LivoxCustomMsg is the message type "CustomMsg" of the vendor's drivers.
 struct LivoxCustomMsg {
   Header header;
-  std::uint64_t timebase = 0;  ///< ns, of the first point
+  std::uint64_t timebase = 0;  ///< time of the first point [ns]
   std::uint32_t point_num = 0;
   std::uint8_t lidar_id = 0;
   std::array<std::uint8_t, 3> rsvd = {};
   std::vector<LivoxPoint> points;
 };
 
-/// Message is any message type that the bag writers write. The names of message types are those of ROS 1.
+/// Message is any message type that the bag writers write. Type names are those of ROS 1.
 using Message = std::variant<Imu, PointCloud2, Odometry, TransformStamped, TFMessage, Clock, LivoxCustomMsg>;
 inline const char* type_of(const Imu&) {
   return "sensor_msgs/Imu";

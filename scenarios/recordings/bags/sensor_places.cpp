@@ -55,7 +55,7 @@ void SensorMountings::place(const std::string& topic, const std::string& frame, 
 
 void SensorMountings::mounting_in_body(const std::string& topic, const Eigen::Isometry3d& stated, bool given,
                                        Eigen::Isometry3d& T_BA, std::vector<std::string>& notes) const {
-  constexpr double kSame = 1e-3;  // m, and approximately rad
+  constexpr double kSame = 1e-3;  // largest equal difference [m], and approximately [rad]
   const std::string body = frames_.body();
   if (!given) {
     T_BA = stated;
@@ -71,8 +71,7 @@ void SensorMountings::mounting_in_body(const std::string& topic, const Eigen::Is
 
 const SensorMountings::Placed* SensorMountings::neighbour(const std::string& frame) const {
   for (const Placed& each : placed_) {
-    // Drivers give all sensors of a device one frame, so an equal frame does not determine the pose between two
-    // sensors.
+    // Drivers give all sensors of a device one frame, so equal frames do not determine the pose between two sensors.
     if (each.frame != frame && frames_.pose(each.frame, frame, where_)) return &each;
   }
   return nullptr;

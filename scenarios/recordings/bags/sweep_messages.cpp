@@ -17,7 +17,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Returns the indices of the sweep's points in the order of the message.
+/// Returns the indices of a sweep's points in the order of the message.
 std::vector<std::size_t> order_of(const sim::LidarRecord& lidar, std::size_t sweep, bool in_time_order) {
   std::vector<std::size_t> points(lidar.sweep_first[sweep + 1] - lidar.sweep_first[sweep]);
   std::iota(points.begin(), points.end(), lidar.sweep_first[sweep]);
@@ -38,7 +38,7 @@ Number as(double value) {
   }
 }
 
-/// Returns the value of one field of a point. A time since 1970 in a double is accurate to 0.25 us.
+/// Returns the value of one field of a point. A time since 1970 has a resolution of 0.25 us in a double.
 double value_of(const sim::LidarRecord& lidar, std::size_t point, const PointColumn& column, std::int64_t start_ns) {
   switch (column.quantity) {
     case PointQuantity::x_m:
@@ -78,7 +78,7 @@ WrittenType field_type(NumberType type) {
   return {ros::PointField::float64, 8};
 }
 
-/// Calls `put` with a zero of the column's number type.
+/// Calls `put` with a zero of the number type.
 template <class Put>
 void with_number(NumberType type, Put&& put) {
   switch (type) {
@@ -146,7 +146,7 @@ ros::LivoxCustomMsg livox_of(const sim::LidarRecord& lidar, const std::vector<st
       throw BadInput(
           fmt::format("point {} of '{}' is not finite; a CustomMsg cannot store a missing return", k, lidar.name));
     }
-    // The tag 0 means a single return with full confidence.
+    // Tag 0 means a single return with full confidence.
     out.points.push_back({lidar.offset_ns[k], p.x(), p.y(), p.z(), as<std::uint8_t>(lidar.intensity[k] * kFull), 0,
                           static_cast<std::uint8_t>(lidar.ring[k])});
   }

@@ -14,23 +14,23 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr std::size_t kKitti = 4;
-/// The list omits multiples of four, which could be doubles, or two rows of a point read as two points.
+/// Multiples of four are omitted: they could be doubles, or two rows of points read as one.
 constexpr std::array<std::size_t, 8> kOtherFloats = {3, 5, 6, 7, 8, 9, 10, 12};
 constexpr std::array<std::size_t, 6> kDoubles = {3, 4, 5, 6, 7, 8};
-/// The sample has kSections sections of the file with kInRow numbers in a row, so that a sweep in the order of its
-/// rings is sampled completely.
+/// The sample has kSections sections of the file, each with kInRow consecutive numbers, so that a sweep in the order of
+/// its rings is sampled completely.
 constexpr std::size_t kSections = 4, kInRow = 6000;
 constexpr std::size_t kPerColumnMin = 25;
 constexpr std::size_t kNumberBins = 16;
-/// Valid coordinates in metres and valid intensities are between kSmallest and kLargest. The smallest limit is low,
-/// because the sine of 180 degrees times a range is about 1e-16.
+/// Valid coordinates in metres and valid intensities have magnitudes from kSmallest to kLargest, or are 0. The limit
+/// kSmallest is low, because the sine of 180 degrees times a range is about 1e-16.
 constexpr double kLargest = 1e7, kSmallest = 1e-20, kOddShareMax = 0.01;
-/// A larger number of columns is chosen only if the columns differ more, by at least the factor kMultipleDiffers. In
+/// A larger number of columns is chosen only if the difference between the columns grows at least by this factor. In
 /// valid sweeps, the difference grows by at most 0.08, for a lidar in which every second ring looks down.
 constexpr double kMultipleDiffers = 1.5;
 constexpr double kClearlyMore = 1.25, kClearlyMoreBy = 0.05;
 
-/// NumberSample contains some numbers of a file, and the position of each number in the file.
+/// NumberSample contains some numbers of a file, and the index of each number in the file.
 struct NumberSample {
   std::vector<double> values;
   std::vector<std::size_t> index;
@@ -55,7 +55,7 @@ NumberSample sample_of(std::span<const char> bytes) {
 
 double odd_share(const NumberSample& sample) {
   const auto odd = [](double value) {
-    return std::abs(value) > kLargest || (value != 0.0 && std::abs(value) < kSmallest);  // NaN is a miss
+    return std::abs(value) > kLargest || (value != 0.0 && std::abs(value) < kSmallest);  // NaN: ray without a return
   };
   const auto count = std::count_if(sample.values.begin(), sample.values.end(), odd);
   return sample.values.empty() ? 0.0 : static_cast<double>(count) / static_cast<double>(sample.values.size());
@@ -79,7 +79,8 @@ std::vector<std::size_t> bins_of(const NumberSample& sample) {
 
 using NumberHistogram = std::array<double, kNumberBins + 1>;
 
-/// Returns the mean total variation distance between a column and all numbers, minus the expected distance by chance.
+/// Returns the total variation distance between a column and all numbers, averaged over columns, minus its expectation
+/// by chance.
 double columns_differ(const NumberSample& sample, const std::vector<std::size_t>& bins, std::size_t columns) {
   std::vector<NumberHistogram> counts(columns, NumberHistogram{});
   NumberHistogram all{};
@@ -105,9 +106,8 @@ struct ColumnFit {
   double differ = 0.0;
 };
 
-/// Returns the smallest number of columns, among divisors of the file's size, whose distributions differ about as much
-/// as for any other number. Multiples of the correct number of columns differ somewhat more if the order of the points
-/// repeats.
+/// Returns the smallest number of columns that divides the number count and whose columns differ about as much as with
+/// any other number. Multiples of the correct number differ somewhat more if the order of points repeats.
 template <std::size_t kCount>
 ColumnFit best_of(const NumberSample& sample, std::size_t numbers_in_file,
                   const std::array<std::size_t, kCount>& candidates) {

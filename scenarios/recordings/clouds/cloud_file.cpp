@@ -36,7 +36,7 @@ void take_column(const pcl::PCLPointCloud2& cloud, std::size_t offset, std::vect
   }
 }
 
-/// Appends the values of a field to `out`; returns false if the type of the field is not a number.
+/// Appends the values of a field to `out`. Returns false if the type of the field is not a number.
 bool take_field(const pcl::PCLPointCloud2& cloud, const pcl::PCLPointField& field, std::vector<double>& out) {
   using Field = pcl::PCLPointField;
   switch (field.datatype) {
@@ -75,7 +75,7 @@ Cloud to_columns(const pcl::PCLPointCloud2& cloud, std::size_t points) {
   out.points = points;
   for (const pcl::PCLPointField& field : cloud.fields) {
     std::vector<double> column(points);
-    // The reader skips padding ("_") and fields that contain several numbers.
+    // Padding ("_") and fields with several numbers are skipped.
     if (field.count > 1 || field.name == "_" || !take_field(cloud, field, column)) continue;
     out.names.push_back(plain_name(field.name));
     out.columns.push_back(std::move(column));
@@ -83,7 +83,7 @@ Cloud to_columns(const pcl::PCLPointCloud2& cloud, std::size_t points) {
   return out;
 }
 
-/// Returns whether the whole word is a number for PCL: "nan" and "inf" are numbers, "0,5" and "x" are not.
+/// Returns true if PCL reads the whole word as a number, such as "nan" or "inf"; false for "0,5" or "x".
 bool is_number_of_pcl(std::string_view word) {
   if (word.starts_with('+')) word.remove_prefix(1);
   double value = 0.0;
@@ -91,8 +91,8 @@ bool is_number_of_pcl(std::string_view word) {
   return error != std::errc::invalid_argument && end == word.data() + word.size();
 }
 
-/// Checks that all words of a text file are numbers, and that each line has as many numbers as the header claims. PCL
-/// alone would silently read the start of a word, or 0, or NaN.
+/// Throws BadInput if a word of a text file is not a number, or a line has another count of numbers than the header
+/// states. PCL would silently read the start of a word, or 0, or NaN.
 void require_numbers(const std::filesystem::path& path, const CloudHeader& header) {
   std::ifstream stream(path, std::ios::binary);
   std::string text(static_cast<std::size_t>(header.header_bytes), '\0');
@@ -136,7 +136,7 @@ Cloud read_points(const std::filesystem::path& path, const CloudHeader& header, 
   return out;
 }
 
-/// kBinTypes lists the types of the columns of a .bin file by their NumPy names.
+/// Types of the columns of a .bin file, by their NumPy names.
 constexpr std::array<std::pair<const char*, std::uint8_t>, 10> kBinTypes = {{{"f4", pcl::PCLPointField::FLOAT32},
                                                                              {"f8", pcl::PCLPointField::FLOAT64},
                                                                              {"u1", pcl::PCLPointField::UINT8},

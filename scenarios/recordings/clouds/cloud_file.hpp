@@ -9,22 +9,22 @@
 namespace tumble::scenarios {
 
 /// Cloud contains the points of a file or message as named columns of numbers, without interpretation. A 64-bit integer
-/// keeps only its 53 leading bits, so a time stamp in nanoseconds since 1970 is accurate to 256 ns.
+/// keeps 53 bits, so a time stamp in nanoseconds since 1970 is accurate to 256 ns.
 struct Cloud {
-  std::vector<std::string> names;            ///< as written, without CloudCompare's prefix "scalar_"
+  std::vector<std::string> names;            ///< names in the file, without CloudCompare's prefix "scalar_"
   std::vector<std::vector<double>> columns;  ///< parallel to `names`, one number per point
   std::size_t points = 0;
-  std::string viewpoint;  ///< VIEWPOINT of a PCD if it is not the identity, as written; not applied
+  std::string viewpoint;  ///< VIEWPOINT of a PCD file, empty for the identity; not applied to the points
 
-  /// Returns the column called `name`, or null.
+  /// Returns the column `name`, or null.
   const std::vector<double>* find(const std::string& name) const;
 };
 
 inline constexpr std::uint64_t kCloudPointsMax = std::uint64_t{1} << 26;
 
-/// Reads the points of a file, whose extension selects the format. The formats are PLY and PCD of any encoding (by
-/// PCL), legacy VTK text (vtk_file.hpp), and .bin, which has no header. A file without points gives a cloud without
-/// points. The reader compares the header with the file size before it allocates memory.
+/// Reads the points of a file, whose extension selects the format: PLY and PCD of any encoding (by PCL), legacy VTK
+/// text (vtk_file.hpp), and .bin, which has no header. A file may have no points. The header is compared with the file
+/// size before memory is allocated.
 ///
 /// @param bin_columns  Columns of a .bin file in order, "x,y,z,intensity,ring". Each column is float32, or has a NumPy
 ///   type after a colon ("x:f8"); the name "_" skips bytes. An empty text selects KITTI's columns x y z intensity, if
@@ -35,15 +35,15 @@ Cloud read_cloud(const std::filesystem::path& path, const std::string& bin_colum
 /// CloudHeader is the content of a PLY or PCD header.
 struct CloudHeader {
   std::uint64_t points = 0;
-  std::uint64_t point_bytes = 0;  ///< 0 for text
+  std::uint64_t point_bytes = 0;  ///< bytes per point; 0 for text
   std::uint64_t header_bytes = 0;
   std::size_t fields = 0;
   std::uint64_t numbers = 0;  ///< numbers per point, over all fields
   bool ascii = false;
-  std::string viewpoint;  ///< of a PCD: x y z qw qx qy qz, as written; "" for the identity
+  std::string viewpoint;  ///< VIEWPOINT of a PCD file: x y z qw qx qy qz; empty for the identity
 };
 
-/// Reads and checks the header of a point file, without the points. Both header readers throw BadInput like read_cloud.
+/// Reads and checks the header of a point file, without its points. Throws BadInput like read_cloud.
 CloudHeader read_ply_header(const std::filesystem::path& path);
 CloudHeader read_pcd_header(const std::filesystem::path& path);
 

@@ -18,9 +18,9 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// The compression LZF expands 3 bytes to at most 264 bytes.
+/// LZF expands 3 bytes to at most 264 bytes.
 constexpr std::uint64_t kLzfMost = 88;
-/// A header longer than kCloudHeaderMax is invalid.
+/// A longer header is invalid.
 constexpr std::size_t kCloudHeaderMax = 65536;
 
 /// HeaderLines contains the lines of a header with their locations in the file.
@@ -44,7 +44,7 @@ class HeaderLines {
     return out;
   }
 
-  /// Returns whether the last header line that was read is empty.
+  /// Returns true if the latest line is empty.
   bool line_is_empty() const { return line_.empty(); }
 
   [[noreturn]] void fail(const std::string& what) const {
@@ -59,13 +59,13 @@ class HeaderLines {
 
   std::uint64_t bytes() const { return bytes_; }
 
-  /// Compares the number of points in the header with the remaining file size; one byte of the file gives at most
+  /// Checks that the number of points in the header fits the remaining file size. One byte of the file gives at most
   /// `made_of_a_byte` bytes of points.
   void require_room(const CloudHeader& header, std::uint64_t made_of_a_byte = 1) const {
     if (header.points > kCloudPointsMax) {
       fail(fmt::format("the file states {} points; at most {} can be read", header.points, kCloudPointsMax));
     }
-    // A number in text needs at least a digit and a separator; only the last number may lack the separator.
+    // A number in a text needs a digit and a separator; the last number needs no separator.
     const std::uint64_t point_bytes = header.point_bytes > 0 ? header.point_bytes : 2 * header.fields;
     const std::uint64_t slack = header.point_bytes > 0 ? 0 : 1;
     const std::uint64_t rest = bytes_in_file_ - std::min(bytes_, bytes_in_file_) + slack;
@@ -76,7 +76,7 @@ class HeaderLines {
     }
   }
 
-  /// Checks the compressed size and the uncompressed size in front of compressed points, which PCL does not check.
+  /// Checks the compressed and the uncompressed size before compressed points, because PCL does not.
   void require_sizes(const CloudHeader& header) {
     std::array<std::uint32_t, 2> sizes{};
     if (!stream_.read(reinterpret_cast<char*>(sizes.data()), sizeof(sizes)))
@@ -91,8 +91,8 @@ class HeaderLines {
     }
   }
 
-  /// The library PCL reads the header of a point file up to the first line that is not empty, not a comment and starts
-  /// with no header word. Point data that look like header lines would therefore change the header.
+  /// PCL continues the header up to the first line that is not empty, not a comment and starts with no header word. A
+  /// line of point data that looks like a header line would therefore change the header.
   void require_end_of_header(std::span<const char* const> words) {
     stream_.clear();
     stream_.seekg(static_cast<std::streamoff>(bytes_));

@@ -20,7 +20,8 @@ std::string ending_of(const std::string& format) {
   throw BadInput(fmt::format("the sweep format '{}' is not supported; supported: ply, pcd, vtk and kitti", format));
 }
 
-/// Returns the file with time stamps that the caller chose, or a file with time stamps next to the sweeps, or nothing.
+/// Returns the path of the file with time stamps: the caller's choice, or a file next to the sweeps; empty if there is
+/// none.
 path times_file(const SweepSource& source, const std::vector<path>& files) {
   if (!source.times.empty()) return source.times;
   for (const std::string& name : {stem_of(files.front()) + "_times.txt", std::string("times.txt")}) {
@@ -29,8 +30,7 @@ path times_file(const SweepSource& source, const std::vector<path>& files) {
   return {};
 }
 
-/// Returns one time stamp per file, or an empty list if the time stamps are unknown. The argument `disorder` is that of
-/// read_stamps.
+/// Returns one time stamp per file; empty if the time stamps are unknown. `disorder` is that of read_stamps.
 std::vector<std::int64_t> stamps_of(const SweepSource& source, const std::vector<path>& files,
                                     std::vector<std::string>& disorder) {
   const path file = times_file(source, files);

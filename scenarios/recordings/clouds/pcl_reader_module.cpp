@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The module pcl_reader_module.cpp contains PCL's readers (pcl_reader.hpp); it is not linked to any library of this
+// The module pcl_reader_module.cpp contains PCL's readers (pcl_reader.hpp), and is linked to no library of this
 // project.
 #include <pcl/io/pcd_io.h>
 #include <pcl/io/ply_io.h>

@@ -19,16 +19,16 @@ namespace tumble::scenarios {
 namespace {
 
 /// The point times of a sweep must cover a fraction of the sweep period between kSpanMin (a sector of 7 degrees) and
-/// kSpanMax (some overlap). Time units differ by factors of 1000, so at most one unit fits. A shorter range of times,
-/// for example if times restart with each packet, still fits exactly one unit.
+/// kSpanMax (some overlap). Time units differ by factors of 1000, so at most one unit fits. If the times cover a
+/// shorter range, for example because they restart with each packet, still only one unit fits.
 constexpr double kSpanMin = 0.02, kSpanMax = 1.5, kShortSpanMin = kSpanMax / 1000.0;
-/// Time stamps after 1973, in seconds, exceed kEpochMin_s.
+/// Times since 1970 that are later than 1973 exceed this value.
 constexpr double kEpochMin_s = 1e8;
-/// The points of a sweep with at least kPointsThatSpan points cover the whole sweep period. The points of a smaller
-/// sweep may cover a short part of the period, so their times do not contradict a time unit.
+/// A sweep with at least this many points covers the whole sweep period. A smaller sweep may cover a short part, so its
+/// times do not contradict a time unit.
 constexpr double kPointsThatSpan = 100.0;
 
-/// If times are absolute, at least two of kCloudsToCompare clouds start more than two periods after time zero.
+/// With at least this many clouds, times are absolute if two clouds start more than two periods from time zero.
 constexpr std::size_t kCloudsToCompare = 5;
 
 using tumble::ros::kTimeUnits, tumble::ros::TimeUnit, tumble::ros::stated_unit;
@@ -55,7 +55,7 @@ std::string choose_field(const Cloud& cloud, const SweepReading& reading, const 
   return choice.field;
 }
 
-/// A point time is damaged if it is farther from the median than kDamaged interquartile ranges.
+/// A point time that is farther from the median by more than this number of interquartile ranges is damaged.
 constexpr double kDamaged = 20.0;
 
 /// Returns the first and last time of the valid points of a cloud.
@@ -90,7 +90,7 @@ std::string share_of(double span, const TimeUnit& unit, double period_ns) {
   return fmt::format("{} % of the sweep period", text);
 }
 
-/// Throws BadInput if the numbers contradict the time unit from an option or a field name.
+/// Throws BadInput if the numbers contradict the time unit in an option or in the name of the field.
 void require_no_other_unit(const TimeUnit& stated, double span, double period_ns, const std::string& field,
                            const std::string& where) {
   if (!(period_ns > 0.0) || fits(span, stated, period_ns)) return;
@@ -104,11 +104,11 @@ void require_no_other_unit(const TimeUnit& stated, double span, double period_ns
                              share_of(span, *read, period_ns)));
 }
 
-/// Determines the time unit from the range and size of the numbers.
+/// Determines the time unit from the range and the size of the numbers.
 double unit_by_size(double span, double largest, double period_ns, const std::string& field, const std::string& where) {
   for (const TimeUnit& unit : kTimeUnits) {
     if (period_ns > 0.0 && fits(span, unit, period_ns, kShortSpanMin)) return unit.ns;
-    // For times since 1970, the function returns the largest plausible unit.
+    // For times since 1970: the largest plausible unit.
     if (!(period_ns > 0.0) && largest >= kEpochMin_s * 1e9 / unit.ns && largest < kEpochMin_s * 1e12 / unit.ns)
       return unit.ns;
   }
@@ -146,8 +146,9 @@ PointTimeRule find_point_times(const std::vector<Cloud>& first, std::int64_t per
     largest = std::max({largest, std::abs(begin), std::abs(end)});
   }
   if (rule.field.empty() || spans.empty()) return {};
-  const bool stamped = period_ns > 0 && !reading.assumed;
-  if (stamped && std::ranges::max(spans) == 0.0 && upper_median(points) >= kPointsThatSpan) {
+  // times since 1970 replace assumed time stamps, even if all points of a sweep have the same time
+  const bool stamped = period_ns > 0 && !(reading.assumed && largest >= kEpochMin_s);
+  if (stamped && std::ranges::max(spans) == 0.0 && upper_median(points) > 1.0) {
     rule.field.clear();
     rule.constant = true;
     return rule;
@@ -170,7 +171,7 @@ PointTimeRule find_point_times(const std::vector<Cloud>& first, std::int64_t per
     const double bound = period_ns > 0 ? 2.0 * period : kEpochMin_s * 1e9;
     if (end >= begin && std::abs(begin) * rule.unit_ns > bound) ++far;
   }
-  rule.absolute = far > (spans.size() >= kCloudsToCompare ? 1 : 0);  // one of many may be damaged
+  rule.absolute = far > (spans.size() >= kCloudsToCompare ? 1 : 0);  // a single cloud among many may be damaged
   return rule;
 }
 

@@ -20,15 +20,15 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// The first kProbe clouds determine the time unit, because a single cloud may be incomplete.
+/// The time unit comes from the first kProbe clouds, because a single cloud may be incomplete.
 constexpr std::ptrdiff_t kProbe = 10;
 constexpr double kByteIntensity = 255.0;
 constexpr double kPointFar_m = 1e6;
-constexpr double kBeyond = 2.0;         // multiple of the data sheet's range
-constexpr double kFarthest_m = 500.0;   // default limit without a data sheet: beyond the range of robot lidars
-constexpr std::size_t kBackwards = 20;  // ratio of falling to rising point times, in the order of storage
-constexpr double kOverlapMost = 1.05;   // longest sweep relative to the time between sweeps
-/// kOffsetMax_ns is the longest time offset of a point while the period is unknown.
+constexpr double kBeyond = 2.0;         // largest accepted distance, in ranges of the data sheet
+constexpr double kFarthest_m = 500.0;   // range without a data sheet: above that of robot lidars
+constexpr std::size_t kBackwards = 20;  // smallest ratio of falling to rising point times of a reversed sweep
+constexpr double kOverlapMost = 1.05;   // largest accepted ratio of sweep period to time between sweep starts
+/// Largest time offset of a point if the period is unknown.
 constexpr std::int64_t kOffsetMax_ns = 1000000000;
 
 using tumble::ros::kRingNames, tumble::ros::kIntensityNames;
@@ -52,7 +52,7 @@ const std::vector<double>* first_of(const Cloud& cloud, std::span<const std::str
   return nullptr;
 }
 
-/// Returns the indices of the valid points of a cloud.
+/// Returns the indices of the points with a return.
 std::vector<std::size_t> hits(const Cloud& cloud, const std::string& where) {
   const std::vector<double>&x = coordinate(cloud, "x", where), &y = coordinate(cloud, "y", where),
         &z = coordinate(cloud, "z", where);
@@ -68,14 +68,14 @@ std::string in_ns(std::int64_t time_ns) {
   return std::to_string(time_ns) + " ns";
 }
 
-/// Describes how the time rule interprets the point times.
+/// Describes the field and the unit of the point times.
 std::string said(const PointTimeRule& rule) {
   const char* unit = rule.unit_ns == 1e9 ? "s" : rule.unit_ns == 1e6 ? "ms" : rule.unit_ns == 1e3 ? "us" : "ns";
   return fmt::format("point times: field '{}', in {}{}", rule.field, unit,
                      rule.absolute ? " of the clock" : " after the sweep's time stamp");
 }
 
-/// Returns a time in the middle of a sweep; points farther from this time than the longest sweep have wrong times.
+/// Returns a time in the middle of a sweep. Points that are farther from it than the longest sweep have wrong times.
 std::int64_t middle_of(const std::vector<std::optional<std::int64_t>>& times_ns) {
   std::vector<std::int64_t> known;
   for (const auto& time : times_ns) {
@@ -123,7 +123,7 @@ void SweepBuilder::find_rule() {
   waiting_.clear();
 }
 
-/// Returns whether the absolute times of most of the first clouds are far from the clouds' stamps.
+/// Returns true if the absolute point times of most of the first clouds are far from the clouds' stamps.
 bool SweepBuilder::has_other_clock() const {
   if (!rule_->absolute || reading_.assumed || period_ns_ <= 0) return false;
   std::size_t apart = 0, all = 0;
@@ -181,12 +181,15 @@ void SweepBuilder::read(Waiting& sweep) {
   if (store_) store_->take(record_);
 }
 
-/// Returns the times of the points in the clock of the stamps; points without times have the time of the sweep's start.
-/// A few points with wrong times are removed from `kept`; many such points throw BadInput.
+/// Returns the times of the points in the clock of the stamps. Points without times get the start of the sweep. Points
+/// with wrong times are removed from `kept`; if there are many, throws BadInput.
 std::vector<std::int64_t> SweepBuilder::point_times(const Waiting& sweep, std::vector<std::size_t>& kept) {
   if (rule_->field.empty() || kept.empty()) {
     if (!sweep.stamp_ns)
-      throw BadInput(fmt::format("{}: neither the sweep nor its points have a time stamp", sweep.where));
+      throw BadInput(fmt::format(
+          "{}: neither the sweep nor its points have a time stamp; state the times of the sweeps (--times), or the "
+          "duration of one sweep (--sweep-period)",
+          sweep.where));
     return std::vector<std::int64_t>(kept.size(), *sweep.stamp_ns);
   }
   const std::vector<double>* numbers = sweep.cloud.find(rule_->field);
@@ -196,7 +199,7 @@ std::vector<std::int64_t> SweepBuilder::point_times(const Waiting& sweep, std::v
   if (!rule_->absolute && !sweep.stamp_ns)
     throw BadInput(fmt::format(
         "{}: the point times are relative to the start of the sweep, but the sweep has no time stamp", sweep.where));
-  constexpr double kBound = 4.6e18;  // differences fit in int64
+  constexpr double kBound = 4.6e18;  // larger times would overflow differences in int64
   const std::int64_t origin_ns = rule_->absolute ? 0 : *sweep.stamp_ns;
   std::vector<std::optional<std::int64_t>> times_ns;
   for (const std::size_t i : kept) {
@@ -234,7 +237,7 @@ std::int64_t SweepBuilder::longest_sweep_ns() const {
   return period_ns_ > 0 ? 2 * period_ns_ : kOffsetMax_ns;
 }
 
-/// Returns the start of the sweep, and converts point times of another clock to the clock of the stamp.
+/// Returns the start of the sweep. If the point times have another clock, converts them to the clock of the stamp.
 std::int64_t SweepBuilder::start_of(const Waiting& sweep, std::vector<std::int64_t>& times_ns) const {
   if (times_ns.empty()) return *sweep.stamp_ns;
   const std::int64_t first = *std::min_element(times_ns.begin(), times_ns.end()), bound = longest_sweep_ns();
@@ -258,7 +261,7 @@ std::int64_t SweepBuilder::start_of(const Waiting& sweep, std::vector<std::int64
   return start;
 }
 
-/// Returns whether most points of a cloud are beyond twice the lidar's range, and counts such a cloud as skipped.
+/// Returns true if most points of a cloud are beyond twice the lidar's range; such a cloud counts as skipped.
 bool SweepBuilder::is_far(const Waiting& sweep, const std::vector<std::size_t>& kept) {
   if (kept.empty()) return false;
   const std::vector<double>&x = *sweep.cloud.find("x"), &y = *sweep.cloud.find("y"), &z = *sweep.cloud.find("z");
@@ -306,8 +309,7 @@ double SweepBuilder::range_max_m() const {
   return reading_.range_max_m > 0.0 ? reading_.range_max_m : kFarthest_m;
 }
 
-/// Throws BadInput if the coordinates are probably in mm. Single points beyond the range of the data sheet are
-/// accepted.
+/// Throws BadInput if most points are beyond the range, probably because the coordinates are in mm.
 void SweepBuilder::require_range(const std::string& where) const {
   const std::size_t all = points() + far_;
   if (2 * beyond_ <= all) return;
@@ -322,9 +324,8 @@ void SweepBuilder::note_dropped_points(std::vector<std::string>& notes) const {
   for (const auto& [name, sweeps] : ignored_) names += " " + name;
   if (left_out_.count() > 0) notes.push_back(left_out_.note(record_.sweep_start_ns.size() + skipped_));
   if (mistimed_ > 0)
-    notes.push_back(
-        fmt::format("caution: {} points are left out, because their times are outside their sweep (first: {})",
-                    mistimed_, first_mistimed_));
+    notes.push_back(fmt::format("caution: {} {} left out because of times outside their sweep (first: {})", mistimed_,
+                                mistimed_ == 1 ? "point is" : "points are", first_mistimed_));
   if (other_clock_)
     notes.push_back(
         "caution: the point times and the time stamps of the sweeps come from different clocks. The import assumes "

@@ -23,7 +23,7 @@ bool is_digit(char c) {
   return std::isdigit(static_cast<unsigned char>(c)) != 0;
 }
 
-/// The comparison orders the numbers in two names by value.
+/// Compares numbers in the names by their values.
 bool natural_less(const std::filesystem::path& left, const std::filesystem::path& right) {
   const std::string a = left.filename().string(), b = right.filename().string();
   std::size_t i = 0, j = 0;
@@ -43,7 +43,7 @@ bool natural_less(const std::filesystem::path& left, const std::filesystem::path
     if (order != 0) return order < 0;
   }
   if (a.size() - i != b.size() - j) return a.size() - i < b.size() - j;
-  return a < b;  // equal except for leading zeros
+  return a < b;  // names that differ in leading zeros
 }
 
 /// Removes the trailing digits from `text` and returns the digits.
@@ -123,7 +123,7 @@ std::vector<std::int64_t> stamps_in_names(const std::vector<std::filesystem::pat
 }
 
 std::vector<std::int64_t> read_stamps(const std::filesystem::path& file, std::vector<std::string>* disorder) {
-  const Table table = Table::read(file, '\n', "", 1);  // a line is a cell: dates contain blanks
+  const Table table = Table::read(file, '\n', "", 1);  // a line is one cell, because dates contain blanks
   std::vector<std::int64_t> stamps;
   for (const Table::Row& row : table.rows) {
     const std::optional<std::int64_t> found = parse_stamp_ns(row.cells[0]);

@@ -17,7 +17,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// VtkWords splits a text into words and tracks the line number.
+/// VtkWords splits a text into words and counts the lines.
 class VtkWords {
  public:
   explicit VtkWords(const std::filesystem::path& path) : name_(path.string()) {
@@ -39,7 +39,7 @@ class VtkWords {
     return out;
   }
 
-  /// Returns the next word of the file, or an empty text at the end of the file.
+  /// Returns the next word; empty at the end of the file.
   std::string_view next() {
     while (at_ < text_.size() && is_blank(text_[at_])) line_ += text_[at_++] == '\n';
     const std::size_t begin = at_;
@@ -47,7 +47,7 @@ class VtkWords {
     return std::string_view(text_).substr(begin, at_ - begin);
   }
 
-  /// Returns the next word of the file; throws BadInput at the end of the file.
+  /// Returns the next word. Throws BadInput at the end of the file.
   std::string_view need(const char* what) {
     const std::string_view word = next();
     if (word.empty()) fail(fmt::format("the file ends before {}; it may be truncated", what));
@@ -61,7 +61,7 @@ class VtkWords {
     return value;
   }
 
-  /// Reads a number, which may be "nan" or "inf", as lidar drivers write for rays without a hit.
+  /// Reads a number. Lidar drivers write "nan" or "inf" for rays without a return.
   double number() {
     std::string_view word = need("its numbers");
     if (word.starts_with('+')) word.remove_prefix(1);
@@ -71,7 +71,7 @@ class VtkWords {
     return value;
   }
 
-  /// Returns the number of remaining bytes; each number needs two bytes, a digit and a separator.
+  /// Returns the number of remaining bytes. Each number needs at least two bytes: a digit and a separator.
   std::uint64_t left() const { return text_.size() - at_; }
 
  private:
@@ -81,7 +81,7 @@ class VtkWords {
   int line_ = 1;
 };
 
-/// Compares the number of values that the file announces with the remaining file size, before any allocation.
+/// Checks the announced number of values against the remaining file size, before memory is allocated.
 void require_room(const VtkWords& words, std::uint64_t count, std::uint64_t each) {
   if (count > kCloudPointsMax) {
     words.fail(fmt::format("the file states {} points; at most {} can be read", count, kCloudPointsMax));

@@ -108,7 +108,7 @@ std::vector<std::string> export_for(const path& recording, const std::string& pe
   write_bag(dialect, sensors, writing, folder / dialect.bag_name);
   if (with_truth) export_tum(read_truth(recording, scratch), folder / "truth.tum", origin_ns);
   std::vector<std::string> configuration;
-  for (const ConfigurationFile& file : dialect.configuration(facts, *writing.names)) {
+  for (const ConfigurationFile& file : configuration_of(dialect, facts)) {
     replace_file(folder / file.name, file.text);
     configuration.push_back(file.name);
   }

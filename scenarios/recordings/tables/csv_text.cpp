@@ -24,7 +24,7 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-/// Returns the first line that is neither empty nor a comment, or the first line of a file without such a line.
+/// Returns the first line that is neither empty nor a comment, or else the first line.
 std::string_view first_row(std::string_view text) {
   for (std::string_view rest = text; !rest.empty();) {
     const std::string_view line = trimmed(rest.substr(0, rest.find('\n')));
@@ -43,8 +43,8 @@ char likely_separator(std::string_view text) {
   return line.find(most) == std::string_view::npos ? ' ' : most;
 }
 
-/// Throws BadInput unless the file is UTF-8 text with lines. The text is checked before the columns, which gives a
-/// better error message.
+/// Throws BadInput if the file is not UTF-8 text with lines. The text is checked before the columns, for a better error
+/// message.
 void require_lines(const std::string& name, std::string_view text) {
   const std::string_view mark = text.substr(0, 2);
   if (mark == "\xFF\xFE" || mark == "\xFE\xFF")
@@ -66,11 +66,7 @@ CsvText::CsvText(const std::filesystem::path& path, char separator) : name_(path
   if (stream.bad()) throw BadInput(name_ + ": cannot be read");
   if (text_.empty()) throw BadInput(name_ + ": the file is empty");
   require_lines(name_, text_);
-  if (text_.back() != '\n') {
-    const auto lines = std::count(text_.begin(), text_.end(), '\n') + 1;
-    throw BadInput(
-        fmt::format("{}:{}: the last line has no line end; the file may be truncated within a number", name_, lines));
-  }
+  unended_ = text_.back() != '\n';
   if (text_.starts_with("\xEF\xBB\xBF")) at_.at = 3;  // byte order mark
   text_.erase(text_.find_last_not_of(" \t\r\n") + 1);
   text_ += '\n';
@@ -82,12 +78,14 @@ CsvText::CsvText(const std::filesystem::path& path) : CsvText(path, ',') {
 
 bool CsvText::next(CsvLine& line) {
   if (at_.at >= text_.size()) return false;
-  const std::size_t end = text_.find('\n', at_.at);  // always found: the text ends in a newline
+  const std::size_t end = text_.find('\n', at_.at);  // exists, because the text ends in a newline
   std::string_view text = std::string_view(text_).substr(at_.at, end - at_.at);
   at_ = {end + 1, at_.lines + 1};
   line.where = name_ + ":" + std::to_string(at_.lines);
   line.fields.clear();
-  const bool blanks = separator_ == ' ';  // consecutive blanks separate once
+  if (unended_ && end + 1 == text_.size())
+    fail(line, "the last line has no line end; the file may be truncated within a number");
+  const bool blanks = separator_ == ' ';  // consecutive blanks are one separator
   if (blanks) text = trimmed(text);
   for (std::size_t cut = text.find(separator_); cut != std::string_view::npos; cut = text.find(separator_)) {
     if (!blanks || cut > 0) line.fields.push_back(trimmed(text.substr(0, cut)));

@@ -12,7 +12,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// In sensor_msgs/Imu, the attitude 0 0 0 1 with a first covariance element of -1 means an unknown attitude.
+/// In sensor_msgs/Imu, a first covariance element of -1 means an unknown attitude.
 constexpr const char* kNoAttitude = "0,0,0,1,[-1 0 0 0 0 0 0 0 0]";
 
 template <class Vector>
@@ -20,8 +20,8 @@ void append_all(std::string& text, const Vector& vector) {
   for (const double x : vector) append_number(text += ',', x);
 }
 
-/// Returns the covariance of one sample's white noise, whose variance is the squared noise density times the bandwidth
-/// of the output rate.
+/// Returns the covariance of one sample's white noise: the squared noise density times the output rate, on the
+/// diagonal.
 std::string covariance_text(double density_sqrt_hz, std::int64_t period_ns) {
   const double variance = density_sqrt_hz * density_sqrt_hz / (static_cast<double>(period_ns) * 1e-9);
   std::string text = ",[";
@@ -79,7 +79,7 @@ std::string truth_text(const sim::Truth& truth, std::int64_t origin_ns) {
     append_all(text, truth.v_WB_m_s[i]);
     append_all(text, truth.w_WB_B_rad_s[i]);
     if (truth.f_B_m_s2.empty())
-      text += ",,,";  // unknown values of a reference stay empty
+      text += ",,,";  // unknown values of a reference are empty
     else
       append_all(text, truth.f_B_m_s2[i]);
     text += ',';

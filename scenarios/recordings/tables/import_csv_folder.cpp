@@ -24,7 +24,7 @@ std::vector<std::filesystem::path> tables_in(const std::filesystem::path& folder
   return files;
 }
 
-/// Explains why a table has no IMU readings, or returns "" if the columns of an IMU exist.
+/// Explains why a table has no IMU readings; empty if it has the columns of an IMU.
 std::string imu_problem(const std::filesystem::path& file) {
   try {
     imu_columns(LoggedTable(file));
@@ -41,7 +41,7 @@ Imported import_csv_folder(const std::filesystem::path& folder, const sim::ImuRe
   Imported out;
   std::vector<std::string> left_out;
   for (const std::filesystem::path& file : tables_in(folder)) {
-    if (is_pose_table(file)) continue;  // a reference
+    if (is_pose_table(file)) continue;  // a pose table is a reference
     if (const std::string problem = imu_problem(file); !problem.empty()) {
       left_out.push_back(fmt::format("this file is left out, because it is not a table of IMU readings: {}", problem));
       continue;

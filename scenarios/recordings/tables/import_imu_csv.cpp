@@ -17,8 +17,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Returns the unit in the column names, or else the unit that the caller chose. Throws BadInput if the unit of the
-/// caller contradicts the column names.
+/// Returns the unit in the column names, or else the caller's unit. Throws BadInput if both differ.
 template <class Unit>
 Unit chosen(std::optional<Unit> stated, Unit asked, Unit usual, const CsvLine& header) {
   if (!stated || *stated == asked) return asked;
@@ -37,7 +36,7 @@ std::string unit_of_stamps(int decimals) {
   return decimals == 9 ? "s" : decimals == 6 ? "ms" : decimals == 3 ? "us" : "ns";
 }
 
-/// Adds a note about the interpretation of ambiguous column names.
+/// Adds notes on units that were inferred, and on ignored columns.
 void say_columns(const ImuColumns& columns, bool stated, std::vector<std::string>& notes) {
   if (columns.stamp_form != StampForm::decimal) return;
   if (!stated)
@@ -52,15 +51,15 @@ void say_columns(const ImuColumns& columns, bool stated, std::vector<std::string
   if (!others.empty()) notes.push_back("ignored columns: " + others);
 }
 
-/// If a table contains several IMUs, the rows of the IMUs alternate. The function keeps only the rows of the first IMU,
-/// and returns a note, or "" if the table has one IMU. A column with more than kImusMax different numbers contains row
-/// numbers instead of IMU numbers.
+/// In a table of several IMUs, their rows alternate. Keeps the rows of the first IMU and returns a note; for a single
+/// IMU, returns an empty text. A column with more than kImusMax different numbers contains row numbers and not IMU
+/// numbers.
 std::string keep_one_imu(LoggedTable& table, std::size_t id) {
   constexpr std::size_t kImusMax = 8;
   std::map<std::string, std::size_t> rows;
   std::string first;
   CsvLine line;
-  while (rows.size() <= kImusMax && table.next(line)) {
+  while (rows.size() <= kImusMax && table.next_sound(line)) {
     if (rows.empty()) first = line.fields[id];
     ++rows[std::string(line.fields[id])];
   }
@@ -76,8 +75,7 @@ std::string keep_one_imu(LoggedTable& table, std::size_t id) {
       first, others);
 }
 
-/// Reads the samples from the IMU columns of a table, with their lines in the file. The argument `left_out` counts
-/// faulty rows.
+/// Reads the samples from the IMU columns of a table, with the location of each line. `left_out` counts faulty rows.
 sim::ImuRecord readings_of(LoggedTable& table, const ImuColumns& columns, const sim::ImuRecord& device, AccelUnit unit,
                            GyroUnit gyro_unit, LeftOut& left_out, std::vector<std::string>& places) {
   sim::ImuRecord imu = without_readings(device);

@@ -18,18 +18,18 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// kColumnsByPlace is the minimum number of columns of a sensor_msgs/Imu table without header.
+/// Smallest number of columns of a sensor_msgs/Imu table without header.
 constexpr std::size_t kColumnsByPlace = 15;
 
 const std::array<std::string, 3> kAxes = {"x", "y", "z"};
 
-/// The command `export` writes exactly these columns, each once.
+/// Columns that the command `export` writes, each once.
 const std::vector<std::string> kExported = {"stamp_s",  "stamp_ns", "frame_id", "qx",
                                             "qy",       "qz",       "qw",       "orientation_covariance",
                                             "wx_rad_s", "wy_rad_s", "wz_rad_s", "angular_velocity_covariance",
                                             "fx_m_s2",  "fy_m_s2",  "fz_m_s2",  "linear_acceleration_covariance"};
 
-/// Returns the only column that the function `fits` accepts; a second such column would belong to another sensor.
+/// Returns the only column that `fits` accepts. Throws BadInput for a second one, which would belong to another sensor.
 template <class Fits>
 std::optional<std::size_t> find_column(const CsvLine& header, const std::string& name, const Fits& fits) {
   std::optional<std::size_t> found;
@@ -50,7 +50,7 @@ std::optional<std::size_t> find_ending(const CsvLine& header, const std::string&
   });
 }
 
-/// Finds the column whose name has one of several endings.
+/// Finds the column whose name has one of these endings.
 std::optional<std::size_t> find_any_ending(const CsvLine& header, const std::vector<std::string>& names) {
   for (const std::string& name : names) {
     if (const auto found = find_ending(header, name)) return found;
@@ -64,7 +64,7 @@ std::optional<std::size_t> find_any(const CsvLine& header, const std::vector<std
   });
 }
 
-/// RequiredColumns collects columns of a header that must all exist.
+/// RequiredColumns collects columns of a header, all of which must exist.
 class RequiredColumns {
  public:
   explicit RequiredColumns(const CsvLine& header) : header_(header) {}
@@ -74,7 +74,7 @@ class RequiredColumns {
     else
       missing_ += " " + name;
   }
-  /// Returns false if no required column exists; throws BadInput if only some of them exist.
+  /// Returns false if none of the columns exists. Throws BadInput if only some exist.
   bool complete() const {
     if (found_ == 0) return false;
     if (!missing_.empty()) fail(header_, "missing columns:" + missing_);
@@ -87,9 +87,9 @@ class RequiredColumns {
   std::string missing_;
 };
 
-/// Finds the column with the time stamp of a message header. The column "field.header.stamp" of `rostopic echo -p`
-/// contains nanoseconds; other tools write seconds, or seconds and nanoseconds in two columns. Returns false if the
-/// header contains no stamp.
+/// Finds the column with the stamp of a message header. The column "field.header.stamp" of `rostopic echo -p` contains
+/// nanoseconds; other tools write seconds, or seconds and nanoseconds in two columns. Returns false if there is no
+/// stamp.
 bool find_header_stamp(const CsvLine& header, ImuColumns& layout) {
   const auto seconds = find_any_ending(header, {"header/stamp/sec", "header/stamp/secs"});
   const auto rest = find_any_ending(header, {"header/stamp/nsec", "header/stamp/nsecs", "header/stamp/nanosec"});
@@ -105,8 +105,8 @@ bool find_header_stamp(const CsvLine& header, ImuColumns& layout) {
   return true;
 }
 
-/// Finds the IMU columns in a table of ROS messages. The time stamp of the message header takes precedence over the
-/// time of recording.
+/// Finds the IMU columns in a table of ROS messages. The stamp of the message header has priority over the time of
+/// recording.
 std::optional<ImuColumns> flattened(const CsvLine& header) {
   ImuColumns layout;
   if (!find_header_stamp(header, layout)) return std::nullopt;
@@ -134,7 +134,7 @@ std::optional<ImuColumns> named(const CsvLine& header) {
   return columns.complete() ? std::optional(layout) : std::nullopt;
 }
 
-/// Throws BadInput unless a header of the command `export` has each column name once and no other name.
+/// Throws BadInput if a header of the command `export` repeats a column name or has another name.
 void require_exported(const CsvLine& header) {
   for (const std::string_view field : header.fields) {
     const std::string name(field);
@@ -161,16 +161,17 @@ std::int64_t whole_number(const CsvLine& line, std::size_t column, std::int64_t 
 }
 
 std::int64_t decimal_ns(const CsvLine& line, std::size_t column, int decimals) {
-  if (const auto ns = parse_time_ns(line.fields[column], decimals)) return *ns;
-  fail(line, fmt::format("column {} must be a time up to the year 2255; it is '{}'", column, line.fields[column]));
+  const std::string_view text = line.fields[column];
+  if (const auto ns = is_number(text) ? parse_time_ns(text, decimals) : parse_stamp_ns(text)) return *ns;
+  fail(line, fmt::format("column {} must be a time up to the year 2255; it is '{}'", column, text));
 }
 
-/// Returns whether the time stamp has separate columns for seconds and nanoseconds.
+/// Returns true if the time stamp has separate columns for seconds and nanoseconds.
 bool has_split_stamp(const CsvLine& header) {
   return find_any(header, {"sec", "secs", "s"}) || find_any(header, {"nsec", "nsecs", "ns"});
 }
 
-/// Returns whether only the command `export` writes this column name.
+/// Returns true if only the command `export` writes this column name.
 bool is_own(std::string_view field) {
   return (field == "stamp_s" || field.ends_with("_rad_s") || field.ends_with("_m_s2")) &&
          std::find(kExported.begin(), kExported.end(), field) != kExported.end();
@@ -214,14 +215,12 @@ int decimals_by_step(LoggedTable& table, std::size_t stamp, const std::string& f
   std::vector<double> steps;
   CsvLine line;
   table.restart();
-  for (double last = 0.0; steps.size() <= kLooked && table.next(line);) {
-    const double now = number(line, stamp);
-    steps.push_back(now - last);
-    last = now;
+  for (double now = 0.0, last = 0.0; steps.size() <= kLooked && table.next_sound(line); last = now) {
+    if (parse_number(line.fields[stamp], now)) steps.push_back(now - last);
   }
   table.restart();
-  if (steps.size() < 2) return 9;  // too few samples; reported later
-  steps.erase(steps.begin());      // the first stamp is no step
+  if (steps.size() < 2) return 9;  // dates, or too few samples, which are reported later
+  steps.erase(steps.begin());      // the first entry is a stamp, not a step
   const double step = upper_median(steps);
   for (const int decimals : {9, 6, 3, 0}) {
     const double step_s = step * std::pow(10.0, decimals - 9);

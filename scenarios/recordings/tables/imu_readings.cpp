@@ -18,15 +18,15 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// For a body at rest, rolling or hand-held, the median norm is near g in m/s^2; the limits exclude readings in g, in
-/// mg and in raw counts.
+/// Limits of the median specific force. At rest, rolling or hand-held, it is near g in m/s^2; the limits exclude
+/// readings in g, in mg and in raw counts.
 constexpr double kLeastMedian_m_s2 = 3.0, kLargestMedian_m_s2 = 30.0;
 
 bool near_factor(double ratio, double factor) {
   return ratio > factor / 2.0 && ratio < factor * 2.0;
 }
 
-/// Returns the unit in which the median specific force would be close to gravity, or nothing for raw counts.
+/// Returns the unit in which the median specific force would be near gravity; null for raw counts.
 const char* likely_force_unit(double median, AccelUnit read_as) {
   constexpr double kThousand = 1000.0;
   const double numbers = read_as == AccelUnit::g ? median / kStandardGravity_m_s2 : median;
@@ -54,15 +54,15 @@ void require_plausible_force(const std::string& where, const sim::ImuRecord& imu
 
 constexpr const char *kTakenInDegrees = " (set '--gyro-unit deg/s')", *kTakenInRadians = " (set '--gyro-unit rad/s')";
 
-/// kSensorReadingMax limits the readings of gyro and accelerometer [rad/s, m/s^2], as in the estimator.
+/// Largest accepted reading of gyro and accelerometer [rad/s, m/s^2], as in the estimator.
 constexpr double kSensorReadingMax = 1e6;
 
-/// Returns the largest absolute value of the three axes, or a non-finite value if any axis is non-finite.
+/// Returns the largest absolute value of the three axes; NaN if an axis is not finite.
 double largest_of_triad(const Eigen::Vector3d& reading) {
   return reading.allFinite() ? reading.cwiseAbs().maxCoeff() : std::nan("");
 }
 
-/// The sample rate must be between 0.5 Hz and 50 kHz, the range of IMU sample rates.
+/// Sample rates of IMUs are between 0.5 Hz and 50 kHz.
 constexpr double kLeastPeriod_s = 2e-5, kLargestPeriod_s = 2.0;
 
 void require_plausible_period(const std::string& where, const sim::ImuRecord& imu) {
@@ -74,13 +74,14 @@ void require_plausible_period(const std::string& where, const sim::ImuRecord& im
       period_s > kLargestPeriod_s ? ", ms or us" : " than s or ns"));
 }
 
-/// kLargestRate_rad_s is the largest plausible rate of a robot's IMU without a data sheet.
+/// Largest plausible rate of a robot's IMU without a data sheet.
 constexpr double kLargestRate_rad_s = 100.0;
-/// At most the fraction kBeyondShare of the samples may exceed the range; single samples beyond the range are glitches.
+/// At most the fraction kBeyondShare of the samples may exceed kBeyondRange times the range; such single samples are
+/// glitches.
 constexpr double kBeyondShare = 0.01, kBeyondRange = 2.0;
 constexpr double kDegreesPerRadian = 57.29577951308232;
 
-/// Returns the fraction of samples whose largest rate about one axis, times `factor`, exceeds the limit.
+/// Returns the fraction of samples with a rate about one axis above the limit. `factor` converts the rate.
 double beyond_share(const sim::ImuRecord& imu, double bound_rad_s, double factor) {
   const auto beyond = std::count_if(imu.gyro_rad_s.begin(), imu.gyro_rad_s.end(), [&](const Eigen::Vector3d& w) {
     return factor * w.cwiseAbs().maxCoeff() > bound_rad_s;
@@ -106,15 +107,14 @@ void require_rates_in_range(const std::string& where, const sim::ImuRecord& imu,
 }
 
 constexpr double kRotationWindow_s = 0.2, kNearGravity = 0.1;
-constexpr double kLeastRotation = 0.0175, kMostRotation = 0.4;  // rotation of the force in units of the force: at least
-                                                                // one degree
+constexpr double kLeastRotation = 0.0175, kMostRotation = 0.4;  // change of the force, relative to its size
 constexpr int kLeastWindows = 10;
 constexpr double kLeastCorrelation = 0.8;
-/// A short window (`brisk`) ends when the direction of gravity has changed by kBriskRotation.
+/// A window of kind `brisk` ends when the direction of gravity has changed by this value.
 constexpr double kBriskRotation = 0.25;
 
-/// Within a burst of readings, a time step is at most the fraction kBurstStep of the mean step. In a recording with
-/// bursts, at least the fraction kBurstShare of the time steps are within a burst.
+/// Within a burst of readings, a time step is at most kBurstStep times the mean step. In a recording with bursts, at
+/// least the fraction kBurstShare of the steps is within a burst.
 constexpr double kBurstStep = 0.2, kBurstShare = 0.5;
 constexpr std::size_t kLeastBursts = 10;
 constexpr std::int64_t kBurstsApart_ns = 1'000'000'000;
@@ -128,8 +128,8 @@ std::string disorder_text(const std::vector<std::int64_t>& times_ns, std::size_t
       times_ns[reading] - times_ns.front(), times_ns[reading - 1] - times_ns.front());
 }
 
-/// Distributes the readings of each burst evenly over the time since the previous burst; the last reading keeps its
-/// time. Returns a note, or "" if there are no bursts.
+/// Distributes the readings of each burst evenly over the time since the previous burst; the last reading of a burst
+/// keeps its time. Returns a note; empty if there are no bursts.
 std::string even_out_bursts(sim::ImuRecord& imu) {
   std::vector<std::int64_t>& times = imu.time_ns;
   if (times.size() < 2) return "";
@@ -142,7 +142,7 @@ std::string even_out_bursts(sim::ImuRecord& imu) {
   }
   if (steps == 0 || sum == 0) return "";
   const double short_ns = kBurstStep * static_cast<double>(sum) / static_cast<double>(steps);
-  std::vector<std::size_t> ends;  // one after the last reading of each burst
+  std::vector<std::size_t> ends;  // index after the last reading of each burst
   for (std::size_t k = 1; k <= times.size(); ++k) {
     if (k == times.size() || static_cast<double>(times[k] - times[k - 1]) > short_ns) ends.push_back(k);
   }
@@ -154,7 +154,7 @@ std::string even_out_bursts(sim::ImuRecord& imu) {
   for (std::size_t b = 0, first = 0; b < ends.size(); first = ends[b++]) {
     const std::int64_t last = times[ends[b] - 1];
     const auto count = static_cast<std::int64_t>(ends[b] - first);
-    const std::int64_t step = std::min((last - before) / count, 2 * period_ns);  // after a gap, from the burst's end
+    const std::int64_t step = std::min((last - before) / count, 2 * period_ns);  // after a gap, from its end
     for (std::size_t k = first; k < ends[b]; ++k) times[k] = last - static_cast<std::int64_t>(ends[b] - 1 - k) * step;
     before = last;
   }
@@ -205,7 +205,7 @@ GravityRotation gravity_rotation(const sim::ImuRecord& imu, RotationWindows wind
     const bool whole = near(end) && end >= begin + 4 && (length_s >= kRotationWindow_s || turned()) &&
                        length_s < 1.5 * kRotationWindow_s;
     if (whole) {
-      // The force is averaged over a quarter of the window at each end, so that noise does not appear as rotation.
+      // Averages over a quarter of the window at each end, so that noise does not appear as rotation.
       const std::size_t quarter = std::max<std::size_t>(1, (end - begin) / 4);
       Eigen::Vector3d first = Eigen::Vector3d::Zero(), last = Eigen::Vector3d::Zero(), middle = Eigen::Vector3d::Zero();
       for (std::size_t k = 0; k < quarter; ++k) first += imu.accel_m_s2[begin + k], last += imu.accel_m_s2[end - k];
@@ -235,7 +235,7 @@ bool has_sufficient_rotation(const GravityRotation& turn) {
 
 GravityRotation sufficient_rotation(const sim::ImuRecord& imu) {
   const GravityRotation turn = gravity_rotation(imu, RotationWindows::even);
-  // The short windows (`brisk`) are used because a rolling sphere rotates too far in windows of equal length.
+  // In windows of equal length, a rolling sphere rotates too far.
   return has_sufficient_rotation(turn) ? turn : gravity_rotation(imu, RotationWindows::brisk);
 }
 
@@ -324,7 +324,7 @@ std::string leave_out_faulty(const ReadingText& where, const ReadingText& disord
       left_out.add("a wrong time stamp", where(k) + ": " + (disorder ? disorder(k) : disorder_text(imu.time_ns, k)));
   }
   left_out.require_few(in_order.size());
-  imu.period_ns = median_step_ns(in_order);  // lost readings do not change the period
+  imu.period_ns = median_step_ns(in_order);  // before lost readings are removed, since these leave gaps
   std::size_t lost = 0;
   for (std::size_t k = 0; k < kept.size(); ++k) {
     if (!kept[k] || !imu.gyro_rad_s[k].isZero(0.0) || !imu.accel_m_s2[k].isZero(0.0)) continue;

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "scenarios/errors.hpp"
+
 namespace tumble::scenarios {
 
 namespace {
@@ -17,7 +19,7 @@ std::size_t numbers_in(const CsvLine& line) {
   return static_cast<std::size_t>(std::count_if(line.fields.begin(), line.fields.end(), is_number));
 }
 
-/// Returns whether at least half of the fields are numbers; the other fields of a sample are names of frames.
+/// Returns true if at least half of the fields are numbers; other fields of a sample are names of frames.
 bool is_sample(const CsvLine& line) {
   return 2 * numbers_in(line) >= line.fields.size();
 }
@@ -50,7 +52,7 @@ LoggedTable::LoggedTable(const std::filesystem::path& path) : text_(path) {
   drop_open_end(line);
   samples_ = text_.place();
   header_ = line;
-  if (!found) return;  // the file has no line but comments
+  if (!found) return;  // the file contains only comments
   if (is_sample(line)) {
     samples_ = before;
     has_header_ = false;
@@ -86,7 +88,7 @@ void LoggedTable::add_units(const CsvLine& units) {
 bool LoggedTable::next(CsvLine& line) {
   const std::size_t columns = header_.fields.size();
   while (text_.next(line)) {
-    if (is_comment(line.fields.front())) continue;
+    if (is_blank(line) || is_comment(line.fields.front())) continue;
     if (line.fields.size() == columns + 1 && line.fields.back().empty()) line.fields.pop_back();
     if (line.fields.size() != columns)
       fail(line, fmt::format("this line has {} columns, but the first line has {}; the numbers must be equal",
@@ -94,6 +96,16 @@ bool LoggedTable::next(CsvLine& line) {
     if (!kept_ || line.fields[kept_->column] == kept_->value) return true;
   }
   return false;
+}
+
+bool LoggedTable::next_sound(CsvLine& line) {
+  for (;;) {
+    try {
+      return next(line);
+    } catch (const BadInput&) {
+      continue;
+    }
+  }
 }
 
 }  // namespace tumble::scenarios

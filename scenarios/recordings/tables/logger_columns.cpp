@@ -16,7 +16,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Name contains a column name and its unit, both in lower case without separators.
+/// Name is the quantity and the unit in a column name, in lower case without separators.
 struct Name {
   std::string quantity, unit;
 };
@@ -24,11 +24,11 @@ struct Name {
 template <class Value>
 using UnitNames = std::vector<std::pair<std::string_view, Value>>;
 
-const std::vector<std::string_view> kTimes = {"t",     "time", "timestamp", "timestamps",
+const std::vector<std::string_view> kTimes = {"t",     "time", "timestamp", "timestamps",    "sampletime",
                                               "stamp", "ts",   "elapsed",   "secondselapsed"};
 constexpr const char* kExample = "time=NAME,gyro=X,Y,Z,accel=X,Y,Z";
 
-/// Loggers write times with these names in addition to the time stamp.
+/// Times that loggers write in addition to the time stamp.
 const std::vector<std::string_view> kSecondTimes = {"elapsed", "secondselapsed"};
 const std::vector<std::string_view> kRates = {"g",           "gyro", "gyr",    "gyroscope", "angularvelocity",
                                               "angularrate", "w",    "omega",  "angvel",    "rate",
@@ -36,11 +36,13 @@ const std::vector<std::string_view> kRates = {"g",           "gyro", "gyr",    "
 const std::vector<std::string_view> kForces = {
     "a", "acc",           "accel", "accelerometer", "acceleration",    "linearacceleration",
     "f", "specificforce", "arss",  "linacc",        "accelerometerms2"};
-/// Columns with these names contain the number of the IMU.
+/// Names of the column with the number of the IMU.
 const std::vector<std::string_view> kIds = {"i", "id", "instance", "imuid", "sensorid"};
 
-const UnitNames<int> kTimeUnits = {{"s", 9},  {"sec", 9},  {"secs", 9}, {"seconds", 9}, {"ms", 6},         {"msec", 6},
-                                   {"us", 3}, {"usec", 3}, {"ns", 0},   {"nsec", 0},    {"nanoseconds", 0}};
+/// Xsens' SampleTimeFine counts units of 0.1 ms.
+const UnitNames<int> kTimeUnits = {{"s", 9},    {"sec", 9},  {"secs", 9}, {"seconds", 9},
+                                   {"ms", 6},   {"msec", 6}, {"fine", 5}, {"us", 3},
+                                   {"usec", 3}, {"ns", 0},   {"nsec", 0}, {"nanoseconds", 0}};
 const UnitNames<GyroUnit> kRateUnits = {
     {"rads", GyroUnit::rad_s},   {"radps", GyroUnit::rad_s}, {"rads1", GyroUnit::rad_s},
     {"radsec", GyroUnit::rad_s}, {"degs", GyroUnit::deg_s},  {"dps", GyroUnit::deg_s},
@@ -73,7 +75,7 @@ bool is_one_of(const std::vector<std::string_view>& names, std::string_view name
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// Splits a column name with the unit in brackets: "gx [deg/s]", "gx (deg/s)". An index in brackets is an axis:
+/// Splits a column name with the unit in brackets: "gx [deg/s]", "gx (deg/s)". A number in brackets is an axis:
 /// "gyro_rad[0]".
 Name split_brackets(std::string_view field) {
   const std::size_t open = field.find_first_of("[(");
@@ -83,8 +85,8 @@ Name split_brackets(std::string_view field) {
   return {quantity, unit};
 }
 
-/// Splits names such as "time_ms" and "gyro_x_deg_s", where the unit follows an underscore, and "TimeUS", where the
-/// unit follows the quantity directly.
+/// Splits names in which the unit follows the quantity, after an underscore ("time_ms", "gyro_x_deg_s") or directly
+/// ("TimeUS").
 template <class Value, class IsQuantity>
 Name split_suffix(std::string_view field, const UnitNames<Value>& units, const IsQuantity& is_quantity) {
   for (std::size_t at = field.find('_'); at != std::string_view::npos; at = field.find('_', at + 1)) {
@@ -93,15 +95,17 @@ Name split_suffix(std::string_view field, const UnitNames<Value>& units, const I
   }
   Name name = split_brackets(field);
   if (is_quantity(name.quantity)) return name;
-  constexpr std::size_t kUnit = 2;
-  const std::string_view whole = name.quantity;
-  if (whole.size() > kUnit && value_of(units, whole.substr(whole.size() - kUnit)) &&
-      is_quantity(whole.substr(0, whole.size() - kUnit)))
-    return {std::string(whole.substr(0, whole.size() - kUnit)), std::string(whole.substr(whole.size() - kUnit))};
+  constexpr std::size_t kShortest = 2;  // one letter may belong to the quantity: "stamps"
+  for (const auto& [unit, value] : units) {
+    const std::string_view whole = name.quantity;
+    if (unit.size() < kShortest || !whole.ends_with(unit)) continue;
+    const std::string_view quantity = whole.substr(0, whole.size() - unit.size());
+    if (is_quantity(quantity)) return {std::string(quantity), std::string(unit)};
+  }
   return name;
 }
 
-/// NamedAxis is an axis of a gyro or accelerometer, with the number of the IMU in the name ("" without a number).
+/// NamedAxis is an axis of a gyro or accelerometer, and the number of the IMU in the name (empty: none).
 struct NamedAxis {
   std::size_t axis = 0;
   std::string number;
@@ -117,7 +121,7 @@ std::string take_number(std::string_view& text, bool from_end) {
   return digits;
 }
 
-/// Returns the axis if the quantity has one of `names`, with or without the prefix "imu" and the number of an IMU.
+/// Returns the axis if the quantity is one of `names`, with or without the prefix "imu" and a number.
 std::optional<NamedAxis> axis_of(const std::vector<std::string_view>& names, std::string_view quantity) {
   NamedAxis out;
   if (quantity.starts_with("imu")) {
@@ -133,7 +137,7 @@ std::optional<NamedAxis> axis_of(const std::vector<std::string_view>& names, std
   return is_one_of(names, quantity) ? std::optional(out) : std::nullopt;
 }
 
-/// Returns the unit in a column name, if there is one, for a quantity with any name.
+/// Returns the unit in the name of a column of any quantity; empty if there is none.
 template <class Value>
 std::optional<Value> unit_in(std::string_view field, const UnitNames<Value>& units) {
   if (const std::size_t open = field.find_first_of("[("); open != std::string_view::npos)
@@ -198,7 +202,7 @@ class HeaderReader {
     return stated[0];
   }
 
-  /// Returns false if no column of readings is known; throws BadInput if only some columns are missing.
+  /// Returns false if no column of readings is known. Throws BadInput if only some columns are missing.
   bool complete(std::size_t readings) const {
     if (readings == 0) return false;
     if (!missing_.empty())
@@ -246,7 +250,7 @@ class HeaderReader {
   const CsvLine& header_;
   std::vector<bool> taken_;
   std::string missing_;
-  std::optional<std::string> number_;  ///< number of the IMU in the names of its columns
+  std::optional<std::string> number_;  ///< number of the IMU in the column names
 };
 
 /// Splits a text such as "time=t,gyro=gx,gy,gz,accel=ax,ay,az" and returns the columns of one quantity.
@@ -268,7 +272,7 @@ std::vector<std::string> names_of(const std::string& choice, const std::string& 
   return names;
 }
 
-/// Returns the column with the name `name`; if no column has this name, returns the column at the position `name`.
+/// Returns the column named `name`, or else the column at position `name`.
 std::size_t column_of(const LoggedTable& table, const std::string& name) {
   const std::vector<std::string_view>& fields = table.header().fields;
   const auto count = table.has_header() ? std::count(fields.begin(), fields.end(), name) : 0;

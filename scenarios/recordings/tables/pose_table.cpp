@@ -19,7 +19,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Returns a name in lower case, without separators and without a unit in brackets.
+/// Returns a column name in lower case, without separators and units in brackets.
 std::string plain(std::string_view field) {
   std::string out;
   for (const char c : field.substr(0, field.find_first_of("[(")))
@@ -43,11 +43,11 @@ bool is_quaternion(const std::string& name, char axis) {
   return false;
 }
 
-/// PoseColumns contains the positions of the columns in a table of poses.
+/// PoseColumns contains the column positions in a table of poses.
 struct PoseColumns {
   std::size_t time = 0;
-  std::optional<std::size_t> nanoseconds;  ///< if the stamp is seconds and nanoseconds
-  bool time_in_ns = false;                 ///< stated by the name
+  std::optional<std::size_t> nanoseconds;  ///< second time column, if the stamp is seconds and nanoseconds
+  bool time_in_ns = false;                 ///< whether the column name states ns
   std::array<std::size_t, 3> position{};
   std::array<std::size_t, 4> quaternion{};  ///< x y z w
 };
@@ -116,7 +116,7 @@ class PoseHeader {
   std::string missing_;
 };
 
-/// Finds the columns of a table of poses; the list `missing` receives the names of absent columns.
+/// Finds the columns of a table of poses. `missing` receives the names of absent columns.
 PoseColumns columns_of(const CsvLine& header, std::string& missing) {
   PoseColumns columns;
   PoseHeader names(header);
@@ -189,8 +189,7 @@ std::vector<ReferencePose> read_pose_table(const std::filesystem::path& file, bo
       pose.p_WA_m[i] = number_of(line, columns.position[static_cast<std::size_t>(i)]);
     for (Eigen::Index i = 0; i < 4; ++i)
       pose.q_WA.coeffs()[i] = number_of(line, columns.quaternion[static_cast<std::size_t>(i)]);
-    // The command `export` writes unknown poses of a reference as NaN.
-    if (pose.p_WA_m.array().isNaN().all() && pose.q_WA.coeffs().array().isNaN().all()) continue;
+    if (is_unknown(pose)) continue;
     const std::string problem = problem_of(pose, sorted || poses.empty() ? nullptr : &poses.back());
     if (!problem.empty()) fail(line, problem);
     poses.push_back(pose);

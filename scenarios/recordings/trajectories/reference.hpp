@@ -9,75 +9,72 @@
 
 #include "sim/recording.hpp"
 
-/// The functions in reference.hpp read the motion of a real recording that a reference instrument measured (FORMAT.md,
-/// "References").
+/// reference.hpp reads the motion of a real recording that a reference instrument measured (FORMAT.md, "References").
 namespace tumble::scenarios {
 
-/// ReferencePose is a pose of frame A (body or lidar) in the instrument's world with z up. An unknown position is NaN.
+/// ReferencePose is a pose of frame A (body or lidar) in the instrument's world, whose z axis is up. NaN: unknown
+/// position.
 struct ReferencePose {
   std::int64_t time_ns = 0;
   Eigen::Vector3d p_WA_m = Eigen::Vector3d::Zero();
   Eigen::Quaterniond q_WA = Eigen::Quaterniond::Identity();
 };
 
-/// kReferenceNormTolerance is the largest accepted difference of a reference quaternion's norm from 1.
+/// Largest accepted difference of a reference quaternion's norm from 1.
 inline constexpr double kReferenceNormTolerance = 1e-2;
 
-/// Explains why a pose is invalid, or returns "" if the pose is valid. A pose is invalid if it has non-finite numbers,
-/// a quaternion norm that differs from 1 by more than 1 %, or a stamp that is not later than the stamp of `before`. A
-/// valid quaternion is normalised.
+/// Returns whether all numbers of a pose are NaN: optical systems and the command `export` write unknown poses so.
+/// Readers skip unknown poses.
+bool is_unknown(const ReferencePose& pose);
+
+/// Explains why a pose is invalid; empty if it is valid. A pose is invalid if it has non-finite numbers, or a
+/// quaternion norm that differs from 1 by more than 1 %. A pose is also invalid if its stamp is not later than the
+/// stamp of `before`. A valid quaternion is normalised.
 std::string problem_of(ReferencePose& pose, const ReferencePose* before);
 
-/// Checks the number and order of the poses of a file. If `sorted` is true, the function sorts the poses by time and
-/// keeps the first of several poses with equal stamps. Throws BadInput with the file for fewer than two poses.
+/// Checks the number and order of the poses of a file. If `sorted` is true, sorts the poses by time and keeps the first
+/// of several poses with equal stamps. Throws BadInput with the file for fewer than two poses.
 void finish_poses(const std::filesystem::path& file, bool sorted, std::vector<ReferencePose>& poses);
 
-/// Returns the format of a pose file: "tum", "kitti" or "odometry". The format is "tum" or "kitti" if the first line
-/// has 8 or 12 numbers, and "odometry" for the header of a table of poses. Throws BadInput for any other file.
+/// Returns the format of a pose file: "tum" if the first line has 8 numbers, "kitti" if it has 12, "odometry" if it is
+/// the header of a table of poses. Throws BadInput for another file.
 std::string pose_format(const std::filesystem::path& file);
 
 /// Reads a TUM file with "t x y z qx qy qz qw" per line, t in seconds; '#' starts a comment, and blanks or commas
-/// separate. The argument `sorted` is that of finish_poses. Throws BadInput with file and line for a line without eight
+/// separate numbers. `sorted` is that of finish_poses. Throws BadInput with file and line for a line without eight
 /// finite numbers, or a quaternion norm that differs from 1 by more than 1 %. Throws BadInput for a stamp that does not
-/// increase (unless sorted), or fewer than two poses.
+/// increase (if `sorted` is false), or fewer than two poses.
 std::vector<ReferencePose> read_tum_poses(const std::filesystem::path& file, bool sorted);
 
-/// Reads a KITTI file, in which each line has the upper three rows of a pose matrix. The list `times_ns` contains the
-/// times of the poses. Throws BadInput with file and line for a line without twelve finite numbers, a matrix that is
-/// not a rotation (within 1e-3), or different numbers of poses and times.
+/// Reads a KITTI file, whose lines contain the upper three rows of pose matrices. `times_ns` contains the times of the
+/// poses. Throws BadInput with file and line for a line without twelve finite numbers, or a matrix that is not a
+/// rotation (within 1e-3). Throws BadInput for different numbers of poses and times.
 std::vector<ReferencePose> read_kitti_poses(const std::filesystem::path& file,
                                             const std::vector<std::int64_t>& times_ns);
 
-/// Returns whether the file is a table of poses whose header names time, position and quaternion.
+/// Returns true if the file is a table of poses whose header names time, position and quaternion.
 bool is_pose_table(const std::filesystem::path& file);
 
 /// Reads a table of poses with the separators of IMU tables (tables/logged_table.hpp), one pose per line. The names in
-/// the header identify the columns, in any order. The function reads the following tables of poses.
-/// - The function reads the ground truth of EuRoC and TUM VI ("#timestamp [ns],p_RS_R_x [m],...,q_RS_w [],...").
-/// - The function reads messages nav_msgs/Odometry, PoseStamped, TransformStamped ("header.stamp.sec",
-///   "pose.pose.position.x", "field.transform.translation.x").
-/// - The function reads truth.csv of the command `export`, and short names ("timestamp tx ty tz qx qy qz qw").
+/// the header identify the columns, in any order:
+/// - ground truth of EuRoC and TUM VI ("#timestamp [ns],p_RS_R_x [m],...,q_RS_w [],..."),
+/// - messages nav_msgs/Odometry, PoseStamped, TransformStamped ("header.stamp.sec", "pose.pose.position.x",
+///   "field.transform.translation.x"),
+/// - truth.csv of the command `export`, and short names ("timestamp tx ty tz qx qy qz qw").
 ///
 /// A time without a unit is in decimal seconds, or in ms, us or ns since 1970 according to its number of digits. Rows
-/// without a known pose (all NaN) are ignored. Throws like read_tum_poses, and also for a missing or repeated column.
+/// without a known pose (all NaN) are skipped. Throws like read_tum_poses, and also for a missing or repeated column.
 std::vector<ReferencePose> read_pose_table(const std::filesystem::path& file, bool sorted);
 
-/// Returns the number of poses in a KITTI file. Throws like read_kitti_poses, without a check of the times.
+/// Returns the number of poses in a KITTI file. Throws like read_kitti_poses, but has no times to check.
 std::size_t count_kitti_poses(const std::filesystem::path& file);
 
 /// Converts reference poses of the body to a truth. The stamps of `poses` must increase in the recording's clock; they
 /// may start before time 0. If all poses are on a regular grid from time 0 (at least 0.1 ms), the truth uses this grid
 /// with unchanged poses. If the poses are not on a grid, the truth has steps of 1 ms, or longer steps if it would have
 /// more than two million samples. Between poses that are at most 2.5 median steps apart, position is interpolated
-/// linearly and attitude by slerp. In larger gaps, position and attitude are unknown. The truth ends with the poses or
-/// at `end_ns`, whichever is earlier. Throws BadInput if no pose is known, or if the truth would be longer than a day.
+/// linearly and attitude by slerp. In larger gaps, both are unknown. The truth ends with the poses or at `end_ns`,
+/// whichever is earlier. Throws BadInput if no pose is known, or if the truth would be longer than a day.
 sim::Truth reference_truth(const std::vector<ReferencePose>& poses, std::int64_t end_ns);
-
-/// Returns the rotation vector of `q`, with an angle of at most pi.
-Eigen::Vector3d rotation_vector(const Eigen::Quaterniond& q);
-
-/// Computes velocity and rate of the truth by central differences over `reach` samples on each side. Velocity and rate
-/// are unknown if a sample within `reach` is unknown.
-void differentiate(sim::Truth& truth, std::size_t reach);
 
 }  // namespace tumble::scenarios

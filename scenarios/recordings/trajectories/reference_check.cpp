@@ -12,17 +12,16 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// The reference contradicts the gyro if their rotation difference exceeds kContradicts (a fraction of the rotation),
-/// and agrees if it is below kReferenceAgrees.
+/// Limits of the rotation difference between reference and gyro, as a fraction of the rotation. Above kContradicts, the
+/// reference contradicts the gyro; below kReferenceAgrees, it agrees.
 constexpr double kContradicts = 0.5, kReferenceAgrees = 0.3;
-/// A difference above kExplained is a fault of the file if another quaternion convention reduces it below the fraction
-/// kExplanationLeaves.
+/// A rotation difference above kExplained is a fault of the file if another quaternion convention reduces it to less
+/// than the fraction kExplanationLeaves.
 constexpr double kExplained = 0.15, kExplanationLeaves = 0.4;
-/// In valid recordings, the filters of the IMU cause a delay of about 0.02 s.
+/// A longer delay gives a note; the filters of an IMU cause about 0.02 s.
 constexpr double kDelayNoted_s = 0.03;
 
-/// Returns the frames to which the poses may belong. The frame that the user chose is first, so that it is kept if the
-/// poses fit it.
+/// Returns the frames to which the poses may belong. The user's choice is first, so it is kept if the poses fit it.
 std::vector<CandidateFrame> candidate_frames(const Eigen::Isometry3d& T_BA, const sim::Sensors& sensors) {
   const Eigen::Quaterniond q_BI(sensors.imus.front().T_BI.linear());
   std::vector<CandidateFrame> out = {{"as stated", Eigen::Quaterniond(T_BA.linear()).conjugate() * q_BI},
@@ -56,7 +55,7 @@ std::string disagreement(const TurningCheck& check, const std::string& imu) {
       imu, share_text(check.stated.difference), check.pairs);
 }
 
-/// Describes a contradiction whose cause may be the IMU, a mounting or the reference.
+/// Describes a contradiction that the IMU, a mounting or the reference may cause.
 std::string caution(const TurningCheck& check, const std::string& frame, const std::string& imu) {
   const std::string text =
       "caution: " + disagreement(check, imu) + fmt::format(", but at most {} is expected; ", share_text(kContradicts));
@@ -94,7 +93,7 @@ std::string agreement(const TurningCheck& check, const std::string& imu) {
          (check.order_known ? "" : "; this motion does not reveal whether the quaternions have w first");
 }
 
-/// Returns whether the reference differs from the gyro only by a delay, which may be small enough.
+/// Returns true if the reference differs from the gyro at most by a small delay.
 bool fits_as_stated(const TurningCheck& check) {
   const TurningFit& fit = check.reading.likely();
   return fit.written == QuaternionConvention::as_stated && fit.frame == 0 && fit.difference < kReferenceAgrees;
@@ -117,7 +116,7 @@ void require_reading_as_stated(const TurningCheck& check, const std::string& imu
            remedy(rewritten ? fit.written : QuaternionConvention::as_stated, fit.delay_s));
 }
 
-/// Throws BadInput if the gyro contradicts the clock of a reference whose mounting differs from the given mounting.
+/// Throws BadInput if the gyro contradicts the clock of a reference, for which another mounting fits better.
 void require_clock(const TurningCheck& check, const std::string& imu, const std::string& where) {
   const MountingFit& fit = check.mounting.likely();
   if (fit.difference < kReferenceAgrees && is_delayed(fit.delay_s))

@@ -8,10 +8,10 @@
 #include "scenarios/recordings/trajectories/reference.hpp"
 #include "sim/recording.hpp"
 
-/// The function check_reference checks whether reference poses may become the truth of a recording.
+/// check_reference checks whether reference poses can be the truth of a recording.
 namespace tumble::scenarios {
 
-/// Compares the rotations of a reference with the rotations that the primary IMU's gyro measures (turning.hpp).
+/// Compares the rotations of a reference with those that the primary IMU's gyro measures (turning.hpp).
 ///
 /// @param poses  Poses of frame A in the recording's clock.
 /// @param T_BA   Pose of frame A in the body, from the user or the messages.

@@ -17,7 +17,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// The matrices in KITTI files have seven digits.
+/// Matrices in KITTI files have seven digits.
 constexpr double kRotationTolerance = 1e-3;
 
 [[noreturn]] void fail(const Table& table, const Table::Row& row, const std::string& what) {
@@ -56,15 +56,19 @@ Eigen::Matrix<double, 3, 4> kitti_matrix(const Table& table, const Table::Row& r
 
 }  // namespace
 
+bool is_unknown(const ReferencePose& pose) {
+  return pose.p_WA_m.array().isNaN().all() && pose.q_WA.coeffs().array().isNaN().all();
+}
+
 std::string problem_of(ReferencePose& pose, const ReferencePose* before) {
   if (!pose.p_WA_m.allFinite() || !pose.q_WA.coeffs().allFinite()) return "the pose is not finite";
-  constexpr double kFurthest_m = 1e9;  // beyond any Earth-centred coordinate
+  constexpr double kFurthest_m = 1e9;  // above any Earth-centred coordinate
   if (const double far_m = pose.p_WA_m.cwiseAbs().maxCoeff(); far_m > kFurthest_m)
     return fmt::format("the position is {:.3g} m from the origin; it must be within {:.0g} m", far_m, kFurthest_m);
   const double norm = pose.q_WA.norm();
   if (!(std::abs(norm - 1.0) <= kReferenceNormTolerance))
     return fmt::format("the quaternion's norm is {:f}; it must be 1 within 1 %", norm);
-  // A quaternion that is normalised up to rounding is not changed.
+  // A quaternion whose norm is 1 except for rounding stays unchanged.
   if (std::abs(norm - 1.0) > 1e-12) pose.q_WA.normalize();
   if (before == nullptr || pose.time_ns > before->time_ns) return "";
   return fmt::format(
@@ -109,6 +113,7 @@ std::vector<ReferencePose> read_tum_poses(const std::filesystem::path& file, boo
   std::vector<ReferencePose> poses;
   for (const Table::Row& row : table.rows) {
     ReferencePose pose = tum_pose(table, row);
+    if (is_unknown(pose)) continue;
     const std::string problem = problem_of(pose, sorted || poses.empty() ? nullptr : &poses.back());
     if (!problem.empty()) fail(table, row, problem);
     poses.push_back(pose);

@@ -18,8 +18,8 @@ namespace {
 constexpr std::int64_t kStepMin_ns = 100000, kStepUsual_ns = 1000000;
 constexpr std::int64_t kSamplesMax = 2000000;
 constexpr std::int64_t kLongestReference_ns = 86400ll * 1000000000;
-/// kReach_ns is half of the time interval for differentiating poses, as for BROAD, so that the noise at rest is below
-/// the thresholds for rest.
+/// kReach_ns is half of the time interval for differentiating poses. With 70 ms, the noise of an optical reference at
+/// rest is below the thresholds for rest.
 constexpr std::int64_t kReach_ns = 70000000;
 
 std::vector<std::int64_t> times_of(const std::vector<ReferencePose>& poses) {
@@ -39,7 +39,7 @@ std::int64_t grid_step(const std::vector<std::int64_t>& times, std::int64_t end_
   return usual_steps * kStepUsual_ns;
 }
 
-/// Interpolation interpolates between two poses that are close enough in time; elsewhere, the pose is unknown.
+/// Interpolation interpolates between two poses that are close in time; elsewhere, the pose is unknown.
 class Interpolation {
  public:
   Interpolation(const std::vector<ReferencePose>& poses, std::int64_t gap_ns) : poses_(poses), gap_ns_(gap_ns) {}
@@ -67,12 +67,29 @@ class Interpolation {
   std::size_t next_ = 0;
 };
 
-}  // namespace
-
+/// Returns the rotation vector of `q`, with an angle of at most pi.
 Eigen::Vector3d rotation_vector(const Eigen::Quaterniond& q) {
   const Eigen::AngleAxisd turn(q);
   return turn.angle() * turn.axis();
 }
+
+/// Computes velocity and rate of the truth by central differences over `reach` samples on each side. Velocity and rate
+/// are unknown if a sample within `reach` is unknown.
+void differentiate(sim::Truth& truth, std::size_t reach) {
+  const Eigen::Vector3d unknown = Eigen::Vector3d::Constant(kNaN);
+  const std::size_t count = truth.q_WB.size();
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::size_t before = k > reach ? k - reach : 0, after = std::min(k + reach, count - 1);
+    const double span_s = static_cast<double>(after - before) * static_cast<double>(truth.period_ns) * 1e-9;
+    const Eigen::Quaterniond turn = truth.q_WB[before].conjugate() * truth.q_WB[after];
+    const Eigen::Quaterniond to_here = truth.q_WB[k].conjugate() * truth.q_WB[before];
+    const bool known = turn.coeffs().allFinite() && to_here.coeffs().allFinite() && after > before;
+    truth.w_WB_B_rad_s.push_back(known ? Eigen::Vector3d(to_here * rotation_vector(turn) / span_s) : unknown);
+    truth.v_WB_m_s.push_back(known ? Eigen::Vector3d((truth.p_WB_m[after] - truth.p_WB_m[before]) / span_s) : unknown);
+  }
+}
+
+}  // namespace
 
 sim::Truth reference_truth(const std::vector<ReferencePose>& poses, std::int64_t end_ns) {
   if (poses.empty()) throw BadInput("the reference has no poses");
@@ -100,20 +117,6 @@ sim::Truth reference_truth(const std::vector<ReferencePose>& poses, std::int64_t
   }
   differentiate(truth, static_cast<std::size_t>(std::max<std::int64_t>(kReach_ns / truth.period_ns, 1)));
   return truth;
-}
-
-void differentiate(sim::Truth& truth, std::size_t reach) {
-  const Eigen::Vector3d unknown = Eigen::Vector3d::Constant(kNaN);
-  const std::size_t count = truth.q_WB.size();
-  for (std::size_t k = 0; k < count; ++k) {
-    const std::size_t before = k > reach ? k - reach : 0, after = std::min(k + reach, count - 1);
-    const double span_s = static_cast<double>(after - before) * static_cast<double>(truth.period_ns) * 1e-9;
-    const Eigen::Quaterniond turn = truth.q_WB[before].conjugate() * truth.q_WB[after];
-    const Eigen::Quaterniond to_here = truth.q_WB[k].conjugate() * truth.q_WB[before];
-    const bool known = turn.coeffs().allFinite() && to_here.coeffs().allFinite() && after > before;
-    truth.w_WB_B_rad_s.push_back(known ? Eigen::Vector3d(to_here * rotation_vector(turn) / span_s) : unknown);
-    truth.v_WB_m_s.push_back(known ? Eigen::Vector3d((truth.p_WB_m[after] - truth.p_WB_m[before]) / span_s) : unknown);
-  }
 }
 
 }  // namespace tumble::scenarios

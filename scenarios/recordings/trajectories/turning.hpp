@@ -12,8 +12,8 @@
 
 #include "sim/recording.hpp"
 
-/// The functions in turning.hpp compare the attitudes in a pose file with a gyro. A pose file does not specify the
-/// frame of its poses, its quaternion convention or its clock. The gyro reveals frame, quaternion convention and clock.
+/// turning.hpp compares the attitudes in a pose file with a gyro. A pose file does not state the frame of its poses,
+/// its quaternion convention or its clock; the comparison determines them.
 namespace tumble::scenarios {
 
 struct TimedAttitude {
@@ -24,70 +24,68 @@ struct TimedAttitude {
 /// CandidateFrame is a frame to which the attitudes in a pose file may belong.
 struct CandidateFrame {
   std::string name;
-  Eigen::Quaterniond q_AI = Eigen::Quaterniond::Identity();  ///< rotates IMU coordinates to the frame
+  Eigen::Quaterniond q_AI = Eigen::Quaterniond::Identity();  ///< rotates vectors from IMU axes to axes of the frame
 };
 
-/// QuaternionConvention lists the possible meanings of the quaternions in a pose file.
+/// QuaternionConvention lists possible meanings of the quaternions in a pose file.
 enum class QuaternionConvention { as_stated, w_first, inverse, w_first_inverse };
 
-/// TurningFit describes the difference between the gyro and the attitudes under one interpretation of the file. The
-/// difference is the median rotation difference over pairs of attitudes, as a fraction of the median rotation.
+/// TurningFit is the difference between gyro and attitudes in one interpretation (convention, frame, delay) of the
+/// file. The difference is the median rotation difference over pairs of attitudes, as a fraction of the median
+/// rotation.
 struct TurningFit {
   QuaternionConvention written = QuaternionConvention::as_stated;
   std::size_t frame = 0;  ///< index of the candidate
-  double delay_s = 0.0;   ///< time by which the stamps of the attitudes are late
+  double delay_s = 0.0;   ///< time by which the stamps of the attitudes are too late
   double difference = 0.0;
 };
 
-/// MountingFit is the mounting of the IMU in the frame that fits best, with the attitudes as written in the file.
+/// MountingFit is the mounting of the IMU in the frame that fits best, for the attitudes as written in the file.
 struct MountingFit {
   Eigen::Quaterniond q_AI = Eigen::Quaterniond::Identity();
   double delay_s = 0.0, difference = 0.0;
 };
 
-/// DelayedFit contains the best fit without a delay, and the best fit with a delay.
+/// DelayedFit contains the best fits without and with a delay.
 template <class Fit>
 struct DelayedFit {
   Fit undelayed, delayed;
 
-  /// Returns the fit with a delay if its difference is clearly smaller than half of the difference without a delay.
-  /// With a few hundred candidate delays, one fits somewhat better by chance; the margin of 0.02 excludes this case.
+  /// Returns the fit with a delay if its difference is clearly below half of that without a delay. Of a few hundred
+  /// delays, one fits somewhat better by chance; the margin of 0.02 excludes this.
   const Fit& likely() const { return delayed.difference < 0.5 * undelayed.difference - 0.02 ? delayed : undelayed; }
 };
 
 struct TurningCheck {
-  std::size_t pairs = 0;  ///< pairs that the gyro covers; 0 if there are too few pairs to decide
+  std::size_t pairs = 0;  ///< pairs that the gyro covers; 0 if there are too few
   TurningFit stated;
   DelayedFit<TurningFit> reading;
   DelayedFit<MountingFit> mounting;
-  bool clock_known = false;  ///< a delay of 0.3 s would be detected
-  bool order_known = false;  ///< another order or direction of the quaternions would be detected
-  /// The fit `upright` has another quaternion convention that agrees equally well with the gyro and makes gravity
-  /// vertical; empty if the written convention does.
+  bool clock_known = false;  ///< true: a delay of 0.3 s would be detected
+  bool order_known = false;  ///< true: another order or direction of the quaternions would be detected
+  /// Fit with another quaternion convention that agrees equally well with the gyro, and in which gravity is vertical.
+  /// The member is empty if gravity is vertical in the written convention.
   std::optional<TurningFit> upright;
 };
 
-/// kDelaySearched_s is the largest delay in the search, and kDelayMax_s is the largest accepted delay. In valid files,
-/// a delay of 0.1 s occurs if the stamps belong to the ends of the sweeps instead of the starts.
+/// Largest delay in the search, and largest accepted delay. Valid files have a delay of 0.1 s if stamps belong to the
+/// ends of the sweeps and not to the starts.
 inline constexpr double kDelaySearched_s = 5.0, kDelayMax_s = 0.15;
 inline bool is_delayed(double delay_s) {
   return std::abs(delay_s) >= kDelayMax_s;
 }
 /// Describes a delay: "0.300 s too late" or "0.300 s too early".
 std::string delay_text(double delay_s);
-/// Describes the fault of a delay and its correction: "stamps are 0.300 s too late, at most 0.15 s is accepted:
-/// subtract
-/// ...".
+/// Describes a delay, its limit and its correction: "stamps are 0.300 s too late, at most 0.15 s is accepted: ...".
 std::string delay_remedy(double delay_s);
 
 /// Compares the rotations between pairs of attitudes (0.05 to 1 s and 0.02 to 2.5 rad apart) with the rotations from
-/// the gyro. The rotation from the gyro is the product of exponentials of unsaturated samples, without a gap above 0.1
-/// s. The function uses at most 400 pairs, spread evenly over the recording; fewer than 6 pairs give no result.
+/// the gyro. A rotation from the gyro is the product of exponentials of unsaturated samples, without a gap above 0.1 s.
+/// At most 400 pairs are used, spread evenly over the recording. Fewer than 6 pairs give no result.
 ///
-/// @param frames       Frames to which the attitudes may belong; the first is the frame that the user chose.
-/// @param delay_max_s  Largest delay in either direction; searched in steps of 20 ms, then of 2 ms. With fewer than 20
-///   pairs, or for 0, no delay is searched. The cost is O(N log N + pairs x delays), half a second for delays up to 5
-///   s.
+/// @param frames       Frames to which the attitudes may belong; the first is the user's choice.
+/// @param delay_max_s  Largest delay in either direction, searched in steps of 20 ms, then of 2 ms. With fewer than 20
+///   pairs, or for 0, no delay is searched. The cost is O(N log N + pairs x delays): half a second for up to 5 s.
 TurningCheck check_turning(std::span<const TimedAttitude> attitudes, const std::vector<CandidateFrame>& frames,
                            const sim::ImuRecord& imu, double delay_max_s);
 

@@ -89,19 +89,9 @@ std::string sense_told(std::vector<ImuSample> samples, FlightSignCheck::Body bod
 
 const std::vector<std::pair<std::string, std::function<void(ImuSample&)>>>& other_senses() {
   static const std::vector<std::pair<std::string, std::function<void(ImuSample&)>>> all = {
-      {" that agrees with an inverted accelerometer", [](ImuSample& s) { s.specific_force_m_s2 *= -1.0; }},
-      {" that agrees with an inverted accelerometer axis x", [](ImuSample& s) { s.specific_force_m_s2.x() *= -1.0; }},
-      {" that agrees with an inverted accelerometer axis z", [](ImuSample& s) { s.specific_force_m_s2.z() *= -1.0; }},
-      {" that agrees with exchanged accelerometer axes x and y",
-       [](ImuSample& s) { std::swap(s.specific_force_m_s2.x(), s.specific_force_m_s2.y()); }},
-      {" that agrees with exchanged accelerometer axes z and x",
-       [](ImuSample& s) { std::swap(s.specific_force_m_s2.z(), s.specific_force_m_s2.x()); }},
-      {" that agrees with an inverted gyro axis y", [](ImuSample& s) { s.angular_velocity_rad_s.y() *= -1.0; }},
-      {" that agrees with exchanged gyro axes y and z",
-       [](ImuSample& s) { std::swap(s.angular_velocity_rad_s.y(), s.angular_velocity_rad_s.z()); }},
-      {" that agrees with a gyro that reads half the true rate", [](ImuSample& s) { s.angular_velocity_rad_s *= 0.5; }},
-      {" that agrees with a gyro that reads twice the true rate",
-       [](ImuSample& s) { s.angular_velocity_rad_s *= 2.0; }}};
+      {" that a sign error of the accelerometer explains", [](ImuSample& s) { s.specific_force_m_s2 *= -1.0; }},
+      {" that a sign error of accelerometer axis x explains", [](ImuSample& s) { s.specific_force_m_s2.x() *= -1.0; }},
+      {" that a sign error of accelerometer axis z explains", [](ImuSample& s) { s.specific_force_m_s2.z() *= -1.0; }}};
   return all;
 }
 
@@ -119,11 +109,8 @@ TEST(FlightSignCheck, AFlightInWhichAnAxisClipsTellsAsMuch) {
     clipped += (sample.angular_velocity_rad_s.array().abs() > kRange_rad_s).count() == 1 ? 1 : 0;
   ASSERT_GT(clipped, 30U) << "nothing clips";
   EXPECT_EQ(sense_told(thrown_flight(), FlightSignCheck::Body::thrown, kRange_rad_s, [](ImuSample&) {}), "");
-  for (const auto& [name, harm] : other_senses()) {
-    if (name.find("gyro") == std::string::npos) {
-      EXPECT_EQ(sense_told(thrown_flight(), FlightSignCheck::Body::thrown, kRange_rad_s, harm), name);
-    }
-  }
+  for (const auto& [name, harm] : other_senses())
+    EXPECT_EQ(sense_told(thrown_flight(), FlightSignCheck::Body::thrown, kRange_rad_s, harm), name);
 }
 
 // A body that is swung about a point on the other side of the mass centre feels what a mirrored sensor would feel in

@@ -51,6 +51,19 @@ RateStream::Params wrong_lever(std::uint64_t seed) {
   return params;
 }
 
+/// Returns rates and covariances of the samples in the window, and of the newest sample.
+std::vector<double> numbers_in_window(const RateStream& method, const RateStream::State& state) {
+  std::vector<RateState> rates;
+  method.flush(state, rates);
+  if (const std::optional<RateState> newest = method.newest(state)) rates.push_back(*newest);
+  std::vector<double> out;
+  for (const RateState& rate : rates) {
+    out.insert(out.end(), rate.w_WI_I_rad_s.begin(), rate.w_WI_I_rad_s.end());
+    out.insert(out.end(), rate.covariance_rad2_s2.reshaped().begin(), rate.covariance_rad2_s2.reshaped().end());
+  }
+  return out;
+}
+
 TEST(RateStream, RecoversTumblesNearlyAsWellAsTheBatch) {
   std::vector<double> of_batch;
   int close = 0;
@@ -132,30 +145,12 @@ TEST(RateStream, SplittingAnywhereChangesNothing) {
       if (one) got.push_back(*one);
     }
     method.flush(state, got);
-    EXPECT_TRUE(RateStream::equal(state, whole)) << split;
     ASSERT_EQ(got.size(), want.size());
     for (std::size_t k = 0; k < got.size(); ++k) {
       ASSERT_EQ(got[k].w_WI_I_rad_s, want[k].w_WI_I_rad_s) << k;
       ASSERT_EQ(got[k].covariance_rad2_s2, want[k].covariance_rad2_s2) << k;
     }
   }
-  RateStream::State other = whole;
-  other.window[3].estimate.knot.rate_rad_s.x() += 1e-12;
-  EXPECT_FALSE(RateStream::equal(other, whole));
-  // every part of a sample that a later step uses counts
-  other = whole;
-  other.window[3].observation.subsample_saturated ^= 1;
-  EXPECT_FALSE(RateStream::equal(other, whole));
-  other = whole;
-  other.window[3].observation.expected_deficit_rad_s.x() += 1e-12;
-  EXPECT_FALSE(RateStream::equal(other, whole));
-  other = whole;
-  other.window[3].observation.expected_deficit_sigma_rad_s.x() += 1e-12;
-  EXPECT_FALSE(RateStream::equal(other, whole));
-  other = whole;
-  ASSERT_TRUE(other.last_marginalised);
-  other.last_marginalised->rate_rad_s.x() += 1e-12;
-  EXPECT_FALSE(RateStream::equal(other, whole));
 }
 
 /// After a failed step, the newest sample's deviation is that of any rate, not zero.
@@ -208,9 +203,7 @@ TEST(RateStream, StepsAreMadeByTimeAndNotBySample) {
     ASSERT_TRUE(method.push(recording.samples[k], split, one).ok());
     if (k % 97 == 0) split = RateStream::State(split);
   }
-  EXPECT_TRUE(RateStream::equal(whole, split));
-  split.samples_since_step += 1;
-  EXPECT_FALSE(RateStream::equal(whole, split));
+  EXPECT_EQ(numbers_in_window(method, whole), numbers_in_window(method, split));
 }
 
 /// Returns the fraction of recovered rates whose clipped axes are within three stated deviations.
@@ -294,7 +287,7 @@ TEST(RateStream, BadSamplesGiveAStatusAndLeaveTheStateAlone) {
     const Status status = method.push(sample, state, one);
     EXPECT_EQ(status.error_code, error_code) << status.message();
     EXPECT_FALSE(one.has_value());
-    EXPECT_TRUE(RateStream::equal(state, before));
+    EXPECT_EQ(numbers_in_window(method, state), numbers_in_window(method, before));
   };
   ImuSample bad = samples[120];
   bad.angular_velocity_rad_s.x() = std::nan("");

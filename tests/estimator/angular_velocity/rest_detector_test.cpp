@@ -174,23 +174,5 @@ TEST(RateSmoother, StandstillTellsTheBias) {
   for (int j = 0; j < 3; ++j) EXPECT_NEAR(report.calibration.constants.gyro_bias_rad_s[j], 0.01 * (j - 1), 0.002) << j;
 }
 
-TEST(RateSmoother, TellsWhenUnitsLookWrong) {
-  TumbleOptions options;
-  options.seed = 6;
-  std::vector<RateState> out;
-  RateReport report;
-  const TumbleRecording right = make_tumble(options);
-  ASSERT_TRUE(RateSmoother(with_lever_arm<RateSmoother::Params>()).estimate(right.samples, out, report).ok());
-  EXPECT_FALSE(report.rate_unit_suspect);
-  EXPECT_FALSE(report.force_unit_suspect);
-  std::vector<ImuSample> degrees = right.samples, gravities = standing(300, 7);
-  for (ImuSample& sample : degrees) sample.angular_velocity_rad_s *= 57.29578;
-  for (ImuSample& sample : gravities) sample.specific_force_m_s2 /= 9.80665;
-  ASSERT_TRUE(RateSmoother(with_lever_arm<RateSmoother::Params>()).estimate(degrees, out, report).ok());
-  EXPECT_TRUE(report.rate_unit_suspect) << "degrees per second";
-  ASSERT_TRUE(RateSmoother(with_lever_arm<RateSmoother::Params>()).estimate(gravities, out, report).ok());
-  EXPECT_TRUE(report.force_unit_suspect) << "in g";
-}
-
 }  // namespace
 }  // namespace tumble

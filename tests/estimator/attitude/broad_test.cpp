@@ -10,9 +10,7 @@
 
 #include "scenarios/baselines/attitude/autogain.hpp"
 #include "scenarios/baselines/attitude/complementary.hpp"
-#include "scenarios/baselines/attitude/eskf.hpp"
 #include "scenarios/baselines/attitude/madgwick.hpp"
-#include "scenarios/baselines/attitude/mahony.hpp"
 #include "stand_ins/broad_trial.hpp"
 #include "stand_ins/stand_ins.hpp"
 #include "tumble/attitude/detail/imu_plausibility.hpp"
@@ -133,16 +131,12 @@ TEST_P(Broad, BasicVqfLandsOnItsAnchors) {
                                                              {1.45, 27.7, 1.48}}});
 }
 
-/// No published results exist for the other filters on these eight trials, so the bounds are the measured values plus a
-/// tenth.
-TEST_P(Broad, OtherFiltersStayWhereTheyAre) {
+/// No published results exist for the complementary filter on these eight trials, so the bound is the measured value
+/// plus a tenth.
+TEST_P(Broad, TheComplementaryFilterStaysWhereItIs) {
   const BroadError complementary = run_trials("complementary", baselines::Complementary({}), trials()).back();
   EXPECT_LT(complementary.inclination_rest_deg, 0.18);  // measured 0.161
   EXPECT_GT(complementary.inclination_motion_deg, 5.0) << "it believes accelerations: 8.7";
-  const BroadError mahony = run_trials("mahony", baselines::Mahony({}), trials()).back();
-  EXPECT_NEAR(mahony.inclination_motion_deg, 2.48, 0.1);
-  const BroadError eskf = run_trials("eskf", baselines::Eskf({}), trials()).back();
-  EXPECT_NEAR(eskf.inclination_motion_deg, 0.72, 0.03);
 }
 
 /// In these trials, a hand swings the sensor about an external point, and thereby pushes the sensor. The push is in the
@@ -250,20 +244,15 @@ class BroadStandIn : public ::testing::Test {
 TEST_F(BroadStandIn, FiltersAreRankedAsOnTheTrials) {
   const BroadError vqf = run_trials("vqf", Vqf({}), trials()).back();
   const BroadError madgwick = run_trials("madgwick", baselines::Madgwick({.gain_rad_s = 0.033}), trials()).back();
-  const BroadError mahony = run_trials("mahony", baselines::Mahony({}), trials()).back();
   const BroadError complementary = run_trials("complementary", baselines::Complementary({}), trials()).back();
-  const BroadError eskf = run_trials("eskf", baselines::Eskf({}), trials()).back();
   const BroadError tumble = run_trials("tumble", TumbleAttitude({}), trials()).back();
-  // the bounds are a tenth above the measured values 0.281, 0.290 and 0.323
+  // the bounds are a tenth above the measured values 0.281 and 0.290
   EXPECT_LT(tumble.inclination_motion_deg, 0.31);
   EXPECT_LT(vqf.inclination_motion_deg, 0.32);
-  EXPECT_LT(eskf.inclination_motion_deg, 0.36);
   EXPECT_LT(tumble.inclination_motion_deg, vqf.inclination_motion_deg);
-  for (const BroadError& error : {madgwick, mahony})
-    EXPECT_GT(error.inclination_motion_deg, 2.0 * vqf.inclination_motion_deg);
+  EXPECT_GT(madgwick.inclination_motion_deg, 2.0 * vqf.inclination_motion_deg);
   EXPECT_GT(complementary.inclination_motion_deg, 2.0) << "it believes accelerations: 2.98";
   EXPECT_LT(tumble.inclination_rest_deg, 0.05);  // measured 0.044: here, the accelerometer has noise but no bias
-  EXPECT_GT(mahony.inclination_rest_deg, 0.5) << "the gyro's bias leaks into it: 0.89";
 }
 
 TEST_F(BroadStandIn, OursIsQuieterAtRestThanTheComplementaryFilter) {

@@ -174,7 +174,7 @@ TEST(ImuMergeHealth, ForcesThatStayBecauseTheBodyTurnsAboutThemAreNot) {
     ASSERT_TRUE(merge.step(now, state, merged).ok());
   }
   EXPECT_FALSE(state.units[0].frozen);
-  EXPECT_TRUE(merge.verdict(state).ok());
+  EXPECT_TRUE(ImuMerge::verdict(state).ok());
 }
 
 TEST(ImuMergeHealth, AFrozenUnitThatMovesAgainIsBack) {

@@ -8,9 +8,6 @@
 #include <functional>
 #include <limits>
 #include <numbers>
-#include <optional>
-#include <string>
-#include <utility>
 
 #include "estimator/attitude/filter_contract.hpp"
 #include "estimator/rolling/rolling_truth.hpp"
@@ -47,80 +44,17 @@ TEST(ImuPlausibility, ARollOfASphereIsPlausibleAtEveryRate) {
               }).ok());
 }
 
-TEST(ImuPlausibility, WrongUnitsAndAxesAreNot) {
-  const auto says = [](const std::function<void(ImuSample&)>& harm) { return std::string(verdict_of(harm).field); };
-  const std::string
-      size = "mean specific force in steady windows (share of gravity)",
-      turning = "ratio of gravity's rotation (accelerometer) to the rotation measured by the gyro",
-      still = "rotation of a steady force, divided by the rotation measured by the gyro",
-      naming =
-          "unexplained rotation of gravity with other gyro axes or signs, divided by the value with the stated axes";
-  EXPECT_EQ(says([](ImuSample& sample) { sample.specific_force_m_s2 /= 9.80665; }), size);
-  EXPECT_EQ(says([](ImuSample& sample) { sample.specific_force_m_s2 *= 9.80665; }), size);
-  EXPECT_EQ(says([](ImuSample& sample) { sample.angular_velocity_rad_s *= 57.29578; }), turning);
-  EXPECT_EQ(says([](ImuSample& sample) { sample.angular_velocity_rad_s /= 57.29578; }), turning);
-  EXPECT_EQ(says([](ImuSample& sample) { sample.angular_velocity_rad_s *= -1.0; }), naming);
-  EXPECT_EQ(says([](ImuSample& sample) { std::swap(sample.specific_force_m_s2.x(), sample.specific_force_m_s2.y()); }),
-            naming);
-  EXPECT_EQ(says([](ImuSample& sample) { sample.angular_velocity_rad_s *= 2.0; }), turning);
-  EXPECT_EQ(says([](ImuSample& sample) { sample.angular_velocity_rad_s *= 0.5; }), turning);
-  EXPECT_EQ(says([](ImuSample& sample) { sample.specific_force_m_s2 = {0.5, 1.0, 9.7}; }), still);
-}
-
-ImuPlausibility::State state_of(const testing::RollingTruth& truth, const AxisLabels& named) {
-  const ImuPlausibility plausibility({});
-  ImuPlausibility::State state;
-  for (ImuSample sample : truth.samples) {
-    const Eigen::Vector3d force = sample.specific_force_m_s2;
-    // axis[j] is the accelerometer axis that belongs to gyro axis j, and sign[j] is its sign
-    for (std::size_t j = 0; j < 3; ++j) {
-      sample.specific_force_m_s2[named.axis[j]] = named.sign[j] * force[static_cast<Eigen::Index>(j)];
-    }
-    if (named.gyro_flipped) sample.angular_velocity_rad_s *= -1.0;
-    plausibility.step(sample, state);
-  }
-  return state;
+TEST(ImuPlausibility, AnotherScaleOrSignOfTheGyroIsNot) {
+  for (const double scale : {57.29578, 1.0 / 57.29578, -1.0, 2.0, 0.5})
+    EXPECT_STREQ(verdict_of([=](ImuSample& sample) { sample.angular_velocity_rad_s *= scale; }).field,
+                 "ratio of gravity's rotation (accelerometer) to the rotation measured by the gyro")
+        << scale;
 }
 
 testing::RollingTruth l_roll() {
   return testing::roll({.velocity_m_s = testing::l_shape,
                         .contact_velocity_m_s = testing::no_slip,
                         .q_start = so3::exp({0.1, -0.2, 0.0})});
-}
-
-TEST(ImuPlausibility, EveryOtherNamingOfTheAxesIsFound) {
-  const testing::RollingTruth truth = l_roll();
-  const ImuPlausibility plausibility({});
-  EXPECT_FALSE(plausibility.better_axis_labels(state_of(truth, axis_labels().front())));
-  for (std::size_t k = 1; k < axis_labels().size(); ++k) {
-    const AxisLabels& named = axis_labels()[k];
-    const std::optional<AxisLabels> found = plausibility.better_axis_labels(state_of(truth, named));
-    ASSERT_TRUE(found) << k;
-    EXPECT_EQ(found->axis, named.axis) << k;
-    EXPECT_EQ(found->sign, named.sign) << k;
-    EXPECT_EQ(found->gyro_flipped, named.gyro_flipped) << k;
-  }
-}
-
-TEST(ImuPlausibility, SwappedAxesShowThoughTheBodyRollsNearlyAlongBoth) {
-  // on a path along x = y, a swap of x and y does not change the axis of rotation; the heading of the path varies by
-  // `sway_rad`
-  const auto swayed = [](double sway_rad) {
-    return testing::roll({.velocity_m_s = [=](double t) -> Eigen::Vector3d {
-                            const double heading = 0.25 * 3.141592653589793 + sway_rad * std::sin(2.0 * t);
-                            return testing::minimum_jerk_speed(t, 1.0, 8.0, 4.0) *
-                                   Eigen::Vector3d(std::cos(heading), std::sin(heading), 0.0);
-                          },
-                          .contact_velocity_m_s = testing::no_slip});
-  };
-  const ImuPlausibility plausibility({});
-  const AxisLabels swapped = {{1, 0, 2}, {1.0, 1.0, 1.0}, false};
-  const ImuPlausibility::State state = state_of(swayed(0.15), swapped);
-  EXPECT_LT(plausibility.unexplained_rotation_ratio(state), 0.2) << "the slope alone would let it pass";
-  EXPECT_FALSE(plausibility.verdict(state).ok());
-  EXPECT_TRUE(plausibility.verdict(state_of(swayed(0.15), {})).ok());
-  // on a straight path, both axis labels fit equally, so no fault is reported
-  EXPECT_TRUE(plausibility.verdict(state_of(swayed(0.0), swapped)).ok());
 }
 
 TEST(ImuPlausibility, OfABodyAtRestOrReadingsThatAreNoneNothingIsSaid) {
@@ -139,7 +73,6 @@ TEST(ImuPlausibility, OfABodyAtRestOrReadingsThatAreNoneNothingIsSaid) {
     plausibility.step(sample, state);
   }
   EXPECT_TRUE(plausibility.verdict(state).ok());
-  EXPECT_NEAR(plausibility.force_ratio(state), 1.0, 0.01);
   EXPECT_THROW(ImuPlausibility({.gravity_m_s2 = 0.0}), InvalidParams);
 }
 
@@ -164,8 +97,6 @@ TEST(ImuPlausibility, OfABodyThatFliesAndSpinsTheTurningIsNotAsked) {
   const Status thrown = plausibility.verdict(of_a_throw(12.0, 0.1));  // 14 m/s^2
   EXPECT_TRUE(thrown.ok()) << thrown.message();
   EXPECT_EQ(plausibility.unexplained_rotation_ratio(of_a_throw(12.0, 0.1)), 0.0);
-  // a constant force with the magnitude of gravity is indistinguishable from gravity
-  EXPECT_FALSE(plausibility.verdict(of_a_throw(10.0, 0.0980665)).ok());
 }
 
 // Returns the state after the motion of a pendulum. A hand lifts the pendulum twice far aside and back, then a little
@@ -203,7 +134,6 @@ TEST(ImuPlausibility, APendulumIsHeldToItsLiftNotToItsSwing) {
   const ImuPlausibility plausibility({});
   const ImuPlausibility::State good = of_a_pendulum(1.0);
   EXPECT_TRUE(plausibility.verdict(good).ok()) << plausibility.verdict(good).message();
-  EXPECT_LT(plausibility.force_rotation_ratio(good), 0.8) << "it does swing";
   EXPECT_NEAR(plausibility.rotation_slope(good), 1.0, 0.1);
   for (const double scale : {-1.0, 0.5, 2.0}) {
     const ImuPlausibility::State wrong = of_a_pendulum(scale);
@@ -222,16 +152,14 @@ TEST(ImuPlausibility, ASlopeIsToldWhereItExplainsWhatTheGyroLeaves) {
     state.force_rotation_rad2 = kRotated_rad2 * force_rotation_rad2;
     state.gyro_rotation_rad2 = kRotated_rad2;
     state.rotated_windows = 100.0;
-    const double unexplained =
+    state.unexplained_rad2 =
         kRotated_rad2 * (force_rotation_rad2 + 1.0 - 2.0 * correlation * std::sqrt(force_rotation_rad2));
-    std::fill(state.unexplained_rad2.begin(), state.unexplained_rad2.end(), unexplained);
     EXPECT_NEAR(plausibility.rotation_agreement(state), correlation, 1e-9);
     return plausibility.verdict(state).ok();
   };
   EXPECT_TRUE(verdict_at(1.0, 0.4));
   EXPECT_TRUE(verdict_at(0.48, 0.78)) << "a pendulum whose lift was pushed: swing 62043, slope 0.54";
   EXPECT_TRUE(verdict_at(0.76, 0.245)) << "swing 62045, slope 0.21";
-  EXPECT_TRUE(verdict_at(1.0, 0.1)) << "swapped axes are told by the naming that explains them";
   EXPECT_FALSE(verdict_at(1.0, -0.4)) << "another sense";
   EXPECT_FALSE(verdict_at(4.0, -0.26)) << "another sense, and pushes: swing 81201, slope -0.5";
   EXPECT_FALSE(verdict_at(0.12, 0.78)) << "the first with twice the rate";
@@ -272,25 +200,6 @@ TEST(ImuPlausibility, WhereTheGyroIsAtItsRailNothingIsCompared) {
     plausibility.step(sample, state);
   }
   EXPECT_TRUE(plausibility.verdict(state).ok()) << plausibility.verdict(state).message();
-}
-
-// A constant magnitude does not identify gravity, because the force at a spinning rig's IMU in flight can be as
-// constant.
-TEST(ImuPlausibility, AForceIsNotTakenForGravityWhileTheGyroIsAtItsRail) {
-  const auto verdict = [](double range_rad_s) {
-    const ImuPlausibility plausibility({.gyro_range_rad_s = range_rad_s});
-    ImuPlausibility::State state;
-    for (int k = 0; k < 400; ++k) {
-      const bool flies = k >= 100;
-      plausibility.step({.time_ns = TimeNs{k} * 10'000'000,
-                         .angular_velocity_rad_s = {0.0, flies ? 10.0 : 0.0, 0.0},
-                         .specific_force_m_s2 = {flies ? -26.0 : 0.0, 0.0, flies ? 0.0 : 9.8}},
-                        state);
-    }
-    return plausibility.verdict(state);
-  };
-  EXPECT_TRUE(verdict(7.8).ok()) << verdict(7.8).message();
-  EXPECT_STREQ(verdict(12.0).field, "mean specific force in steady windows (share of gravity)");
 }
 
 // Returns a body at rest, with noise; from `from_s` on, a triad repeats its reading for `for_s`.

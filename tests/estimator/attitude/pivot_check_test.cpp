@@ -32,13 +32,10 @@ Eigen::Vector3d change_rad_s2(double t_s) {
   return {6.0 * std::cos(2.0 * t_s), -6.2 * std::sin(3.1 * t_s), 1.95 * std::cos(1.3 * t_s + 1.0)};
 }
 
-struct PivotReadings {
-  std::vector<ImuSample> samples;
-  std::vector<RateState> rates;
-};
+using PivotReadings = std::vector<ImuSample>;
 
 // The body turns about a fixed point, so the readings are known in closed form except for the attitude.
-PivotReadings about_a_pivot(const PivotMotion& motion, const std::function<void(RateState&)>& harm = {}) {
+PivotReadings about_a_pivot(const PivotMotion& motion, const std::function<void(ImuSample&)>& harm = {}) {
   constexpr double kStep_s = 0.01;
   constexpr int kFine = 20;
   PivotReadings run;
@@ -62,28 +59,25 @@ PivotReadings about_a_pivot(const PivotMotion& motion, const std::function<void(
     sample.time_ns = TimeNs{k} * 10'000'000;
     sample.angular_velocity_rad_s = rate;
     sample.specific_force_m_s2 = force;
-    RateState state;
-    state.time_ns = sample.time_ns;
-    state.w_WI_I_rad_s = rate;
-    state.source = RateSource::measured;
-    if (harm) harm(state);
-    run.samples.push_back(sample);
-    run.rates.push_back(state);
+    if (harm) harm(sample);
+    run.push_back(sample);
   }
   return run;
 }
 
+PivotCheck evidence_in(const PivotReadings& run) {
+  return PivotCheck::of(run, 9.80665, 0.0, 0.0);
+}
+
 std::string says(const PivotReadings& run) {
-  const PivotCheck check({});
-  const Status verdict = check.verdict(check.find(run.samples, run.rates));
+  const Status verdict = evidence_in(run).verdict();
   return verdict.ok() ? "" : verdict.field;
 }
 
 TEST(PivotCheck, RatesExplainATurningAboutAPoint) {
   const PivotReadings run = about_a_pivot({});
-  const PivotCheck check({});
-  const PivotCheck::Found found = check.find(run.samples, run.rates);
-  EXPECT_TRUE(check.verdict(found).ok()) << check.verdict(found).message();
+  const PivotCheck found = evidence_in(run);
+  EXPECT_TRUE(found.verdict().ok()) << found.verdict().message();
   EXPECT_EQ(found.compared_segments, 20u) << "two series of segments of 2 s over 20 s, half a segment apart";
   EXPECT_EQ(found.better_segments, 0u);
   EXPECT_LT(found.evidence, 0.0);
@@ -92,7 +86,7 @@ TEST(PivotCheck, RatesExplainATurningAboutAPoint) {
 
 TEST(PivotCheck, AGyroNamedOrScaledOtherwiseIsTold) {
   const auto told = [](const std::function<void(Eigen::Vector3d&)>& harm) {
-    return says(about_a_pivot({}, [&](RateState& rate) { harm(rate.w_WI_I_rad_s); }));
+    return says(about_a_pivot({}, [&](ImuSample& sample) { harm(sample.angular_velocity_rad_s); }));
   };
   EXPECT_EQ(told([](Eigen::Vector3d& w) { w = -w; }), kEvidence);
   EXPECT_EQ(told([](Eigen::Vector3d& w) { w.z() = -w.z(); }), kEvidence);
@@ -103,42 +97,34 @@ TEST(PivotCheck, AGyroNamedOrScaledOtherwiseIsTold) {
 
 TEST(PivotCheck, ANearPivotTellsTheScale) {
   const auto scaled = [](const PivotMotion& motion) {
-    return about_a_pivot(motion, [](RateState& rate) { rate.w_WI_I_rad_s *= 1.05; });
+    return about_a_pivot(motion, [](ImuSample& sample) { sample.angular_velocity_rad_s *= 1.05; });
   };
   const PivotReadings run = scaled({});
-  const PivotCheck check({});
   EXPECT_EQ(says(run), kScale);
-  EXPECT_NEAR(check.find(run.samples, run.rates).scale, 1.0 / 1.05, 0.01);
+  EXPECT_NEAR(evidence_in(run).scale, 1.0 / 1.05, 0.01);
   const PivotReadings far = scaled({.arm_m = {0.1, 0.2, 0.6}});
-  EXPECT_EQ(check.find(far.samples, far.rates).scale_segments, 0u) << "a rod is no point: what it gives is larger";
+  EXPECT_EQ(evidence_in(far).scale_segments, 0u) << "a rod is no point: what it gives is larger";
 }
 
-TEST(PivotCheck, WhatTheGyroDidNotMeasureDoesNotCount) {
-  const PivotReadings run = about_a_pivot({}, [](RateState& rate) {
-    rate.w_WI_I_rad_s.z() *= -1.0;
-    if (rate.time_ns % 900'000'000 == 0) rate.source = RateSource::bounded_only;
+TEST(PivotCheck, ClippedReadingsDoNotCount) {
+  const PivotReadings run = about_a_pivot({}, [](ImuSample& sample) {
+    sample.angular_velocity_rad_s.z() *= -1.0;
+    if (sample.time_ns % 900'000'000 == 0) sample.device_clip_flags = kClipGyroX;
   });
-  const PivotCheck check({});
-  EXPECT_EQ(check.find(run.samples, run.rates).compared_segments, 0u) << "no segment of a second is left";
+  EXPECT_EQ(evidence_in(run).compared_segments, 0u) << "no segment of a second is left";
   EXPECT_EQ(says(run), "");
 }
 
 TEST(PivotCheck, ABodyThatIsThrownAboutIsExplainedByNothing) {
   const PivotReadings run =
-      about_a_pivot({.shaken_m_s2 = 40.0}, [](RateState& rate) { rate.w_WI_I_rad_s.z() *= -1.0; });
-  const PivotCheck check({});
-  EXPECT_EQ(check.find(run.samples, run.rates).compared_segments, 0u);
+      about_a_pivot({.shaken_m_s2 = 40.0}, [](ImuSample& sample) { sample.angular_velocity_rad_s.z() *= -1.0; });
+  EXPECT_EQ(evidence_in(run).compared_segments, 0u);
   EXPECT_EQ(says(run), "");
 }
 
 TEST(PivotCheck, AFewSegmentsAreNoEvidence) {
-  EXPECT_EQ(says(about_a_pivot({.samples = 500}, [](RateState& rate) { rate.w_WI_I_rad_s.z() *= -1.0; })), "");
-}
-
-TEST(PivotCheck, RefusesParametersOutOfBounds) {
-  PivotCheck::Params params;
-  params.segment_s = 0.0;
-  EXPECT_THROW(PivotCheck{params}, InvalidParams);
+  EXPECT_EQ(says(about_a_pivot({.samples = 500}, [](ImuSample& sample) { sample.angular_velocity_rad_s.z() *= -1.0; })),
+            "");
 }
 
 }  // namespace

@@ -34,9 +34,8 @@ Eigen::Vector3d shaken_m_s2(double share_of_turn) {
 }
 
 // Rest, then a constant rotation rate while shaken, and rest again: R is known in closed form.
-RestGravity::State after(const Span& span, const Harm& harm, double scale_of_estimate = 1.0,
-                         const RestGravity::Params& params = {}) {
-  const RestGravity gravity(params);
+RestGravity::State after(const Span& span, const Harm& harm, double scale_of_estimate = 1.0) {
+  const RestGravity gravity({});
   RestGravity::State state;
   oracles::Gaussian noise(3);
   const Eigen::Vector3d up = Eigen::Vector3d(0.3, -0.2, 1.0).normalized();
@@ -69,24 +68,14 @@ TEST(RestGravity, RatesCarryGravityFromOneRestToTheNext) {
   const RestGravity::State good = after({}, kNone);
   EXPECT_TRUE(gravity.verdict(good).ok()) << gravity.verdict(good).message();
   EXPECT_EQ(good.spans, 1u);
-  EXPECT_LT(good.angle_error_rad, 0.04) << "a sample of the turn, at most";
   EXPECT_LT(good.velocity_error_ratio, 0.04);
   EXPECT_NEAR(gravity.magnitude_error_ratio(good), 1.0, 1e-3);
 }
 
-// BROAD 16: three minutes in a hand, in which a bias of 3 mrad/s rotates gravity by half a radian
-TEST(RestGravity, OfALongSpanNothingIsSaid) {
-  const Harm halved = [](ImuSample& s) { s.angular_velocity_rad_s *= 0.5; };
-  EXPECT_FALSE(RestGravity({}).verdict(after({}, halved)).ok());
-  const RestGravity::Params brief = {.rest_interval_max_s = 2.5};
-  const RestGravity::State state = after({}, halved, 1.0, brief);
-  EXPECT_EQ(state.spans, 0u) << "three seconds from rest to rest";
-  EXPECT_TRUE(RestGravity(brief).verdict(state).ok());
-}
-
 TEST(RestGravity, AGyroOfAnotherSenseNamingOrScaleMisses) {
   const RestGravity gravity({});
-  const std::string miss = "error in rad of gravity's direction after gyro integration from one rest to the next";
+  const std::string miss =
+      "velocity error after integration from one rest to the next (share of gravity times elapsed time)";
   const auto says = [&](const Harm& harm) { return std::string(gravity.verdict(after({}, harm)).field); };
   EXPECT_EQ(says([](ImuSample& s) { s.angular_velocity_rad_s *= -1.0; }), miss);
   EXPECT_EQ(says([](ImuSample& s) { s.angular_velocity_rad_s.x() *= -1.0; }), miss);
@@ -131,7 +120,6 @@ TEST(RestGravity, WhatTheRatesStateIsAllowed) {
   const RestGravity gravity({});
   // 5 % of 7.8 rad: 0.3 to 0.4 rad
   const RestGravity::State sure = after({}, kNone, 1.05), unsure = after({.rate_sigma_rad_s = 0.12}, kNone, 1.05);
-  EXPECT_GT(sure.angle_error_rad, 0.3);
   EXPECT_FALSE(gravity.verdict(sure).ok());
   EXPECT_TRUE(gravity.verdict(unsure).ok()) << gravity.verdict(unsure).message();
   EXPECT_FALSE(gravity.verdict(after({.rate_sigma_rad_s = 5.0}, kNone, 0.5)).ok()) << "not of rates that say nothing";
@@ -140,13 +128,8 @@ TEST(RestGravity, WhatTheRatesStateIsAllowed) {
 // The hidden deficit may have been constant throughout, so the deviation of the rotation is that of the rate times the
 // duration.
 TEST(RestGravity, ErrorsOfAClippedSegmentLastAsLongAsIt) {
-  const RestGravity::State read = after({}, kNone);
-  const RestGravity::State hidden = after({.source = RateSource::bounded_only}, kNone);
-  EXPECT_NEAR(hidden.angle_error_sigma_rad, std::sqrt(3.0) * 0.01 * 3.0, 0.005);
-  EXPECT_NEAR(hidden.angle_error_sigma_rad / read.angle_error_sigma_rad, std::sqrt(3.0 / 0.1), 0.5);
   // a rate with a constant error of 5 %, which it states
   const RestGravity gravity({});
-  EXPECT_GT(after({.rate_sigma_rad_s = 0.025}, kNone, 1.05).angle_error_rad, 0.3);
   EXPECT_FALSE(gravity.verdict(after({.rate_sigma_rad_s = 0.025}, kNone, 1.05)).ok());
   const Status status =
       gravity.verdict(after({.rate_sigma_rad_s = 0.025, .source = RateSource::bounded_only}, kNone, 1.05));
@@ -166,7 +149,6 @@ TEST(RestGravity, RatesThatMeetGravityByChanceLeaveAVelocity) {
     // gravity may be anywhere according to these rates; 3.0 s of the span are rotation, and 0.4 s are rest
     const Span unsure = {.rate_rad_s = whole.rate_rad_s, .rate_sigma_rad_s = 0.5, .shaken = false};
     const RestGravity::State wrong = after(unsure, kNone, scale);
-    EXPECT_LT(wrong.angle_error_rad, 0.1) << "by chance";
     EXPECT_NEAR(wrong.velocity_error_ratio, 2.0 * across * 3.0 / 3.4, 0.05) << scale;
     EXPECT_STREQ(gravity.verdict(wrong).field,
                  "velocity error after integration from one rest to the next (share of gravity times elapsed time)");
@@ -189,8 +171,7 @@ TEST(RestGravity, OneErrorOfTheTurnLeavesNoMoreVelocityThanItMisses) {
       if (k == at) rate.w_WI_I_rad_s.x() = 25.0;
       gravity.step(sample, rate, state);
     }
-    EXPECT_NEAR(state.angle_error_rad, 2.0 * std::sin(0.125), 1e-3) << at;
-    EXPECT_NEAR(state.velocity_error_ratio, state.angle_error_rad, 2e-3) << at;
+    EXPECT_NEAR(state.velocity_error_ratio, 2.0 * std::sin(0.125), 3e-3) << at;
     EXPECT_TRUE(gravity.verdict(state).ok()) << gravity.verdict(state).message();
   }
 }
@@ -230,10 +211,6 @@ TEST(RestGravity, OfASpanWithAGapNothingIsSaid) {
   };
   EXPECT_EQ(after({}, silent_for(300'000'000)).spans, 0u);
   EXPECT_EQ(after({}, silent_for(80'000'000)).spans, 1u);
-  // negative control: as if the reading after the gap had been constant throughout
-  RestGravity::Params believed;
-  believed.gap_max_s = 1.0;
-  EXPECT_EQ(after({}, silent_for(300'000'000), 1.0, believed).spans, 1u);
 }
 
 TEST(RestGravity, OfOneRestOrATurnAboutTheVerticalNothingIsSaid) {

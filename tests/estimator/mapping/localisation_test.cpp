@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <random>
 #include <string>
 
 namespace tumble {
@@ -53,11 +55,32 @@ TEST(Localisation, WithoutAMapNothingIsLost) {
 TEST(Localisation, TwoSweepsThatContradictTheirPriorsAreNotForgotten) {
   EXPECT_TRUE(after(sweep(0.1, 3.0)).ok());
   Localisation localisation(1.0);
-  for (const double innovation : {0.2, 1.4, 0.1, 3.0, 0.2, 0.3}) localisation.add(sweep(0.1, innovation));
+  for (const double innovation : {0.2, 2.0, 0.1, 3.0, 0.2, 0.3}) localisation.add(sweep(0.1, innovation));
   const Status contradicted = localisation.verdict();
   EXPECT_NE(std::string(contradicted.field).find("innovation"), std::string::npos);
-  EXPECT_EQ(contradicted.value, 1.4);
-  EXPECT_NEAR(contradicted.bound, 1.370, 1e-3);
+  EXPECT_EQ(contradicted.value, 2.0);
+  EXPECT_NEAR(contradicted.bound, 1.912, 1e-3);
+}
+
+/// Returns how many of 200 runs of 1000 sweeps the check reports, if the true errors of the predictions are `scale`
+/// times the reported standard deviations.
+int reported_runs(double scale) {
+  std::mt19937_64 random(1);
+  std::chi_squared_distribution<double> squared_error(SweepUnknowns::kMotionSize);
+  int reported = 0;
+  for (int run = 0; run < 200; ++run) {
+    Localisation localisation(1.0);
+    for (int k = 0; k < 1000; ++k)
+      localisation.add(sweep(0.1, scale * std::sqrt(squared_error(random) / SweepUnknowns::kMotionSize)));
+    reported += localisation.verdict().ok() ? 0 : 1;
+  }
+  return reported;
+}
+
+// A correct covariance is reported in 1 % of the runs; 8 or more of 200 runs have a probability of 0.1 %.
+TEST(Localisation, ConsistentSweepsContradictNoPrediction) {
+  EXPECT_LT(reported_runs(1.0), 8);
+  EXPECT_GT(reported_runs(1.5), 190);
 }
 
 TEST(Localisation, APresentFindingEnds) {

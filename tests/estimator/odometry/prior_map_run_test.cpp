@@ -52,8 +52,8 @@ struct RoomRun {
       while (std::optional<TumblingOdometry::Sweep> done = odometry.take()) newest = std::move(done->report);
     }
   }
-  double error_in_room_m() const {
-    return (newest.pose.p_WA_m - moves.p_m(1e-9 * static_cast<double>(newest.pose.time_ns))).norm();
+  double error_in_room_m(const Eigen::Isometry3d& T_MR = Eigen::Isometry3d::Identity()) const {
+    return (newest.pose.p_WA_m - T_MR * moves.p_m(1e-9 * static_cast<double>(newest.pose.time_ns))).norm();
   }
 
   test::Motion moves;
@@ -89,7 +89,7 @@ TEST(PriorMapRun, ResetKeepsTheMapAndLocalisesAgain) {
   RoomRun run(-0.7);
   ASSERT_TRUE(run.odometry.use_map({.points = map_of_first_run()}).ok());
   run.odometry.reset();
-  EXPECT_TRUE(run.odometry.mapper().has_prior_map());
+  EXPECT_NE(run.odometry.mapper().prior_map(), nullptr);
   run.odometry.reset(Eigen::Isometry3d::Identity());
   EXPECT_FALSE(run.odometry.mapper().localised().ok());
   run.feed(0, 25);
@@ -108,17 +108,56 @@ TEST(PriorMapRun, AClockStepBeforeLocalisationStartsTheSearchAgain) {
   EXPECT_LT(run.error_in_room_m(), 0.1);
 }
 
-TEST(PriorMapRun, ASavedRunContinuesInThePriorMapBitByBit) {
-  RoomRun run(-0.7), other(-0.7);
-  ASSERT_TRUE(run.odometry.use_map({.points = map_of_first_run(), .extend = false}).ok());
-  run.feed(0, 8);
-  const Status loaded = other.odometry.load(run.odometry.save());
+/// Returns the pose of the room in the frame of the saved map.
+Eigen::Isometry3d elsewhere() {
+  return Eigen::Isometry3d(Eigen::Translation3d(30.0, -4.0, 2.0) * Eigen::AngleAxisd(2.0, Eigen::Vector3d::UnitZ()));
+}
+
+TEST(SavedRun, ANewObjectLocalisesInTheSavedMapAtTheSavedPose) {
+  RoomRun before(-0.7), after(-0.7);
+  before.odometry.reset(elsewhere());
+  before.feed(0, 5);  // rests
+  std::optional<PoseState> last;
+  const Status loaded = after.odometry.load(before.odometry.save(), &last);
   ASSERT_TRUE(loaded.ok()) << loaded.message();
-  run.feed(8, 25);
-  other.feed(8, 25);
-  EXPECT_TRUE(run.newest.in_prior_map);
-  EXPECT_EQ(run.newest.pose.p_WA_m, other.newest.pose.p_WA_m);
-  EXPECT_EQ(run.odometry.save(), other.odometry.save());
+  ASSERT_TRUE(last);
+  EXPECT_LT((last->p_WA_m - elsewhere().translation()).norm(), 0.05);
+  EXPECT_FALSE(after.odometry.mapper().localised().ok());
+  after.feed(0, 30);
+  EXPECT_TRUE(after.newest.in_prior_map);
+  EXPECT_LT(after.error_in_room_m(elsewhere()), 0.1);
+}
+
+TEST(SavedRun, ARunSavedInMotionKeepsItsMap) {
+  RoomRun before(1.0), after(-0.7), again(-0.7);
+  before.odometry.reset(elsewhere());
+  before.feed(0, 25);
+  std::optional<PoseState> last;
+  ASSERT_TRUE(after.odometry.load(before.odometry.save(), &last).ok());
+  ASSERT_TRUE(last);
+  EXPECT_LT((last->p_WA_m - elsewhere() * before.moves.p_m(1e-9 * static_cast<double>(last->time_ns))).norm(), 0.1);
+  EXPECT_EQ(after.odometry.mapper().prior_map()->points.size(), before.odometry.mapper().map().size());
+  after.odometry.reset(elsewhere());  // the robot was carried back
+  after.feed(0, 5);
+  EXPECT_FALSE(after.newest.in_prior_map) << "else this tests nothing";
+  // a run that is not yet localised saves the map that it was given
+  ASSERT_TRUE(again.odometry.load(after.odometry.save()).ok());
+  EXPECT_EQ(again.odometry.mapper().prior_map()->points.size(), before.odometry.mapper().map().size());
+  for (RoomRun* run : {&after, &again}) {
+    run->feed(run == &after ? 5 : 0, 25);
+    EXPECT_TRUE(run->newest.in_prior_map);
+    EXPECT_LT(run->error_in_room_m(elsewhere()), 0.1);
+  }
+}
+
+TEST(SavedRun, AConstantMapStaysConstant) {
+  RoomRun before(-0.7), after(-0.7);
+  ASSERT_TRUE(before.odometry.use_map({.points = map_of_first_run(), .extend = false}).ok());
+  before.feed(0, 25);
+  ASSERT_TRUE(before.newest.in_prior_map);
+  ASSERT_TRUE(after.odometry.load(before.odometry.save()).ok());
+  EXPECT_FALSE(after.odometry.mapper().prior_map()->extend);
+  EXPECT_EQ(after.odometry.mapper().prior_map()->points.size(), map_of_first_run().size());
 }
 
 }  // namespace

@@ -232,22 +232,6 @@ TEST(RollingSmoother, SplitRunsEqual) {
   for (std::size_t k = 0; k < out_whole.size(); ++k) ASSERT_EQ(out_split[k].p_WG_m, out_whole[k].p_WG_m) << k;
 }
 
-TEST(RollingSmoother, AStateOfMoreSamplesThanALagHoldsIsRefused) {
-  const RollingSmoother smoother(testing::lagged_params(1.0));
-  const auto state = std::make_unique<RollingSmoother::State>();
-  std::vector<RollingEstimate> out;
-  const testing::RollingTruth truth = slipping();
-  for (std::size_t k = 0; k < 10; ++k) ASSERT_TRUE(smoother.step(truth.samples[k], *state, out).ok());
-  ASSERT_TRUE(smoother.check_state(*state).ok()) << "negative control";
-  for (int k = 0; k < 5000; ++k) {  // four times 2.2 s at 500 Hz are 4400 samples
-    state->samples.push_back(state->samples.back());
-    state->samples.back().time_ns += 1000;
-  }
-  const Status status = smoother.check_state(*state);
-  EXPECT_EQ(status.error_code, ErrorCode::out_of_range);
-  EXPECT_STREQ(status.field, "rolling.samples");
-}
-
 TEST(RollingSmoother, RefusesBadParamsAndBadSamples) {
   EXPECT_THROW(RollingSmoother(testing::lagged_params(0.0)), InvalidParams);
   RollingSmoother::Params bad = testing::lagged_params(1.0);

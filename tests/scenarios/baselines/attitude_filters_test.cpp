@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,8 +8,6 @@
 
 #include "estimator/attitude/filter_contract.hpp"
 #include "scenarios/baselines/attitude/complementary.hpp"
-#include "scenarios/baselines/attitude/eskf.hpp"
-#include "scenarios/baselines/attitude/mahony.hpp"
 #include "tumble/attitude/vqf.hpp"
 
 namespace tumble::baselines {
@@ -22,7 +19,7 @@ using testing::tilt;
 
 template <typename Filter>
 class Baseline : public ::testing::Test {};
-using Filters = ::testing::Types<Complementary, Mahony, Eskf, Vqf>;
+using Filters = ::testing::Types<Complementary, Vqf>;
 TYPED_TEST_SUITE(Baseline, Filters);
 
 TYPED_TEST(Baseline, ContractOfEveryFilter) {
@@ -39,19 +36,6 @@ TYPED_TEST(Baseline, RefusesBadParams) {
   }
 }
 
-/// Returns how far a filter may deviate during a turn at a constant rate of 1.37 rad/s, while the accelerometer
-/// measures gravity alone. Filters that correct their predicted attitude with a force that agrees deviate only by
-/// rounding. Mahony's filter compares the force with the attitude of the previous step, which lags by |w| dt, and its
-/// integral takes that lag for a bias.
-template <typename Filter>
-double rotation_error_max_rad() {
-  return 1e-10;  // measured 1e-12
-}
-template <>
-double rotation_error_max_rad<Mahony>() {
-  return 7e-3;  // measured 5.2e-3
-}
-
 TYPED_TEST(Baseline, FollowsAPerfectTurnExactly) {
   const TypeParam filter({});
   const Eigen::Vector3d rate(0.7, -1.1, 0.4);
@@ -63,7 +47,7 @@ TYPED_TEST(Baseline, FollowsAPerfectTurnExactly) {
     ASSERT_TRUE(filter.step({k * kPeriod_ns, rate, f_I, 0}, state).ok());
     error_max_rad = std::max(error_max_rad, so3::log(truth.conjugate() * state.q_WI).norm());
   }
-  EXPECT_LT(error_max_rad, rotation_error_max_rad<TypeParam>());
+  EXPECT_LT(error_max_rad, 1e-10);  // only rounding: measured 1e-12
 }
 
 /// Runs a filter at rest with a gyro bias of 0.3 deg/s about a horizontal axis.
@@ -118,45 +102,6 @@ TEST(Complementary, LevelsItselfFromUpsideDown) {
   for (int k = 1; k <= 1000; ++k)
     ASSERT_TRUE(filter.step({k * kPeriod_ns, {0, 0, 0}, {0, 0, -kGravity_m_s2}, 0}, state).ok());
   EXPECT_NEAR(tilt(state.q_WI), std::numbers::pi, 1e-9);
-}
-
-TEST(Mahony, IntegralTakesUpTheBiasWithTheRightSign) {
-  const Mahony filter({.proportional_rad_s = 1.0, .integral_rad_s2 = 0.3});
-  const Mahony::State state = rest_with_bias(filter, 0.005, 60.0);
-  // the poles are at -0.5 +- 0.22i rad/s, so the transient after 60 s is exp(-30)
-  EXPECT_NEAR(state.integral_rad_s.x(), -0.005, 1e-10);
-  EXPECT_NEAR(tilt(state.q_WI), 0.0, 1e-10);
-}
-
-TEST(Mahony, WithoutIntegralTheTiltIsBiasOverGain) {
-  const Mahony filter({.proportional_rad_s = 0.5, .integral_rad_s2 = 0.0});
-  EXPECT_NEAR(std::sin(tilt(rest_with_bias(filter, 0.005, 60.0).q_WI)), 0.005 / 0.5, 1e-9);
-}
-
-TEST(Eskf, FindsTheBiasAndKnowsHowWell) {
-  const Eskf filter({});
-  const double bias = 0.005;
-  const Eskf::State state = rest_with_bias(filter, bias, 120.0);
-  const double sigma = std::sqrt(state.covariance(3, 3));
-  EXPECT_LT(sigma, 8.7e-3) << "nothing was learnt";
-  EXPECT_NEAR(state.bias_rad_s.x(), bias, 3.0 * sigma);
-  EXPECT_NEAR(state.bias_rad_s.x(), bias, 0.3 * bias);
-  EXPECT_GT(state.covariance(2, 2), 0.0) << "the heading becomes uncertain";
-  EXPECT_LT(state.covariance(0, 0), 4e-4) << "the tilt does not";
-  const Eigen::VectorXd eigenvalues = state.covariance.selfadjointView<Eigen::Lower>().eigenvalues();
-  EXPECT_GE(eigenvalues.minCoeff(), 0.0);
-}
-
-TEST(Eskf, SteadyTiltVarianceOfTheScalarFilter) {
-  // without a bias in the state, the continuous scalar filter has P^2 = q r, where q is the gyro's noise density and r
-  // the accelerometer's
-  const Eskf::Params params{.gyro_noise_rad_sqrts = 1e-3,
-                            .bias_walk_rad_s_sqrts = 0.0,
-                            .bias_sigma_start_rad_s = 0.0,
-                            .acceleration_noise_m_s2_sqrts = 1.0};
-  const Eskf::State state = rest_with_bias(Eskf(params), 0.0, 400.0);
-  const double expected = params.gyro_noise_rad_sqrts * params.acceleration_noise_m_s2_sqrts / params.gravity_m_s2;
-  EXPECT_NEAR(state.covariance(0, 0), expected, 0.01 * expected);  // measured 0.02 %: steps of 4 ms against 10 s
 }
 
 TEST(Vqf, RestGivesTheBiasMotionDoesNotNeedToStop) {

@@ -7,7 +7,6 @@
 
 #include "estimator/rolling/rolling_truth.hpp"
 #include "scenarios/baselines/rolling/autogain_fusion.hpp"
-#include "scenarios/baselines/rolling/double_integration.hpp"
 #include "tests/scenarios/baselines/rolled.hpp"
 
 namespace tumble::baselines {
@@ -18,13 +17,8 @@ using testing::no_slip;
 using testing::RollingMotion;
 using testing::RollingTruth;
 
-template <typename Method>
-class Published : public ::testing::Test {};
-using Methods = ::testing::Types<DoubleIntegration, AutogainFusion>;
-TYPED_TEST_SUITE(Published, Methods);
-
-TYPED_TEST(Published, SplitRunsAndSignOfQ) {
-  const TypeParam method({});
+TEST(AutogainFusion, SplitRunsAndSignOfQ) {
+  const AutogainFusion method({});
   RollingTruth truth = testing::roll({.velocity_m_s = l_shape, .contact_velocity_m_s = no_slip, .duration_s = 5.0});
   const std::size_t count = truth.samples.size();
   const auto whole = rolled(method, truth);
@@ -34,15 +28,11 @@ TYPED_TEST(Published, SplitRunsAndSignOfQ) {
     EXPECT_TRUE(whole == rolled(method, truth, cut, count, carried)) << cut;
   }
   for (Eigen::Quaterniond& q : truth.q_WI) q.coeffs() = -q.coeffs();
-  if constexpr (std::is_same_v<TypeParam, DoubleIntegration>) {
-    EXPECT_EQ(rolled(method, truth).p_WI_m, whole.p_WI_m);
-  } else {
-    EXPECT_EQ(rolled(method, truth).p_WG_m, whole.p_WG_m);
-  }
+  EXPECT_EQ(rolled(method, truth).p_WG_m, whole.p_WG_m);
 }
 
-TYPED_TEST(Published, RefusesBadInputAndKeepsItsState) {
-  const TypeParam method({});
+TEST(AutogainFusion, RefusesBadInputAndKeepsItsState) {
+  const AutogainFusion method({});
   const RollingTruth truth =
       testing::roll({.velocity_m_s = l_shape, .contact_velocity_m_s = no_slip, .duration_s = 3.0});
   const auto before = rolled(method, truth, 0, 700);
@@ -65,25 +55,6 @@ TYPED_TEST(Published, RefusesBadInputAndKeepsItsState) {
   EXPECT_EQ(refused(bad, q), ErrorCode::time_order);
   bad.time_ns = before.last_time_ns + 1'000'000'001;
   EXPECT_EQ(refused(bad, q), ErrorCode::gap);
-}
-
-TEST(DoubleIntegration, FollowsASphereThatRollsAndSlidesWhileNothingIsWrong) {
-  const RollingTruth truth =
-      testing::roll({.velocity_m_s = l_shape, .contact_velocity_m_s = [](double t) -> Eigen::Vector3d {
-                       return {t > 3.0 && t < 4.0 ? -0.3 * std::sin(std::numbers::pi * (t - 3.0)) : 0.0, 0, 0};
-                     }});
-  const DoubleIntegration::State end = rolled(DoubleIntegration({}), truth);
-  // the mean force of a window is turned with the attitude at the middle of the window: (w dt)^2 / 24 of g at up to 5
-  // rad/s is 1.6e-4 m/s^2, for some seconds; measured 2.6 mm
-  EXPECT_NEAR((end.p_WI_m - truth.p_WG_m.back()).norm(), 0.0, 5e-3);
-  EXPECT_NEAR(truth.p_WG_m.back().norm(), std::numbers::sqrt2, 1e-6) << "the truth itself";
-}
-
-TEST(DoubleIntegration, TiltErrorGrowsWithTheSquareOfTime) {
-  RollingTruth truth = testing::roll({.velocity_m_s = no_slip, .contact_velocity_m_s = no_slip, .duration_s = 8.0});
-  for (Eigen::Quaterniond& q : truth.q_WI) q = so3::exp({0.0, 0.001, 0.0}) * q;
-  const DoubleIntegration::State end = rolled(DoubleIntegration({}), truth);
-  EXPECT_NEAR(end.p_WI_m.x(), 0.5 * 9.80665 * std::sin(0.001) * 64.0, 1e-9);
 }
 
 TEST(AutogainFusion, CleanRollEndsFarOffAsPublished) {
@@ -174,7 +145,6 @@ TEST(AutogainFusion, RefusesBadParams) {
   EXPECT_THROW(AutogainFusion({.radius_m = 0.0}), InvalidParams);
   EXPECT_THROW(AutogainFusion({.limiter = -1.0}), InvalidParams);
   EXPECT_THROW(AutogainFusion({.autogain = {.tau_s = 0.0}}), InvalidParams);
-  EXPECT_THROW(DoubleIntegration({.gravity_m_s2 = -1.0}), InvalidParams);
 }
 
 }  // namespace

@@ -275,9 +275,6 @@ std::span<const Mutation> mutations() {
       Mutation{"shift_1_ms_carried", "swing", "rate/tumble", {"rate_time_offset_s"}, nullptr, shift_by_1_ms},
       Mutation{"covariance_halved_carried", "swing", "rate/tumble", {"rate_nees_flight"}, nullptr, halve_covariances},
       Mutation{"covariance_doubled_carried", "swing", "rate/tumble", {"rate_nees_flight"}, nullptr, double_covariances},
-      Mutation{"shift_1_ms_held", "swing", "rate/carried", {"rate_time_offset_s"}, nullptr, shift_by_1_ms},
-      Mutation{"covariance_halved_held", "swing", "rate/carried", {"rate_nees_flight"}, nullptr, halve_covariances},
-      Mutation{"covariance_doubled_held", "swing", "rate/carried", {"rate_nees_flight"}, nullptr, double_covariances},
       Mutation{
           "shift_1_ms_position_lag", "bump", "position/tumble_lag", {"pose_time_offset_s"}, nullptr, shift_by_1_ms},
       Mutation{"covariance_halved_position_lag",

@@ -151,7 +151,7 @@ const std::map<std::string, Group>& groups() {
         {{"position/tumble", 10}, {"position/tumble_lag", 10}, {"position/tumble_live", 10}, {"attitude/tumble", 10}}}},
       {"slip", {"slip", {{"position/tumble", 10}, {"position/tumble_lag", 10}, {"position/tumble_live", 10}}}},
       {"rolling alone", {"roll", {{"position/tumble", 10}}}},
-      {"hand-held motion", {"swing", {{"rate/tumble", 9}, {"rate/carried", 9}, {"attitude/tumble", 9}}}},
+      {"hand-held motion", {"swing", {{"rate/tumble", 9}, {"attitude/tumble", 9}}}},
   };
   return kGroups;
 }

@@ -103,18 +103,10 @@ TEST(MethodAccuracy, TumbleAttitudeFollowsAGyroThatClips) {
     const double t_s = 1e-9 * static_cast<double>(imu.time_ns[k]);
     if (t_s < motion.start_s || t_s > motion.end_s) imu.accel_m_s2[k] = turn.sensors.imus.front().accel_m_s2[k];
   }
-  const double oracle = scores_of("attitude/oracle", recording).at("inclination_rmse_rad");
   const double tumble = scores_of("attitude/tumble", recording).at("inclination_rmse_rad");
-  EXPECT_GT(oracle, 0.0);
-  EXPECT_LT(oracle, 1e-3);  // measured 0.00023: no noise
   EXPECT_LT(tumble, 0.02);  // measured 0.0090: the turn is forced and no torque-free flight
   // negative control: the motion hidden by saturation is not small
   EXPECT_GT(scores_of("integrate", recording).at("inclination_rmse_rad"), 0.5);
-  // the oracle ignores saturation: with and without it, the oracle's answer is the same
-  testing::SyntheticMotion free;
-  free.rail_rad_s = 100.0;
-  EXPECT_EQ(scores_of("attitude/oracle", testing::synthetic_rig()),
-            scores_of("attitude/oracle", testing::synthetic_rig(free)));
 }
 
 TEST(MethodAccuracy, MadgwickHoldsTheVerticalAtRest) {
@@ -130,9 +122,11 @@ struct Bound {
 };
 
 TEST(MethodAccuracy, AttitudeFiltersHoldTheVerticalThroughARoll) {
-  // the measured values are 0.036, 0.043, 0.0063, 0.0103, 0.056, 0.022 and 0.0069
-  constexpr Bound kBounds[] = {{"attitude/madgwick", 0.1}, {"attitude/complementary", 0.1}, {"attitude/mahony", 0.02},
-                               {"attitude/eskf", 0.03},    {"attitude/autogain", 0.15},     {"attitude/vqf", 0.06},
+  // the measured values are 0.036, 0.043, 0.056, 0.022 and 0.0069
+  constexpr Bound kBounds[] = {{"attitude/madgwick", 0.1},
+                               {"attitude/complementary", 0.1},
+                               {"attitude/autogain", 0.15},
+                               {"attitude/vqf", 0.06},
                                {"attitude/tumble", 0.02}};
   for (const Bound& check : kBounds) {
     const auto scores = scores_of(check.method, testing::synthetic_sphere());
@@ -150,10 +144,8 @@ TEST(MethodAccuracy, AttitudeFiltersHoldTheVerticalThroughARoll) {
 TEST(MethodAccuracy, PositionMethodsFollowASphereThatGrips) {
   for (const double direction_rad : {0.0, 0.6, -2.5}) {
     const sim::Recording recording = testing::synthetic_sphere(2.0, direction_rad);
-    // the measured values are those of rolling, up to 1e-4
-    for (const Bound& check : {Bound{"position/observer", 1e-3}, Bound{"position/tumble", 1e-3}}) {
-      EXPECT_LT(scores_of(check.method, recording).at("position_end_error_share"), check.bound) << check.method;
-    }
+    // the measured value is that of rolling, up to 1e-4
+    EXPECT_LT(scores_of("position/tumble", recording).at("position_end_error_share"), 1e-3);
   }
 }
 

@@ -130,7 +130,6 @@ TEST(RateLearnt, AnotherRigsInertiaIsDoubtedAndNotPassedOn) {
     const Estimate estimate = calibrating_method(batch, right).run(hill_of_one_rig(seed), {}, {});
     EXPECT_FALSE(has_finding(HealthFinding::Kind::rig_calibration, estimate))
         << seed << ' ' << estimate.faults.message();
-    EXPECT_FALSE(estimate.health.contains("learnt_rig_contradicted"));
   }
   const sim::Sensors sensors = hill_of_one_rig(96101);
   for (const char* const name : {"rate/tumble", "rate/tumble_lag"}) {
@@ -139,7 +138,6 @@ TEST(RateLearnt, AnotherRigsInertiaIsDoubtedAndNotPassedOn) {
       other.given->calibration.constants.inertia[shape] += 0.3;
       const Estimate estimate = calibrating_method(*find_methods(name).front(), other).run(sensors, {}, {});
       EXPECT_TRUE(has_finding(HealthFinding::Kind::rig_calibration, estimate)) << name << ' ' << shape;
-      EXPECT_GT(estimate.health.at("learnt_rig_contradicted"), 2.0);
       EXPECT_EQ(other.found(), nullptr) << "the file stays as it is";
     }
   }
@@ -154,7 +152,9 @@ RateModelParams assumed_model() {
 /// Returns the readings of the wand's simulated recording between two times.
 sim::Sensors wand(double from_s, double to_s) {
   const auto folder = test::written(test::data_folders("repoimu").front());
-  sim::Sensors out = import_repoimu(folder / test::kStandInWand, false).sensors;
+  sim::Sensors out = import_imu_csv(folder / test::kStandInWand, {}, AccelUnit::m_s2, GyroUnit::rad_s,
+                                    "time=0,gyro=8,9,10,accel=5,6,7")
+                         .sensors;
   sim::ImuRecord& imu = out.imus.front();
   const auto at = [](double t_s) { return static_cast<std::ptrdiff_t>(100.0 * t_s); };
   const auto cut = [&](auto& values) { values = {values.begin() + at(from_s), values.begin() + at(to_s)}; };
@@ -252,8 +252,7 @@ TEST(RateLearnt, RailsOfACarriedBodyGoOnToTheNextRun) {
 TEST(RateLearnt, EachMethodTellsTheRailsThatItFound) {
   const sim::Sensors twirled = wand(0.0, 30.0);
   const test::WandRail rail;
-  for (const char* const name :
-       {"rate/tumble", "rate/tumble_lag", "rate/carried", "attitude/tumble", "attitude/tumble_batch"}) {
+  for (const char* const name : {"rate/tumble", "rate/tumble_lag", "attitude/tumble"}) {
     const auto health = find_methods(name).front()->run(twirled, {}, {}).health;
     ASSERT_TRUE(health.contains("gyro_rail_samples_x")) << name;
     EXPECT_NEAR(health.at("learnt_gyro_rail_x_rad_s"), rail.distance_rad_s, 0.01) << name;

@@ -117,7 +117,7 @@ TEST(ImuCheck, EveryAttitudeMethodSaysThatItsImuFroze) {
     if (method.info.kind != Kind::attitude || method.info.needs_truth) continue;
     const auto says = [&](const sim::Sensors& sensors) {
       const Estimate estimate = method.run(sensors, {}, {nullptr});
-      return !estimate.status.ok() || estimate.health.contains("imu_frozen_s");
+      return !estimate.status.ok() || has_finding(HealthFinding::Kind::frozen_sensor, estimate);
     };
     EXPECT_FALSE(says(recording.sensors)) << method.info.name;
     EXPECT_TRUE(says(frozen)) << method.info.name;

@@ -8,7 +8,6 @@
 #include <fstream>
 #include <functional>
 
-#include "scenarios/exchange/estimate_in_bag.hpp"
 #include "scenarios/recordings/bags/bag.hpp"
 #include "scenarios/recordings/bags/bag_messages.hpp"
 #include "scenarios/recordings/bags/bag_storage.hpp"
@@ -16,6 +15,7 @@
 #include "scenarios/recordings/dialects/export_for.hpp"
 #include "scenarios/recordings/export.hpp"
 #include "scenarios/recordings/fixture_recording.hpp"
+#include "scenarios/scoring/estimate_in_bag.hpp"
 
 namespace tumble::scenarios {
 namespace {

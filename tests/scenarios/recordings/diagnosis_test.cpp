@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scenarios/exchange/diagnosis.hpp"
+#include "scenarios/methods/diagnosis.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "scenarios/exchange/probable_devices.hpp"
+#include "scenarios/methods/probable_devices.hpp"
 #include "tests/tree.hpp"
 
 namespace tumble::scenarios {

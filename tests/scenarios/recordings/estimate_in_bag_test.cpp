@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "scenarios/exchange/estimate_in_bag.hpp"
+#include "scenarios/scoring/estimate_in_bag.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

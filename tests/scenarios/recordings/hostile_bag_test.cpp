@@ -148,7 +148,11 @@ TEST_F(HostileBag, DamagedRos2BagsAreOneLine) {
   fixture::put(bag / "metadata.yaml", mcap);
   EXPECT_THAT(complaint(), HasSubstr("the storage is 'mcbp'; it must be sqlite3 or mcap"));
   std::filesystem::remove(bag / "metadata.yaml");
-  EXPECT_THAT(complaint(), HasSubstr("no metadata.yaml"));
+  EXPECT_EQ(complaint(), "");
+  fixture::put(bag / "other_0.db3", database);
+  EXPECT_THAT(complaint(), HasSubstr("no metadata.yaml, and the names of its bags differ by more than a number"));
+  std::filesystem::remove(bag / "other_0.db3"), std::filesystem::remove(bag / "bag_0.db3");
+  EXPECT_THAT(complaint(), HasSubstr("no metadata.yaml, so it is not a ROS 2 bag"));
 }
 
 // without the definitions a reader that knows no ROS cannot interpret a message

@@ -216,7 +216,7 @@ TEST_F(ImportSweeps, HostileInputIsOneClearLine) {
   EXPECT_THAT(complaint_of(), HasSubstr("contains no file that ends in .ply"));
   put("1.ply", sweep());
   put("2.ply", sweep());
-  EXPECT_THAT(complaint_of(), HasSubstr("1.ply: neither the sweep nor its points have a time stamp"));
+  EXPECT_THAT(complaint_of(), HasSubstr("1.ply: neither the sweep nor its points have a time stamp; state the times"));
   put("times.txt", "1.0\n");
   EXPECT_THAT(complaint_of(), HasSubstr("times.txt: the file contains 1 time stamps, but there are 2 sweeps"));
   put("times.txt", "# s\n1.1\n1.0\n");
@@ -244,6 +244,17 @@ TEST_F(ImportSweeps, HostileInputIsOneClearLine) {
   put("2.ply", sweep("float x", {"nan", "nan", "nan"}));
   put("rear_1.ply", sweep());
   EXPECT_THAT(complaint_of(), HasSubstr("files of several lidars, '' and 'rear'"));
+}
+
+// the times are of no use, so no unit of them is asked for
+TEST_F(ImportSweeps, EqualPointTimesMeanSweepsThatAreNotSkewed) {
+  for (const char* name : {"1.ply", "2.ply"}) put(name, sweep("float time", {"0", "0", "0"}));
+  for (const bool stamped : {true, false}) {
+    if (stamped) put("times.txt", "1.0\n1.1\n");
+    if (!stamped) std::filesystem::remove(folder_ / "times.txt"), source_.steady_ns = 100000000;
+    EXPECT_EQ(import().point_times, sim::PointTimes::not_skewed) << stamped;
+    EXPECT_THAT(imported_.notes, testing::Contains(HasSubstr("all points of a sweep have the same time")));
+  }
 }
 
 TEST_F(ImportSweeps, AUnitThatCannotBeToldIsAskedFor) {

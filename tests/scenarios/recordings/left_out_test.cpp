@@ -233,10 +233,9 @@ TEST_P(OddBag, OneWildPointTimeCostsOnePoint) {
   const Imported imported = read();
   EXPECT_EQ(imported.sensors.lidars.at(0).sweep_start_ns.size(), 15u);
   EXPECT_EQ(imported.sensors.lidars.at(0).offset_ns.size(), static_cast<std::size_t>(15 * kPoints - 1));
-  EXPECT_THAT(
-      imported.notes,
-      Contains(AllOf(HasSubstr("/points: caution: 1 points are left out, because their times are outside their sweep"),
-                     HasSubstr("message 5 of /points: point 3 is"))));
+  EXPECT_THAT(imported.notes,
+              Contains(AllOf(HasSubstr("/points: caution: 1 point is left out because of times outside their sweep"),
+                             HasSubstr("message 5 of /points: point 3 is"))));
   for (std::size_t p = 5 * kPoints; p < 5 * kPoints + 20; ++p) offsets[p] = 4'200'000'000u;
   expect_one_left_out(150, 14, "1 with faulty data (first: ");
 }

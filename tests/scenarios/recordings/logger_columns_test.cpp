@@ -114,6 +114,42 @@ TEST_F(LoggerTable, TheUnitOfTimesIsTakenFromTheirSteps) {
   EXPECT_EQ(complaint_of(table("time_s,gx,gy,gz,ax,ay,az", {"0", "0.5", "1"}, kRow)), "");
 }
 
+// a logger that loses its power cuts the last line, and a full buffer cuts others
+TEST_F(LoggerTable, OneCutLineCostsOneReading) {
+  std::string whole = "time,gx,gy,gz,ax,ay,az\n";
+  for (int k = 0; k < 50; ++k) whole += std::to_string(12.5 + 0.005 * k) + kRow + "\n";
+  const auto one_lost = [&](const std::string& text, std::size_t kept) {
+    SCOPED_TRACE(text.substr(text.size() - 40));
+    const Imported imported = import(text);
+    EXPECT_EQ(imported.sensors.imus.at(0).time_ns.size(), kept);
+    EXPECT_THAT(imported.notes, Contains(HasSubstr("caution: 1 of 50 readings is left out")));
+  };
+  one_lost(whole.substr(0, whole.size() - 5), 49);
+  one_lost(whole.substr(0, whole.size() - 1), 49);
+  std::string cut = whole;
+  cut.erase(cut.find("12.6000") + 20, 9);
+  one_lost(cut, 49);
+  std::string spaced = whole;
+  spaced.insert(spaced.find("12.6000"), "\n  \n");
+  EXPECT_EQ(import(spaced).sensors.imus.at(0).time_ns.size(), 50u) << "empty lines are no samples";
+}
+
+TEST_F(LoggerTable, TimesMayBeDates) {
+  const std::string row = table("time,gx,gy,gz,ax,ay,az",
+                                {"2024-05-01T12:00:00.5Z", "2024-05-01 12:00:00.505", "2024-05-01T12:00:00.510"}, kRow);
+  expect_the_readings(import(row));
+  EXPECT_EQ(import(row).info.origin_ns, 1'714'564'800'500'000'000);
+  expect_the_readings(import_columns(row, "time=time,gyro=gx,gy,gz,accel=ax,ay,az"));
+}
+
+// SampleTimeFine counts units of 0.1 ms; read in ms, the recording would last ten times as long
+TEST_F(LoggerTable, XsensCountsTenthsOfMilliseconds) {
+  const std::string text = "// DeviceId: 1\n" + table("SampleTimeFine,Gyr_X,Gyr_Y,Gyr_Z,Acc_X,Acc_Y,Acc_Z",
+                                                      {"125000", "125050", "125100"}, kRow);
+  expect_the_readings(import(text));
+  expect_the_readings(import_columns(text, "time=SampleTimeFine,gyro=Gyr_X,Gyr_Y,Gyr_Z,accel=Acc_X,Acc_Y,Acc_Z"));
+}
+
 TEST_F(LoggerTable, StatedUnitsAreBelieved) {
   const Imported imported = import(
       table("t,gx (deg/s),gy (deg/s),gz (deg/s),ax [g],ay [g],az [g]", kSeconds, ",57.29577951308232,0,0,0,0,1"));

@@ -84,9 +84,6 @@ TEST_F(RegularFile, ReadersRefuseAPipeAndDoNotWaitForIt) {
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
   const std::string said = pipe.string() + ": is a pipe; it must be a regular file";
   EXPECT_EQ(complaint([&] { import_imu_csv(pipe, {}); }), said);
-  EXPECT_EQ(complaint([&] { import_broad(pipe); }), said);
-  EXPECT_EQ(complaint([&] { import_repoimu(pipe, false); }), said);
-  EXPECT_EQ(complaint([&] { import_airbrakes(pipe); }), said);
   EXPECT_EQ(complaint([&] { import_ros1_bag(pipe, {}); }), said);
   EXPECT_EQ(complaint([&] { import_ros2_bag(pipe, {}); }), said);
   EXPECT_EQ(complaint([&] { import_mcap(pipe, {}); }), said);

@@ -44,6 +44,22 @@ TEST_F(ReplaceFile, FollowsTheUsersMask) {
   EXPECT_EQ(status.st_mode & 0777u, 0640u);
 }
 
+// a folder that contains only such files counts as empty
+TEST_F(ReplaceFile, AFolderOfAKilledProcessIsUsedAgain) {
+  const pid_t child = fork();
+  if (child == 0) {
+    const OutputFolder left(folder_ / "bag");
+    const OutputFile file(folder_ / "bag" / "bag_0.db3");
+    kill(getpid(), SIGKILL);
+  }
+  ASSERT_EQ(waitpid(child, nullptr, 0), child);
+  ASSERT_FALSE(std::filesystem::is_empty(folder_ / "bag"));
+  export_ros2_bag(fixture::small_sensors(), {}, folder_ / "bag");
+  std::size_t count = 0;
+  for ([[maybe_unused]] const auto& each : std::filesystem::directory_iterator(folder_ / "bag")) ++count;
+  EXPECT_EQ(count, 2u) << "bag_0.db3 and metadata.yaml";
+}
+
 // the next process removes the files that a killed process leaves, and keeps the files that a living one writes
 TEST_F(ReplaceFile, FilesOfKilledProcessesAreRemoved) {
   std::filesystem::create_directory(folder_ / "x");

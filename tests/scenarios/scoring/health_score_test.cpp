@@ -15,7 +15,7 @@ using testing::perfect_estimate;
 using testing::scores;
 
 HealthFinding finding(HealthFinding::Kind kind) {
-  return {kind, "imu", "", "quantity", 2.0, 1.0, 0.5};
+  return {kind, "imu", "", "quantity", 2.0, 1.0};
 }
 
 /// Returns rates that are too large by the fraction `share`.

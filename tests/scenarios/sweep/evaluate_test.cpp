@@ -56,5 +56,33 @@ TEST(Applicable, AnUnknownRobotExcludesNothing) {
   EXPECT_FALSE(find_methods("slam/tumble").front()->info.applies_to({"", false}));
 }
 
+std::string status_of(const MethodInfo& info, const Estimate& estimate) {
+  Outcome outcome;
+  judge_without_truth(info, estimate, outcome);
+  return to_string(outcome.status) + std::string(outcome.message.empty() ? "" : ": " + outcome.message);
+}
+
+// every verb that runs a method reports this status
+TEST(JudgeWithoutTruth, AFaultThatInvalidatesOurEstimateIsADivergence) {
+  MethodInfo ours, baseline;
+  ours.ours = true;
+  const auto finding = [](HealthFinding::Kind kind) {
+    HealthFinding out;
+    out.kind = kind;
+    out.sensor = "imu";
+    return out;
+  };
+  Estimate estimate;
+  EXPECT_EQ(status_of(ours, estimate), "ok");
+  add_finding(finding(HealthFinding::Kind::frozen_axis), estimate);
+  EXPECT_EQ(status_of(ours, estimate), "ok") << "one axis does not invalidate the estimate";
+  add_finding(finding(HealthFinding::Kind::force_at_rest), estimate);
+  EXPECT_THAT(status_of(ours, estimate),
+              ::testing::AllOf(HasSubstr("diverged: health: imu: "), HasSubstr("wrong unit or scale")));
+  EXPECT_EQ(status_of(baseline, estimate), "ok") << "baselines do not report their health";
+  estimate.status = {ErrorCode::too_few, "lidar.sweeps_registered", 0.0, 1.0};
+  EXPECT_THAT(status_of(ours, estimate), HasSubstr("failed: too_few"));
+}
+
 }  // namespace
 }  // namespace tumble::scenarios

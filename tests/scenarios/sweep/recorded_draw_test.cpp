@@ -4,10 +4,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <map>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/recordings/import.hpp"
+#include "scenarios/recordings/recording_file.hpp"
 #include "scenarios/sweep/results.hpp"
 #include "scenarios/sweep/sweep.hpp"
 #include "stand_ins/synthetic_repoimu.hpp"
@@ -34,13 +35,29 @@ class RecordedSweep : public testing::TemporaryFolder {
   }
 
   void record(const std::string& name, double duration_s, bool with_reference) const {
-    fixture::Wand wand;
-    wand.duration_s = duration_s;
-    write("data/" + name + ".csv", fixture::repoimu_text(wand));
-    const Imported imported = import_repoimu(folder_ / "data" / (name + ".csv"), true);
+    constexpr std::int64_t kPeriod_ns = 10'000'000;
+    const fixture::WandAttitude attitude(duration_s);
+    sim::Sensors sensors;
+    sim::Truth truth;
+    truth.imus.resize(1);
+    sim::ImuRecord& imu = sensors.imus.emplace_back();
+    imu.name = truth.imus[0].name = "imu";
+    imu.period_ns = truth.period_ns = kPeriod_ns;
+    for (std::int64_t time_ns = 0; time_ns < std::llround(1e9 * duration_s); time_ns += kPeriod_ns) {
+      const double t = 1e-9 * static_cast<double>(time_ns);
+      const Eigen::Vector3d w = fixture::Wand::rate(t);
+      imu.time_ns.push_back(time_ns);
+      imu.gyro_rad_s.push_back(fixture::clipped({}, w));
+      imu.accel_m_s2.push_back(attitude.at(t).conjugate() * Eigen::Vector3d(0.0, 0.0, 9.80665));
+      imu.clip_flags.push_back(0);
+      truth.q_WB.push_back(attitude.at(t));
+      truth.w_WB_B_rad_s.push_back(w);
+      for (auto* unknown : {&truth.p_WB_m, &truth.v_WB_m_s})
+        unknown->push_back(Eigen::Vector3d::Constant(std::nan("")));
+      truth.imus[0].rate_rad_s.push_back(w);
+    }
     std::filesystem::create_directories(folder_ / "data/wands");
-    write_recording(folder_ / "data/wands" / (name + ".h5"), imported.info, imported.sensors,
-                    with_reference ? &*imported.reference : nullptr);
+    write_recording(folder_ / "data/wands" / (name + ".h5"), {}, sensors, with_reference ? &truth : nullptr);
   }
 
   Suite suite() const {

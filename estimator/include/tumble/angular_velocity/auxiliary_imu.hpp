@@ -47,8 +47,6 @@ struct AuxiliaryReading {
   /// Creates a reading in which all components are NaN.
   AuxiliaryReading();
   bool measures_all_rates() const { return rate_rad_s.allFinite(); }
-  /// Returns true if two readings are equal bit for bit, where NaN equals NaN.
-  bool same(const AuxiliaryReading& other) const;
 };
 
 /// Interpolates the readings of an additional IMU at the time stamps of the primary IMU. Cost: O(N). The function

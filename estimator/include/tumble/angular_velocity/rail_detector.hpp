@@ -75,6 +75,10 @@ struct RailDetectorParams {
   double clip_leave_ratio = 0.02;
   double range_contradiction_ratio = 0.02;  ///< minimum relative difference that contradicts the stated range
 
+  /// Saturation limits of an earlier run of the device, in the order of RailDetector::State::channels; 0: none.
+  /// RailDetector uses known limits from the start of a run until readings exceed them.
+  std::array<double, 6> known = {};
+
   using Expert = RailDetectorExpertParams;
   Expert expert = {};  ///< rarely changed parameters
 
@@ -131,6 +135,8 @@ class RailDetector {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit RailDetector(const Params& params);
 
+  /// Returns the state before the first sample.
+  State start() const;
   /// Updates the saturation limits with one finite sample. Cost: O(1).
   void observe(const ImuSample& sample, State& state) const;
   /// Returns the clipped axes of one finite sample, according to the current saturation limits. Cost: O(1). The

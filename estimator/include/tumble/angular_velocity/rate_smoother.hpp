@@ -81,9 +81,7 @@ struct RateReport {
   double gyro_update_s = 0.0, accel_update_s = 0.0;  ///< update interval of repeated readings; 0: no repeated readings
   int error_rounds = 0;                              ///< number of optimisations with corrected readings
   bool clips_after_compensation = false;             ///< the gyro clips after misalignment compensation, axis by axis
-  std::array<bool, 6> contradicts_stated_range{};    ///< the readings contradict the stated range
-  bool rate_unit_suspect = false;   ///< a gyro reading exceeds RateModelParams::rate_max_rad_s: the unit may be degrees
-  bool force_unit_suspect = false;  ///< the median specific force is near 1: the unit may be g
+  std::array<bool, 6> contradicts_stated_range{};    ///< whether the readings contradict the stated range
   std::size_t samples = 0, clipped = 0, recovered_flight = 0, recovered_contact = 0, bounded_only = 0;
   std::size_t missing_readings = 0;  ///< samples in which a gyro axis overflowed (flipped sign)
   double flight_share = 0.0;         ///< fraction of samples classified as free flight

@@ -71,9 +71,9 @@ class RateStream {
   /// Appends the estimates of the samples in the window to `out`, oldest first. Call flush() at the end of a run.
   void flush(const State& state, std::vector<RateState>& out) const;
 
-  /// Reports current faults of the IMU: frozen axes (FrozenAxes), forces in flight that fit another sign or scale
-  /// (FlightSignCheck), and rates beyond RateModelParams::rate_max_rad_s, which are possibly not in rad/s. While a gyro
-  /// axis is frozen, the standard deviation of the rate about this axis is the largest rate read so far.
+  /// Reports current faults of the IMU: frozen axes (FrozenAxes), and forces in flight that fit an inverted
+  /// accelerometer (FlightSignCheck). While a gyro axis is frozen, the rate about this axis has the largest rate read
+  /// so far as standard deviation.
   SensorHealth health(const State& state) const;
 
   /// Returns the estimated rig constants and their covariance.
@@ -82,12 +82,6 @@ class RateStream {
   /// Returns the sensor errors that RateStream currently corrects, with their covariance. RateStream detects a delayed
   /// accelerometer from impacts, unless the data sheet excludes a delay (RateStreamDelay).
   KnownSensorErrors sensor_errors(const State& state) const;
-
-  /// Returns true if two states lead to identical results, bit for bit. The comparison ignores buffers.
-  static bool equal(const State& a, const State& b);
-
-  /// Checks the consistency of a state that was loaded from a file. Returns the first violated condition.
-  Status check_state(const State& state) const;
 
  private:
   void marginalise_leaving(State& state) const;

@@ -36,6 +36,8 @@ struct KnownSensorErrors {
   SensorErrors::Matrix covariance = SensorErrors::Matrix::Zero();
 };
 
+/// Returns `out_of_range` if a sensor error exceeds 0.2, or if the covariance has a negative eigenvalue.
+Status check_known(const KnownSensorErrors& earlier_runs);
 /// Throws InvalidParams if a sensor error exceeds 0.2, or if the covariance has a negative eigenvalue.
 void require_known(const KnownSensorErrors& earlier_runs);
 

@@ -17,8 +17,8 @@ namespace tumble {
 ///
 /// HandHeldStream marginalises the oldest node into a Gaussian prior on the next node, the biases and the lever arm.
 /// The function push() returns each rate when its sample is `lag_s` old. The window `window_s` is longer than the lag,
-/// so that each step also relinearises nodes that are older than the lag. The function start() allocates all memory of
-/// the stream. A run that is continued from a saved State gives bit-identical results.
+/// so that each step also relinearises nodes older than the lag. The function start() allocates all memory of the
+/// stream. A run that continues from a copy of the State gives bit-identical results.
 ///
 /// HandHeldStream differs from HandHeldSmoother as follows. While no sample in the window is clipped, the solver runs
 /// only for every fifth node. The initial attitude comes from a single force reading. The assumed density of the hand's
@@ -115,11 +115,7 @@ class HandHeldStream {
   /// Appends the unreported rates of the samples in the window to `out`, oldest first.
   void flush(const State& state, std::vector<RateState>& out) const;
 
-  /// Checks the consistency of a state that was loaded from a file. Returns the first violated condition.
-  Status check_state(const State& state) const;
-
  private:
-  Status check_reading(const Reading& reading, const Reading* before, TimeNs start_ns) const;
   void append(const ImuSample& sample, const RepeatDetector::State& repeated, State& state) const;
   void add(const Reading& reading, State& state) const;
   bool reclassify(const ClippedElements& known, State& state) const;

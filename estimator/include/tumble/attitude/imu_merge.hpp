@@ -85,9 +85,8 @@ struct ImuMergeParams {
 /// ImuMerge treats an IMU whose reading is not finite as absent. An IMU is frozen if its gyro or accelerometer repeats
 /// one reading while the readings of other IMUs change. An IMU is also frozen if its accelerometer repeats one reading
 /// while the direction of gravity rotates. ImuMerge excludes a frozen IMU until its readings have changed for
-/// `unfreeze_after_s`. ImuMerge permanently excludes an IMU that disagrees for long, for example because of a wrong
-/// scale, wrong axes or a wrong unit. At least two other IMUs must remain. Repeated readings of a body at rest do not
-/// count as frozen.
+/// 0.5 s. ImuMerge permanently excludes an IMU that disagrees for long (scale, axes, unit of measurement),
+/// as long as two other IMUs remain. Repeated readings of a body at rest do not count as frozen.
 ///
 /// ImuMerge assumes that all clocks have the same rate, and does not detect an error that all IMUs share.
 class ImuMerge {
@@ -111,9 +110,9 @@ class ImuMerge {
 
   /// Returns `out_of_range` with the duration [s] if all active IMUs are frozen, and otherwise `ok`. While all IMUs are
   /// frozen, step() merges their readings unchanged.
-  Status verdict(const State& state) const;
+  static Status verdict(const State& state);
   /// Adds a finding for each IMU that is frozen or disagrees with the other IMUs.
-  void add_finding(const Unit& unit, const std::string& name, SensorHealth& health) const;
+  static void add_finding(const Unit& unit, const std::string& name, SensorHealth& health);
   /// Adds findings about all IMUs together: exchanged or inverted axes (UnitSignCheck), and a wrong scale
   /// (lever_arm_agreement()). `gyro_confirmed` states whether another check confirms the scale of the gyros.
   static void add_findings(const std::optional<UnitSignCheck::Detected>& mislabelled_axes,

@@ -93,9 +93,6 @@ class RegimeStream {
   const RateStream& rate() const { return rate_; }
   const Params& params() const { return params_; }
 
-  /// Checks the consistency of a state that was loaded from a file. Returns the first violated condition.
-  Status check_state(const State& state) const;
-
  private:
   ClippedElements update_clip_signs(State& state) const;
   std::size_t index_of(const RateState& rate, const State& state) const;

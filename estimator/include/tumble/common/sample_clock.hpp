@@ -83,9 +83,6 @@ class SampleClock {
   /// Returns true if push() currently corrects time stamps.
   bool corrects_stamps(const State& state) const;
 
-  /// Checks the consistency of a state that was loaded from a file. Returns the first violated condition.
-  static Status check_state(const State& state);
-
  private:
   void begin(State& state) const;
   void update_line(double step_ns, TimeNs stamp_ns, State& state) const;

@@ -20,15 +20,11 @@ struct HealthFinding {
     unit_frozen,        ///< one of several IMUs repeats one reading, on `axis` or on all axes
     unit_silent,        ///< one of several IMUs delivers no readings
     unit_disagrees,     ///< one of several IMUs differs from the other IMUs
-    rate_unit,          ///< the rates are possibly not in rad/s
-    force_unit,         ///< the specific forces are possibly not in m/s^2
-    force_at_rest,      ///< the specific force at rest has another magnitude than gravity
+    force_at_rest,      ///< the specific force at rest has another magnitude than gravity, or another unit
     axes_or_signs,      ///< axes are exchanged or inverted
-    flight_forces,      ///< forces in free flight fit exchanged axes, another sign or another gyro scale
+    flight_forces,      ///< forces in free flight fit inverted axes of the accelerometer
     rotation,           ///< the direction of gravity, or a body on a pivot, does not rotate as the gyro measures
     gyro_scale,         ///< the forces of several IMUs contradict the scale of the gyros
-    beyond_range,       ///< readings exceed the range of the device; value: their number
-    rounded_stamps,     ///< time stamps are rounded more coarsely than the IMU's period
     lidar_scale,        ///< the lidar's ranges have another scale than the motion
     lidar_calibration,  ///< mounting or clock of the lidar differ from the stated values
     rig_calibration,    ///< a stored calibration belongs to another rig
@@ -40,12 +36,11 @@ struct HealthFinding {
   static constexpr Kind kLast = Kind::not_localised;
 
   Kind kind = Kind::frozen_axis;
-  std::string sensor;         ///< "imu": all IMUs; "imu_2": second of several IMUs; "lidar"; "": the estimate
-  const char* axis = "";      ///< "gyro_x" to "accel_z", if one axis is suspect
-  const char* quantity = "";  ///< static string: the tested quantity, with its unit
-  double value = 0.0;         ///< value of the quantity
-  double bound = 0.0;         ///< violated limit
-  double confidence = 0.0;    ///< from 0 (value at the bound) to 1 (value far beyond); a margin, not a probability
+  std::string sensor;                   ///< "imu": all IMUs; "imu_2": second of several IMUs; "lidar"; "": the estimate
+  const char* axis = "";                ///< "gyro_x" to "accel_z", if one axis is suspect
+  const char* quantity = "";            ///< static string: the tested quantity, with its unit
+  double value = 0.0;                   ///< value of the quantity
+  double bound = 0.0;                   ///< violated limit
   std::optional<TimeNs> since_ns = {};  ///< start of the fault; empty if the check does not determine the start
   /// True if the fault is over. health() of a live run only reports findings that have not ended.
   bool ended = false;
@@ -74,10 +69,10 @@ struct SensorHealth {
   /// Returns whether a finding invalidates the estimate.
   bool invalidates_estimate() const;
 
-  /// Adds the finding of a check unless `status` is ok. `normal` is the value of the quantity without a fault. If a
-  /// finding of the same kind, sensor and axis exists, add() only marks its fault as not ended.
+  /// Adds the finding of a check unless `status` is ok. If a finding of the same kind, sensor and axis exists, add()
+  /// only marks its fault as not ended.
   void add(HealthFinding::Kind kind, const Status& status, std::string sensor, const char* axis = "",
-           std::optional<TimeNs> since_ns = {}, double normal = 0.0);
+           std::optional<TimeNs> since_ns = {});
   void add(HealthFinding finding);
   void add(const SensorHealth& other);
   /// Collects the findings of a run. `now` is the newest result of health(). The function adds the findings of `now`,

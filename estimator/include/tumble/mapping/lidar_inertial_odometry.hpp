@@ -20,10 +20,6 @@
 
 namespace tumble {
 
-class StateWriter;
-class StateReader;
-class StateLayout;
-
 /// Estimates pose and map of a tumbling body from an IMU and a lidar. LidarInertialOdometry integrates the IMU between
 /// sweeps, and deskews each point at the time of its firing. LidarInertialOdometry registers each sweep to a voxel map
 /// by k-nearest-neighbour point-to-plane distances, and then inserts the sweep into the map. The registration refines
@@ -74,9 +70,6 @@ class LidarInertialOdometry {
   struct StartTilt {
     Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  ///< correction of the levelled attitude
     double sigma_rad = 0.0;                                        ///< standard deviation of the corrected tilt
-
-    template <class Self, class Visitor>
-    static void members(Self& s, Visitor& visit);
   };
   /// Returns the tilt at the start, computed from the direction of gravity in the map. A second run over the same data
   /// can use it. The result is empty after a start at rest, or if the motion does not determine gravity more accurately
@@ -100,7 +93,8 @@ class LidarInertialOdometry {
   void use_map_of(const LidarInertialOdometry& other);
   /// Returns `degenerate` if a prior map is set but the robot is not yet localised, and otherwise `ok`.
   Status localised() const;
-  bool has_prior_map() const;
+  /// Returns the map of use_map(), or null.
+  const PriorMap* prior_map() const;
 
   /// Processes an IMU sample and its estimated angular velocity `rate`. Returns `non_finite`, `time_order`, or
   /// `out_of_range` if `rate` has another time stamp. On error, the state is unchanged. The first sample after a gap
@@ -170,14 +164,6 @@ class LidarInertialOdometry {
   /// nearest neighbours, and point towards the sensor position at the observation. The result omits points that two
   /// later sweeps saw through, for example points on people who have walked away.
   std::vector<MapPoint> map() const;
-
-  /// Saves or loads the complete state, except `parallel_for`. The loading object must have the parameters of the
-  /// saving object, and continues with bit-identical results. The saved state includes the lidar's mounting and time
-  /// offset with their standard deviations. If loading fails, the StateReader reports an error and the loading object
-  /// is unchanged.
-  void save(StateWriter& out) const;
-  void load(StateReader& in);
-  void describe(StateLayout& out) const;
 
   struct Impl;  ///< private implementation
 

@@ -12,10 +12,6 @@
 
 namespace tumble {
 
-class StateWriter;
-class StateReader;
-class StateLayout;
-
 /// Neighbours is the result of a neighbour search: the nearest points of a map, nearest first.
 struct Neighbours {
   static constexpr int kMax = 32;
@@ -92,14 +88,6 @@ class VoxelMap {
   /// Returns the memory in use [bytes].
   std::size_t bytes() const;
 
-  /// Saves the points and the occupied cubes: 25 bytes per point and 8 bytes per cube. The function load() rebuilds the
-  /// search structure.
-  void save(StateWriter& out) const;
-  /// Replaces the contents of the map with a saved map. The saved map and the loading map must have equal parameters.
-  /// The reader reports `out_of_range` for impossible positions.
-  void load(StateReader& in);
-  static void describe(StateLayout& out);
-
   std::size_t size() const { return sigma_m_.size() - free_slots_; }
   /// Returns the upper limit of the point indices in use. Indices for which exists() returns false are unused.
   std::uint32_t index_end() const { return static_cast<std::uint32_t>(sigma_m_.size()); }
@@ -140,7 +128,6 @@ class VoxelMap {
   std::uint32_t new_chunk(std::uint32_t& first);
   void search(std::uint32_t chunk, const Eigen::Vector3f& query_W_m, int k, float& worst_distance2_m2,
               Neighbours& found) const;
-  void load_chunk(StateReader& in);
 
   Params params_;
   float cells_per_m_ = 0.0f;

@@ -193,19 +193,25 @@ class RollingOdometry {
   /// Returns the jitter of the time stamps [s] while SampleClock corrects them, and otherwise an empty value.
   std::optional<double> estimated_jitter_s() const;
 
-  /// The functions save(), load() and saved_params() work like the functions of TumblingOdometry. A saved state has at
-  /// most one megabyte plus the data of the lag.
+  /// Saves calibration, saturation limits of each IMU, and newest pose as bytes with a checksum, for load() after a
+  /// reboot. The calibration consists of the biases, scales and delay of the merged IMU, centre and radius, with their
+  /// covariance. The saved bytes are equal on every machine. The bytes do not contain poses that wait for take(),
+  /// velocity, contact mode, the differences between the IMUs, findings of health(), counters and recorded readings.
   std::vector<std::byte> save() const;
-  Status load(std::span<const std::byte> bytes);
-  static Status saved_params(std::span<const std::byte> bytes, Params& params);
+  /// Starts a new run from saved bytes, like a new object. The saved calibration and saturation limits replace the
+  /// prior of the parameters, also after a later reset(). Biases keep their values with the prior's uncertainty,
+  /// because biases change at every switch-on. The run starts at the saved pose with its covariance, and its poses have
+  /// the flag `uncertain`. If the sphere may have moved, call reset(pose) after load().
+  ///
+  /// The output `last_pose` is the saved pose with its time in the clock of the saved run, or empty. On error, the
+  /// object is unchanged, and the returned status names the field, the saved value and the bound. The error is
+  /// `too_few` (truncated bytes), `non_finite` or `out_of_range`. The function rejects damaged bytes, bytes of
+  /// TumblingOdometry or of another version, and a saved run with another radius or other IMUs.
+  Status load(std::span<const std::byte> bytes, std::optional<PoseState>* last_pose = nullptr);
 
   /// Returns the parameters with which RollingSmoother processes merged readings, for programs that use RollingSmoother
   /// alone.
   static RollingSmoother::Params smoother_params(const Params& params, const MergedRecordings& merged);
-
-  /// Calls `visit` for every member of the state (see state_visitor.hpp).
-  template <class Self, class Visitor>
-  static void members(Self& s, Visitor& visit);
 
  private:
   using Frozen = std::array<FrozenAxes::State, ImuMerge::kImus>;

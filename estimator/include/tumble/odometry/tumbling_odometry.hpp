@@ -195,24 +195,29 @@ class TumblingOdometry {
   /// (detail/recording_estimate.hpp). Returns null before finish() and without kWholeRecording.
   const RecordingEstimate* recording() const { return whole_.get(); }
 
-  /// Saves the complete state: map, calibration, SecondPass, and sweeps that take() has not yet returned. The saved
-  /// bytes are equal on every machine and include a checksum. An object with equal parameters that loads the bytes
-  /// continues with bit-identical results. Two states are equal if their saved bytes are equal. With kWholeRecording,
-  /// the bytes contain the recorded data instead of the results. Call finish() after load() to compute the results
-  /// again.
+  /// Saves calibration, saturation limits, map and newest pose as bytes with a checksum, for load() after a reboot. The
+  /// calibration consists of rig(), the detected delay and errors of the IMU, and the lidar's mounting and time offset,
+  /// each with its uncertainty. The map has the format of save_map(). The saved bytes are equal on every machine. A run
+  /// that is not yet localised in the map of use_map() saves this map.
+  ///
+  /// The bytes do not contain sweeps that wait for samples or for take(), velocity, filter states, findings of
+  /// health(), counters, readings of further sensors, and the buffer of SecondPass. With kWholeRecording, the bytes
+  /// contain the results of finish(), without the recorded data.
   std::vector<std::byte> save() const;
-  /// Replaces the state with a saved state. On error, the state is unchanged, and the returned status names the field,
-  /// the stored value and the bound. The error is `too_few` (truncated bytes), `non_finite`, `time_order`, `gap` or
-  /// `out_of_range`. The function also rejects damaged bytes, other parameters, and another library version.
-  Status load(std::span<const std::byte> bytes);
-  /// Reads the parameters that a saved state contains. On error, `params` is unchanged.
-  static Status saved_params(std::span<const std::byte> bytes, Params& params);
-  /// Calls `visit` for every member of the state (see state_visitor.hpp).
-  template <class Self, class Visitor>
-  static void members(Self& s, Visitor& visit);
+  /// Starts a new run from saved bytes, like a new object. The saved calibration replaces the calibration of the
+  /// parameters, also after a later reset(). Biases keep their values with the prior's uncertainty, because biases
+  /// change at every switch-on. With at least 100 points that have normals, the saved map becomes the map of use_map().
+  /// The run starts at the saved pose and localises the robot around this pose; before, health() reports the missing
+  /// localisation. If the robot may have moved by more than a metre, call reset(pose) after load(). With
+  /// kWholeRecording, the run starts at the saved pose with a new map.
+  ///
+  /// The output `last_pose` is the saved pose with its time in the clock of the saved run, or empty. On error, the
+  /// object is unchanged, and the returned status names the field, the saved value and the bound. The error is
+  /// `too_few` (truncated bytes), `non_finite`, `degenerate` or `out_of_range`. The function rejects damaged bytes,
+  /// bytes of RollingOdometry or of another version, and a saved run with another stated lever arm or lidar mounting.
+  Status load(std::span<const std::byte> bytes, std::optional<PoseState>* last_pose = nullptr);
 
  private:
-  Status check_state() const;
   Status add_reading(const OdometerReading& reading);
   Status process_accepted_sample(const ImuSample& sample);
   void register_sweep(TimeNs start_ns, TimeNs end_ns, std::vector<LidarPoint> points);
@@ -231,7 +236,8 @@ class TumblingOdometry {
   Status record(const ImuSample& sample);
   Status finish_whole_recording(const SweepProgress& on_sweep);
 
-  Params params_;
+  Params params_;             ///< with the calibration of load()
+  StatedCalibration stated_;  ///< calibration that the caller stated
   StampOrder stamp_order_;
   StampOrder::State stamp_order_state_;
   GyroOffset gyro_offset_;

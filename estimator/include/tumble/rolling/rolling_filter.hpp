@@ -116,8 +116,8 @@ class RollingFilter {
   /// entries are zero.
   static RollingEstimate estimate(const State& state);
 
-  /// Checks the consistency of a state that was loaded from a file. Returns the first violated condition.
-  static Status check_state(const State& state);
+  /// Returns the estimated constants of sensors and sphere at the last node, after the first sample.
+  static RollingCalibration calibration(const State& state);
 
  private:
   struct Listener {

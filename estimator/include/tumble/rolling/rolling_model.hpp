@@ -56,6 +56,14 @@ struct RollingNominal {
   bool operator==(const RollingNominal&) const = default;
 };
 
+/// RollingCalibration contains the constants that RollingFilter estimated in one run, usable as the prior of another
+/// run of the same sphere. The order is that of the error state, rolling.md (R1), from the gyro bias to the radius.
+struct RollingCalibration {
+  static constexpr int kSize = 31;
+  Eigen::Matrix<double, kSize, 1> constants = Eigen::Matrix<double, kSize, 1>::Zero();
+  Eigen::Matrix<double, kSize, kSize> covariance = Eigen::Matrix<double, kSize, kSize>::Zero();
+};
+
 /// RollingIntegrals contains integrals since the last node, with attitude R, specific force f and rate w. The
 /// integrands are R, R f, R (x) f^T, R (x) w^T, R (w x f), w, f and |w|^2.
 struct RollingIntegrals {

@@ -2,12 +2,14 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <memory>
 #include <optional>
 
 #include "tumble/angular_velocity/rest_detector.hpp"
 #include "tumble/common/parameters.hpp"
 #include "tumble/rolling/detail/rolling_floor_params.hpp"
 #include "tumble/rolling/detail/rolling_imu_params.hpp"
+#include "tumble/rolling/rolling_model.hpp"
 
 namespace tumble {
 
@@ -56,6 +58,9 @@ struct RollingParams {
   /// Gyro readings at or above gyro_range_rad_s are clipped, in addition to readings that the device flags as clipped.
   double gyro_range_rad_s = 1e3;
   double accel_range_m_s2 = 1e5;
+  /// Calibration from an earlier run, which replaces the prior of the sensor errors, the lever arm and the radius.
+  /// Biases keep the prior's uncertainty in addition, because biases change at every switch-on.
+  std::shared_ptr<const RollingCalibration> calibration;
   double speed_max_m_s = 2.5;  ///< maximum speed of the sphere; grip at a higher speed is rejected
 
   using Expert = RollingExpertParams;

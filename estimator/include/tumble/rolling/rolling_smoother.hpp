@@ -130,10 +130,6 @@ class RollingSmoother {
   /// whole run that was processed with kWholeRun.
   void finish(std::span<const RollingMode> known, State& state, const EstimateCallback& take) const;
 
-  /// Checks the consistency of a state that was loaded from a file. Returns the first violated condition. A state with
-  /// a fixed lag is invalid if the sample rate exceeds four times rate_max_hz.
-  Status check_state(const State& state) const;
-
  private:
   struct Path;
 

@@ -17,7 +17,7 @@ namespace tumble {
 
 /// Detects single axes of an IMU that have stopped updating, sample by sample.
 ///
-/// FrozenAxes reports an axis as frozen if one reading repeats bit for bit for `frozen_s`, and for ten times the
+/// FrozenAxes reports an axis as frozen if one reading repeats bit for bit for 0.5 s, and for ten times the
 /// longest earlier repetition. Before the repetition, the readings of the axis must have changed for an equal time.
 /// Another axis of the same sensor must change from sample to sample, by far more than the quantisation of the tested
 /// axis. FrozenAxes cannot detect a frozen axis whose readings never changed before, or often repeat at rest due to
@@ -25,19 +25,11 @@ namespace tumble {
 ///
 /// A working axis may repeat one reading because it is saturated. FrozenAxes treats a reading as saturated if the
 /// device flags the reading, or if the reading exceeds 0.9 of the stated range. The extreme reading of an axis counts
-/// as saturated above 0.5 of the stated range. A saturated axis is frozen if all other axes of the IMU indicate rest
-/// for `rail_stationary_min_s`, because a saturating rate or force contradicts rest. If the body is never at rest, a
-/// saturated axis is frozen after `rail_repetition_max_s` while another axis of the same sensor changes. A repetition
-/// of `rail_repetition_max_s` means that the axis is frozen, or that the range is too small for the spin. The rate of a
-/// frozen or constantly saturated axis is unknown. FrozenAxes mistakes an even spin about a saturated axis for a frozen
-/// axis if no other axis changes.
+/// as saturated above 0.5 of the stated range. A saturated axis does not count as frozen.
 class FrozenAxes {
  public:
   struct Params {
     double gyro_range_rad_s = 0.0, accel_range_m_s2 = 0.0;  ///< ranges from the data sheet; 0: unknown
-    double frozen_s = 0.5;               ///< longest repetition of a working axis while the body moves
-    double rail_stationary_min_s = 1.5;  ///< duration of rest on all other axes while an axis is saturated
-    double rail_repetition_max_s = 5.0;  ///< longest saturated repetition of a working axis in motion
 
     /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
@@ -46,16 +38,6 @@ class FrozenAxes {
             {"gyro_range_rad_s", "rad/s", 0.0, kUnbounded, "range stated by the device; 0: not stated"});
       visit(p.accel_range_m_s2,
             {"accel_range_m_s2", "m/s^2", 0.0, kUnbounded, "range stated by the device; 0: not stated"});
-      visit(p.frozen_s,
-            {"frozen_s", "s", 1e-3, 1e4,
-             "duration after which an axis counts as frozen, if it repeats one reading while the body moves"});
-      visit(
-          p.rail_stationary_min_s,
-          {"rail_stationary_min_s", "s", 1e-3, 1e4,
-           "duration after which an axis at its saturation limit counts as frozen, if all other axes are stationary"});
-      visit(p.rail_repetition_max_s, {"rail_repetition_max_s", "s", 1e-3, 1e4,
-                                      "duration after which an axis counts as frozen, if it repeats one reading at its "
-                                      "saturation limit while other axes move"});
     }
   };
   /// State of one axis of the gyro or of the accelerometer.
@@ -65,16 +47,13 @@ class FrozenAxes {
     double repeated_s = 0.0;           ///< duration for which the current reading has repeated
     bool device_flagged = false;       ///< the device has flagged the current reading as saturated
     bool frozen = false;               ///< the axis is frozen at the current reading
-    bool ever_frozen = false;          ///< the axis is or was frozen
     double longest_s = 0.0;            ///< longest earlier repetition of a working axis
     double changing_duration_s = 0.0;  ///< total time with changing readings
     double smallest_change = 0.0;      ///< smallest observed change; 0: none yet
     double min_reading = 0.0, max_reading = 0.0;
     /// Minimum, maximum and number of changes of the sensor's two other axes while this axis repeats its reading.
     std::array<double, 2> others_min{}, others_max{}, others_changes{};
-    double samples = 0.0;       ///< number of repeated samples
-    double stationary_s = 0.0;  ///< duration of rest on the other axes during the repetition
-    std::array<double, 6> stationary_reference{};
+    double samples = 0.0;  ///< number of repeated samples
     bool operator==(const Axis&) const = default;
   };
   struct State {
@@ -107,7 +86,7 @@ class FrozenAxes {
   void track_repetition(std::size_t channel, const std::array<double, 6>& now, double dt_s, std::uint8_t flags,
                         State& state) const;
   bool at_rail(std::size_t channel, const Axis& axis) const;
-  bool others_move(std::size_t channel, double changing_share, const Axis& axis) const;
+  static bool others_move(std::size_t channel, const Axis& axis);
 
   Params params_;
 };
@@ -119,7 +98,7 @@ struct FrozenAxis {
   TimeNs from_ns = 0, to_ns = 0;  ///< first and last sample with this reading
 };
 
-/// Adds a finding about an interval in which an axis is frozen, with FrozenAxes::Params::frozen_s as bound.
+/// Adds a finding about an interval in which an axis is frozen, with 0.5 s as bound.
 void add_finding(HealthFinding::Kind kind, const std::string& sensor, const FrozenAxis& interval, SensorHealth& health);
 
 /// Returns the intervals in which axes of a recording are frozen, sorted by axis and time. O(N).

@@ -16,11 +16,6 @@ class MinSaturationLevels {
   bool is_below_min_level(const Eigen::Vector3d& rate_rad_s, Eigen::Index axis) const;
   bool operator==(const MinSaturationLevels&) const = default;
 
-  template <class Self, class Visitor>
-  static void members(Self& s, Visitor& visit) {
-    visit("least_rails", s.min_levels_rad_s_);
-  }
-
  private:
   std::array<Eigen::Vector3d, 2> min_levels_rad_s_{Eigen::Vector3d::Zero(),
                                                    Eigen::Vector3d::Zero()};  // negative side, positive side

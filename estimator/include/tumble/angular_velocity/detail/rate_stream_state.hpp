@@ -80,8 +80,7 @@ struct RateStreamDevice {
   Work work;                              ///< buffer
 };
 
-/// RateStreamState is the complete state of a RateStream, created by RateStream::start(). The state can be copied, and
-/// RateStream::equal() compares states.
+/// RateStreamState is the complete state of a RateStream, created by RateStream::start(). The state can be copied.
 struct RateStreamState {
   StreamingClippingFinder::State rails;
   RestDetector::State rests;

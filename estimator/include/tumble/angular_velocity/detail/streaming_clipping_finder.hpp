@@ -70,12 +70,6 @@ class StreamingClippingFinder {
 
   const RailDetector& axis_aligned_rails() const { return axis_aligned_rails_; }
 
-  /// Returns true if two states lead to identical results, bit for bit.
-  static bool equal(const State& a, const State& b);
-
-  /// Returns true if a state that was loaded from a file fits into the preallocated memory.
-  bool has_room_for(const State& state) const;
-
  private:
   void store(const Eigen::Vector3d& reading, Triad triad, Memory& memory) const;
   bool is_near(const Eigen::Vector3d& reading, Triad triad, const Memory& memory, double share) const;

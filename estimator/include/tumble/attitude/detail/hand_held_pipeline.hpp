@@ -51,9 +51,6 @@ class HandHeldPipeline {
   /// Appends the unreported rates of the samples in the window to `out`, oldest first.
   void flush(const State& state, std::vector<RateState>& out) const { stream_.flush(state.stream, out); }
 
-  /// Checks the consistency of a state that was loaded from a file. Returns the first violated condition.
-  Status check_state(const State& state) const;
-
  private:
   void classify_window(const ImuSample& next, State& state) const;
 

@@ -2,12 +2,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <algorithm>
-#include <array>
-#include <optional>
 
-#include "tumble/attitude/detail/axis_labels.hpp"
-#include "tumble/attitude/detail/imu_plausibility_expert_params.hpp"
 #include "tumble/common/detail/imu_average.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/common/parameters.hpp"
@@ -15,54 +10,17 @@
 
 namespace tumble {
 
-/// ImuPlausibilityParams contains the parameters of ImuPlausibility.
-struct ImuPlausibilityParams {
-  double gravity_m_s2 = 9.80665;
-  double window_s = 0.2;                     ///< window over which rotations of force and gyro are compared
-  double reading_s = 0.02;                   ///< averaging time of the readings
-  double magnitude_change_ratio_max = 0.12;  ///< maximum relative change of the force's magnitude in a window
-  double gravity_difference_ratio_max =
-      0.25;                       ///< maximum relative difference of force and gravity for comparing directions
-  double gyro_range_rad_s = 1e6;  ///< windows with a faster rate on an axis are ignored
-  double gap_max_s = 0.1;         ///< a longer gap restarts the window
-
-  using Expert = ImuPlausibilityExpertParams;
-  Expert expert = {};  ///< rarely changed parameters
-
-  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
-  template <class Self, class Visitor>
-  static void fields(Self& p, Visitor& visit) {
-    visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-12, 100.0, "strength of gravity"});
-    visit(p.window_s, {"window_s", "s", 0.02, 10.0, "length of the windows in which force and rotation are compared"});
-    visit(p.reading_s, {"reading_s", "s", 1e-3, 1.0, "duration over which readings are averaged"});
-    visit(p.magnitude_change_ratio_max,
-          {"magnitude_change_ratio_max", "1", 1e-12, 1.0,
-           "maximum change of the force's magnitude within a window with steady force, as a share of the force"});
-    visit(p.gravity_difference_ratio_max,
-          {"gravity_difference_ratio_max", "1", 1e-12, 1e6,
-           "rotations are compared only if force and gravity differ by less than this share of gravity"});
-    visit(p.gyro_range_rad_s, {"gyro_range_rad_s", "rad/s", 1e-3, 1e6,
-                               "windows are compared only if the rate of each axis is below this value"});
-    visit(p.gap_max_s, {"gap_max_s", "s", 1e-12, 1e4, "maximum time between two samples of one window"});
-    visit.group("", p.expert);
-  }
-};
-
-/// Detects implausible readings of an IMU: wrong units, axes or signs, and frozen sensors.
+/// Detects a gyro whose scale or sign contradicts gravity, and frozen sensors.
 ///
-/// If the magnitude of the force is constant for a fifth of a second, the force is probably gravity. Gravity has the
-/// magnitude g, and its direction in sensor axes must rotate as the gyro measures: u(t + T) = R^T u(t). The vector u is
-/// the direction of the force, and R is the rotation of the sensor from t to t + T. A constant force of another
-/// magnitude than g has another cause, for example the centripetal force of a spin in flight. ImuPlausibility compares
-/// directions only if the force is close to g and the gyro is unsaturated.
+/// If the magnitude of the force is constant for a fifth of a second, the force is probably gravity. The direction of
+/// gravity in sensor axes must rotate as the gyro measures: u(t + T) = R^T u(t). The vector u is the direction of the
+/// force, and R is the rotation of the sensor from t to t + T. A constant force of another magnitude than g has another
+/// cause, for example the centripetal force of a spin in flight. ImuPlausibility compares directions only if the force
+/// is close to g and the gyro is unsaturated.
 ///
 /// ImuPlausibility fits a regression line to the rotation of the force as a function of the rotation of the gyro. The
-/// slope of the regression is 1 for a correct IMU, 2 for a half-scale gyro, and -1 for an inverted gyro. If axes are
-/// swapped, the slope of the regression is about 0. Pushes, and a force along a rod, scatter the measured rotations
-/// about the regression line but change its slope little. Rotation about some axes does not reveal swapped axis labels.
-/// For example, a sphere that rolls along x = y does not reveal that x and y are swapped. The correct axis labels leave
-/// the smallest residual, so ImuPlausibility compares the residuals of all possible axis labels. ImuPlausibility
-/// separately detects a force that is constant although the body rotates.
+/// slope of the regression is 1 for a correct IMU, 2 for a half-scale gyro, and -1 for an inverted gyro. Pushes, and a
+/// force along a rod, scatter the measured rotations about the regression line but change its slope little.
 ///
 /// ImuPlausibility reports a gyro or an accelerometer as frozen if one reading repeats bit for bit for long enough. The
 /// repeated reading must last at least a second, and ten times longer than any earlier repeated reading.
@@ -71,12 +29,21 @@ struct ImuPlausibilityParams {
 /// reports a gyro with constant readings as frozen if gravity rotates, or if forces differ from gravity for long
 /// enough. ImuPlausibility reports an accelerometer that always reads 0 as frozen if the gyro measures motion.
 ///
-/// ImuPlausibility does not detect errors of a few per cent, or errors of axes about which the body does not rotate.
-/// ImuPlausibility detects no error while the body is pushed. ImuPlausibility does not detect an accelerometer whose
-/// three axes are all inverted. With several IMUs, ImuMerge::lever_arm_agreement() detects inverted accelerometers.
+/// ImuPlausibility does not detect errors of a few per cent, exchanged axes, or errors while the body is pushed.
 class ImuPlausibility {
  public:
-  using Params = ImuPlausibilityParams;
+  struct Params {
+    double gravity_m_s2 = 9.80665;
+    double gyro_range_rad_s = 1e6;  ///< windows with a faster rate on an axis are ignored
+
+    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
+    template <class Self, class Visitor>
+    static void fields(Self& p, Visitor& visit) {
+      visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-12, 100.0, "strength of gravity"});
+      visit(p.gyro_range_rad_s, {"gyro_range_rad_s", "rad/s", 1e-3, 1e6,
+                                 "windows are compared only if the rate of each axis is below this value"});
+    }
+  };
 
   /// Repetition describes how long a gyro or accelerometer has repeated one reading.
   struct Repetition {
@@ -92,14 +59,11 @@ class ImuPlausibility {
     Eigen::Quaterniond gyro_rotation = Eigen::Quaterniond::Identity();  ///< rotation within the window, from the gyro
     double length_s = 0.0;
     bool window_started = false, force_is_constant = false;
-    bool in_range = true;  ///< whether all samples of the window are within the gyro's range
-    double force_sum_m_s2 = 0.0, windows = 0.0;
-    double non_rest_force_s = 0.0;                       ///< time with forces that exclude rest
-    std::array<double, kAxisLabels> unexplained_rad2{};  ///< residual for each possible assignment of axis labels
+    bool in_range = true;           ///< whether all samples of the window are within the gyro's range
+    double non_rest_force_s = 0.0;  ///< time with forces that exclude rest
+    double unexplained_rad2 = 0.0;  ///< rotation of the force that the gyro does not explain
     double force_rotation_rad2 = 0.0, gyro_rotation_rad2 = 0.0;  ///< sums over the windows in which the force rotated
     double rotated_windows = 0.0;                                ///< number of windows in which the force rotated
-    double total_force_rotation_rad2 = 0.0,
-           total_gyro_rotation_rad2 = 0.0;  ///< sums over the windows in which force or gyro rotated
     TimeNs last_time_ns = 0;
     bool started = false;
     bool operator==(const State&) const = default;
@@ -114,8 +78,6 @@ class ImuPlausibility {
   /// Limits the memory to about a minute of evidence, so that a finding ends after its cause.
   static void limit_memory(State& state);
 
-  /// Returns the mean magnitude of constant forces divided by gravity, or 1 while unknown.
-  double force_ratio(const State& state) const;
   /// Returns the fraction of the force's rotation that the gyro does not explain, or 0 while unknown.
   double unexplained_rotation_ratio(const State& state) const;
   /// Returns the regression slope of the force's rotation on the gyro's rotation (I20), or 1 while unknown.
@@ -125,12 +87,6 @@ class ImuPlausibility {
   /// reduce the correlation to a value between 0 and 1. The function returns 1 while the rotation is too small for a
   /// decision.
   double rotation_agreement(const State& state) const;
-  /// Returns the force's rotation divided by the gyro's rotation, or 1 while unknown. The rotation ratio includes
-  /// windows in which the force did not rotate.
-  double force_rotation_ratio(const State& state) const;
-  /// Returns axis labels for which the rotation of gravity fits the gyro clearly better than for the current labels
-  /// (I22). The result is empty if the current axis labels fit.
-  std::optional<AxisLabels> better_axis_labels(const State& state) const;
   /// Returns the longest time for which the gyro or the accelerometer was frozen [s], or 0 if both sensors always
   /// worked.
   double frozen_s(const State& state) const;
@@ -138,14 +94,11 @@ class ImuPlausibility {
   Status verdict(const State& state) const;
 
  private:
-  /// Returns whether the force rotated far enough, in enough windows, for a decision.
-  bool rotated_enough(const State& state) const;
   /// Returns whether a gyro scaled by the regression slope leaves a far smaller residual, because the gyro is inverted
   /// or has a wrong scale.
   bool fits_better(const State& state) const;
   void process_average(State& state) const;
   void compare_rotations(const Eigen::Vector3d& force_m_s2, State& state) const;
-  void hold(const Eigen::Vector3d& reading, double dt_s, Repetition& hold) const;
 
   Params params_;
 };

@@ -31,14 +31,6 @@ struct ArrowSystem {
     StateMatrix coupling = StateMatrix::Zero();  ///< coupling of this block (rows) to the next block (columns)
     CrossMatrix border = CrossMatrix::Zero();
     StateVector gradient = StateVector::Zero();
-
-    template <class Self, class Visitor>
-    static void members(Self& s, Visitor& visit) {
-      visit("block.diagonal", s.diagonal);
-      visit("block.coupling", s.coupling);
-      visit("block.border", s.border);
-      visit("block.gradient", s.gradient);
-    }
   };
 
   /// Corner is the border block of the arrow matrix. Before elimination, a Corner contains C and its gradient; after
@@ -46,12 +38,6 @@ struct ArrowSystem {
   struct Corner {
     BorderMatrix matrix = BorderMatrix::Zero();
     BorderVector gradient = BorderVector::Zero();
-
-    template <class Self, class Visitor>
-    static void members(Self& s, Visitor& visit) {
-      visit("corner.matrix", s.matrix);
-      visit("corner.gradient", s.gradient);
-    }
   };
 
   /// Conditional is the distribution of a block for a known border: covariance of the block, and derivative of the

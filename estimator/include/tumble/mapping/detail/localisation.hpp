@@ -32,19 +32,12 @@ class Localisation {
   /// Processes a sweep that has a pose. Sweeps must be in time order. Cost: O(1).
   void add(const SweepReport& sweep);
 
-  double largest_sigma_m() const { return largest_sigma_m_; }
-  /// Returns the second largest SweepReport::innovation.
-  double second_largest_innovation() const { return second_largest_innovation_; }
   /// Returns `out_of_range` with the finding and the violated limit, or `ok` without a finding.
   Status verdict() const;
   /// Returns `out_of_range` with the current finding and the violated limit, or `ok` without a finding.
   Status current_verdict() const;
   /// Returns the time of the sweep with which the finding of current_verdict() began.
   std::optional<TimeNs> lost_since_ns() const { return lost_since_ns_ ? lost_since_ns_ : previous_contradicted_ns_; }
-
-  /// Calls `visit` for every member of the state (see state_visitor.hpp).
-  template <class Self, class Visitor>
-  static void members(Self& s, Visitor& visit);
 
  private:
   double matched_m_;

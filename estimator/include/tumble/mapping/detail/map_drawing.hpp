@@ -21,8 +21,6 @@ class ScanLines {
   static std::uint32_t line(std::uint32_t base, std::uint16_t ring) {
     return base == VoxelMap::kUnknownScanLine ? base : base | ring;
   }
-  template <class Self, class Visitor>
-  static void members(Self& s, Visitor& visit);
 
  private:
   Eigen::Vector3d axis_W_ = Eigen::Vector3d::Zero();  // spin axis of the sweeps that share lines

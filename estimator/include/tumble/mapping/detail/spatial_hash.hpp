@@ -40,8 +40,6 @@ class SpatialHash {
   /// Removes all keys and keeps the memory.
   void clear();
   std::size_t size() const { return size_; }
-  /// Returns all keys in ascending order.
-  std::vector<std::uint64_t> keys() const;
   /// Returns the memory in use [bytes].
   std::size_t bytes() const {
     return keys_.capacity() * sizeof(std::uint64_t) + values_.capacity() * sizeof(std::uint32_t);

@@ -33,10 +33,10 @@ struct SweepScale {
 /// flight and from impacts, for any velocity. A robust regression (Huber, 1964) of the lidar's velocity differences on
 /// the IMU's differences has slope 1. Ranges 10 % too long give a slope of 1.1, reduced by the weight of the IMU in the
 /// mapping. The attitudes come from the run's estimate. The function skips intervals with a saturated accelerometer or
-/// with unconstrained sweeps. The standard deviation is heteroscedasticity-consistent (White, 1980). The argument
-/// `gravity_m_s2` is the magnitude of gravity. Without acceleration, the scale is not observable. The standard
-/// deviation includes a constant acceleration error of 0.05 m/s^2, from bias and tilt, which does not average out over
-/// changes in one direction. Cost: O(N).
+/// with unconstrained sweeps. The standard deviation includes the correlation of overlapping changes (Newey and West,
+/// 1987). The argument `gravity_m_s2` is the magnitude of gravity. Without acceleration, the scale is not observable.
+/// The standard deviation includes a constant acceleration error of 0.05 m/s^2, from bias and tilt, which does not
+/// average out over changes in one direction. Cost: O(N).
 SweepScale find_sweep_scale(std::span<const ImuSample> samples, std::span<const SweepReport> sweeps,
                             double gravity_m_s2);
 
@@ -61,10 +61,6 @@ class SweepScaleEstimator {
   void add(const SweepReport& sweep);
 
   const SweepScale& scale() const { return scale_; }
-
-  /// Calls `visit` for every member of the state (see state_visitor.hpp).
-  template <class Self, class Visitor>
-  static void members(Self& s, Visitor& visit);
 
  private:
   double gravity_m_s2_;

@@ -42,10 +42,6 @@ class FurtherLidars {
   /// Returns the number of unused points: the points arrived late, or the first lidar had no sweep at their time.
   std::size_t unused_points() const { return unused_points_; }
 
-  /// Calls `visit` for every member of the state (see state_visitor.hpp).
-  template <class Self, class Visitor>
-  static void members(Self& s, Visitor& visit);
-
  private:
   std::vector<FurtherLidar> lidars_;
   Eigen::Isometry3d T_LI_first_ = Eigen::Isometry3d::Identity();

@@ -10,9 +10,7 @@
 
 #include "tumble/angular_velocity/detail/frozen_axes.hpp"
 #include "tumble/angular_velocity/rate_state.hpp"
-#include "tumble/attitude/detail/axis_labels.hpp"
 #include "tumble/attitude/detail/imu_plausibility.hpp"
-#include "tumble/attitude/detail/pivot_check.hpp"
 #include "tumble/attitude/detail/rest_gravity.hpp"
 #include "tumble/attitude/imu_merge.hpp"
 #include "tumble/common/imu.hpp"
@@ -32,24 +30,10 @@ struct CheckedImu {
   bool merged = false;
 };
 
-/// ImuFindings contains the findings about an IMU, and the quantities that the checks measured.
+/// ImuFindings contains the findings about an IMU.
 struct ImuFindings {
-  struct Readings {
-    double rest_force_ratio = 1.0;  ///< RestGravity::magnitude_error_ratio
-    double force_ratio = 1.0;       ///< the following members: see ImuPlausibility
-    double unexplained_rotation_ratio = 0.0;
-    double rotation_slope = 1.0, rotation_agreement = 1.0;
-    double frozen_s = 0.0;
-    std::optional<AxisLabels> better_axis_labels;
-    bool gyro_confirmed = false;  ///< confirms_gyro()
-  };
   SensorHealth health;
-  std::vector<FrozenAxis> frozen_axes;  ///< intervals of the findings `frozen_axis`
-  std::optional<Readings> readings;
-  std::optional<RestGravity::State> rests;
-  std::optional<PivotCheck::Found> pivots;
-
-  void add(const ImuFindings& other);
+  std::vector<FrozenAxis> frozen_axes;  ///< intervals of the findings `frozen_axis`, sorted by axis and time
 };
 
 /// Returns the parameters of ImuPlausibility for an IMU. The data sheet states `gyro_range_rad_s`; 0 means unknown.
@@ -63,28 +47,23 @@ bool confirms_gyro(const ImuPlausibility& plausibility, const ImuPlausibility::S
 void add_findings(const ImuPlausibility& plausibility, const ImuPlausibility::State& state, const std::string& sensor,
                   SensorHealth& health);
 
-/// Checks units, signs and axes of the readings: magnitude and rotation of gravity. Cost: O(N).
-ImuFindings check_readings(const CheckedImu& imu, std::span<const ImuSample> samples);
+/// Checks units, signs and axes of the readings: magnitude and rotation of gravity, and rotation about a pivot. Cost:
+/// about 1 ms per second of data at 100 Hz.
+SensorHealth check_readings(const CheckedImu& imu, std::span<const ImuSample> samples);
 
-/// Checks the forces in flights. The argument `carried_share` is the fraction of hand-held samples. If the body was
-/// never hand-held, the check also detects flipped and swapped axes, and uses flights with a clipped axis. Cost: O(N).
-ImuFindings check_flights(const CheckedImu& imu, std::span<const ImuSample> samples,
-                          std::optional<double> carried_share);
-
-/// Checks that `rates`, one per sample, rotate gravity correctly from each rest to the next rest. Cost: O(N).
-ImuFindings check_rests(const CheckedImu& imu, std::span<const ImuSample> samples, std::span<const RateState> rates);
-
-/// Checks that a body with a pivot rotates as the estimated `rates` indicate. The check uses only rates whose source is
-/// `measured`. Cost: about 1 ms per second of data at 100 Hz.
-ImuFindings check_pivots(const CheckedImu& imu, std::span<const ImuSample> samples, std::span<const RateState> rates);
-
-/// Finds frozen axes, sorted by axis and time. Cost: O(N).
+/// Finds frozen axes. Cost: O(N).
 ImuFindings check_frozen(const CheckedImu& imu, std::span<const ImuSample> samples);
+
+/// Runs all checks of a recording with its estimated rates: check_readings(), the forces in flight, the motion from
+/// each rest to the next rest, and frozen axes. The argument `carried_share` is the fraction of hand-held samples. If
+/// the body was never hand-held, flights also reveal flipped and swapped axes, and include flights with a clipped axis.
+ImuFindings check_recording(const CheckedImu& imu, std::span<const ImuSample> samples, std::span<const RateState> rates,
+                            std::optional<double> carried_share);
 
 /// MergedFindings contains several IMUs merged into one IMU, and the findings about the IMUs.
 struct MergedFindings {
   MergedRecordings merged;
-  ImuFindings findings;
+  SensorHealth health;
 };
 
 /// MergedChecks contains the live checks of several IMUs, and the states of the checks.
@@ -97,11 +76,7 @@ struct MergedChecks {
 
 /// Checks merged IMUs: faults of single IMUs, the merged readings, and the differences between the IMUs. The
 /// differences also reveal an inverted sign and exchanged axes. Cost: O(N).
-ImuFindings check_merged(const CheckedImu& imu, const MergedRecordings& merged);
-
-/// Runs all checks for a recording with its estimated rates.
-ImuFindings check_recording(const CheckedImu& imu, std::span<const ImuSample> samples, std::span<const RateState> rates,
-                            std::optional<double> carried_share);
+SensorHealth check_merged(const CheckedImu& imu, const MergedRecordings& merged);
 
 /// Returns the covariance that the findings add to each rate, or an empty list without such findings. If the readings
 /// contradict each other, the standard deviation is the rate itself. A flipped sign gives an error of twice the rate,

@@ -28,8 +28,6 @@ class OdometryPass {
     void push(const ImuSample& sample);
     void drop_until(TimeNs time_ns);
     std::span<const ImuSample> all() const { return std::span(samples).subspan(head); }
-    template <class Self, class Visitor>
-    static void members(Self& s, Visitor& visit);
   };
 
   /// Throws InvalidParams if a parameter is out of bounds.
@@ -74,12 +72,6 @@ class OdometryPass {
   const Localisation& localisation() const { return localisation_; }
   const std::optional<RateState>& smoothed_rate() const { return smoothed_; }
   std::size_t rejected_samples() const { return rejected_samples_; }
-
-  /// Calls `visit` for every member of the state (see state_visitor.hpp).
-  template <class Self, class Visitor>
-  static void members(Self& s, Visitor& visit);
-  /// Checks that the members of a loaded state are consistent with each other. Returns the first violated condition.
-  Status check_state() const;
 
  private:
   void process_rate(const RateState& rate);

@@ -58,10 +58,6 @@ class PositionAlignment {
   /// within 0.1 rad, and while the readings contradict each other.
   const std::optional<PositionFrame>& frame() const { return frame_; }
 
-  /// Calls `visit` for every member of the state (see state_visitor.hpp).
-  template <class Self, class Visitor>
-  static void members(Self& s, Visitor& visit);
-
  private:
   void add_pair(const PositionReading& reading, const PoseState& pose);
   void fit();

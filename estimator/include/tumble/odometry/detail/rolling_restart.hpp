@@ -10,10 +10,6 @@ struct RollingRestart {
   Eigen::Vector3d p_WG_m = Eigen::Vector3d::Zero();  ///< position of the sphere's centre
   /// Covariance of position and heading in the world.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
-
-  /// Calls `visit` for each member, to save and compare the state.
-  template <class Self, class Visitor>
-  static void members(Self& s, Visitor& visit);
 };
 
 }  // namespace tumble

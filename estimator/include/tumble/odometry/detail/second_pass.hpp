@@ -88,21 +88,12 @@ class SecondPass {
   /// Returns true if the first pass received the map of the second pass.
   bool applied() const { return applied_; }
 
-  /// Calls `visit` for every member of the state (see state_visitor.hpp).
-  template <class Self, class Visitor>
-  static void members(Self& s, Visitor& visit);
-  /// Checks that the members are consistent with each other and with the first pass. Returns the first violated
-  /// condition.
-  Status check_state(const OdometryPass& first) const;
-
  private:
   struct Sweep {
     TimeNs start_ns = 0, end_ns = 0;
     std::vector<LidarPoint> points;
     std::optional<OdometerReading> reading;
-    SweepVerdict verdict = SweepVerdict::first;  ///< verdict of the first pass
-    template <class Self, class Visitor>
-    static void members(Self& s, Visitor& visit);
+    SweepVerdict verdict = SweepVerdict::first;
   };
 
   /// Returns the time from which motion is counted: the start of the motion, or the start of the sweeps if the lidar

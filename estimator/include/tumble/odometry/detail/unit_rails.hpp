@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <vector>
@@ -34,6 +35,9 @@ class UnitRails {
   /// out of bounds.
   explicit UnitRails(std::span<const ImuSheet> sheets);
 
+  /// Sets the saturation limits and planes of an IMU as known from an earlier run.
+  void start_from(std::size_t unit, const SaturationLevels& rails);
+
   /// Returns the state before the first samples, with all memory that observe() needs: 110 KiB per IMU.
   State start() const;
 
@@ -43,9 +47,6 @@ class UnitRails {
 
   /// Updates the state with unflagged samples. Cost: O(1), sometimes a search; no allocation.
   void observe(std::span<const ImuSample> samples, State& state) const;
-
-  /// Checks the consistency of a state that was loaded from a file. Returns the first violated condition.
-  Status check_state(const State& state) const;
 
  private:
   struct UnitDetector {

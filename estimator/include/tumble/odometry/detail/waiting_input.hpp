@@ -45,10 +45,6 @@ class WaitingReadings {
   /// Returns the number of dropped readings that span two sweeps.
   std::size_t spanning_two_sweeps() const { return spanning_two_sweeps_; }
 
-  /// Calls `visit` for every member of the state (see state_visitor.hpp).
-  template <class Self, class Visitor>
-  static void members(Self& s, Visitor& visit);
-
  private:
   std::deque<OdometerReading> waiting_;  ///< waiting readings in the order of their middle times
   std::size_t spanning_two_sweeps_ = 0;

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <type_traits>
+#include <vector>
+
+#include "tumble/common/parameters.hpp"
+#include "tumble/common/pose.hpp"
+#include "tumble/common/status.hpp"
+
+/// saved_bytes.hpp writes and reads saved runs and saved maps. All numbers are little-endian.
+///
+/// | bytes | |
+/// | --- | --- |
+/// | 0 | "tumblest" |
+/// | 8 | version of the format, 4 bytes |
+/// | 12 | SavedKind, 4 bytes |
+/// | 16 | layout of this kind, 8 bytes |
+/// | 24 | number of bytes from 40 on |
+/// | 32 | checksum of all other bytes |
+/// | 40 | contents |
+///
+/// If the contents of a kind change, its layout in saved_bytes.cpp must change.
+namespace tumble::odometry {
+
+enum class SavedKind : std::uint32_t { tumbling = 1, rolling = 2, map = 9 };
+inline constexpr std::size_t kSavedHeader = 40;
+inline constexpr double kPositionMax_m = 1e6, kVarianceMax = 1e12;
+
+/// SavedWriter appends numbers and fixed-size arrays of numbers. SavedReader reads the numbers in the same order.
+class SavedWriter {
+ public:
+  /// Writes a number, an Eigen matrix of fixed size, or an Eigen transform.
+  template <class T>
+  void operator()(const char* name, const T& value, double /*low*/ = 0.0, double /*high*/ = 0.0) {
+    if constexpr (std::is_arithmetic_v<T>) {
+      std::array<std::byte, sizeof(T)> bytes = std::bit_cast<std::array<std::byte, sizeof(T)>>(value);
+      if constexpr (std::endian::native == std::endian::big) std::reverse(bytes.begin(), bytes.end());
+      bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
+    } else if constexpr (std::same_as<T, Eigen::Isometry3d>) {
+      (*this)(name, value.matrix());
+    } else {
+      for (const auto& number : value.reshaped()) (*this)(name, number);
+    }
+  }
+  /// Writes whether an optional has a value, and returns it.
+  template <class T>
+  bool present(const char* name, const std::optional<T>& value) {
+    (*this)(name, value.has_value());
+    return value.has_value();
+  }
+  void append(std::span<const std::byte> bytes) { bytes_.insert(bytes_.end(), bytes.begin(), bytes.end()); }
+  void reserve(std::size_t bytes) { bytes_.reserve(kSavedHeader + bytes); }
+  /// Returns all bytes with the header.
+  std::vector<std::byte> finish(SavedKind kind) &&;
+
+ private:
+  std::vector<std::byte> bytes_ = std::vector<std::byte>(kSavedHeader);
+};
+
+/// SavedReader reads numbers from untrusted bytes, without allocating memory. After the first error, SavedReader stops
+/// reading, and status() returns the error. The values read so far are then invalid. The errors are `too_few` (the
+/// bytes end within `field`), `non_finite` and `out_of_range`.
+class SavedReader {
+ public:
+  /// Checks the header.
+  SavedReader(SavedKind kind, std::span<const std::byte> bytes);
+
+  /// Reads a number, a matrix or a transform, all of whose numbers must be within bounds.
+  template <class T>
+  void operator()(const char* name, T& value, double low = -kUnbounded, double high = kUnbounded) {
+    if constexpr (std::is_arithmetic_v<T>) {
+      read(name, value, low, high);
+    } else if constexpr (std::same_as<T, Eigen::Isometry3d>) {
+      (*this)(name, value.matrix(), low, high);
+      value.makeAffine();
+    } else {
+      for (auto& number : value.reshaped()) read(name, number, low, high);
+    }
+  }
+  template <class T>
+  bool present(const char* name, std::optional<T>& value) {
+    value.reset();
+    bool there = false;
+    (*this)(name, there);
+    if (there && status_.ok()) value.emplace();
+    return value.has_value();
+  }
+  /// Reports an error if `holds` is false.
+  void require(const char* name, bool holds, double value, double bound) {
+    if (status_.ok() && !holds) status_ = {ErrorCode::out_of_range, name, value, bound};
+  }
+  /// Reports an error unless `P` is symmetric and positive semidefinite.
+  void require_covariance(const char* name, const Eigen::Ref<const Eigen::MatrixXd>& P);
+  /// Reports an error unless a parameter of the saved run equals the parameter of the object that loads the run.
+  template <class Matrix>
+  void require_equal(const char* name, const Matrix& saved, const Matrix& given) {
+    for (Eigen::Index k = 0; k < saved.size(); ++k) require(name, saved(k) == given(k), saved(k), given(k));
+  }
+  std::span<const std::byte> left() const { return left_; }
+  const Status& status() const { return status_; }
+
+ private:
+  template <class N>
+  void read(const char* name, N& value, double low, double high) {
+    if (!status_.ok()) return;
+    if (left_.size() < sizeof(N)) {
+      status_ = {ErrorCode::too_few, name, double(left_.size()), double(sizeof(N))};
+      return;
+    }
+    std::array<std::byte, sizeof(N)> bytes;
+    std::copy_n(left_.begin(), sizeof(N), bytes.begin());
+    left_ = left_.subspan(sizeof(N));
+    if constexpr (std::endian::native == std::endian::big) std::reverse(bytes.begin(), bytes.end());
+    if constexpr (std::same_as<N, bool>) {
+      require(name, bytes[0] <= std::byte{1}, double(std::to_integer<int>(bytes[0])), 1.0);
+      value = bytes[0] == std::byte{1};
+    } else {
+      value = std::bit_cast<N>(bytes);
+      const auto number = static_cast<double>(value);
+      if (!std::isfinite(number)) status_ = {ErrorCode::non_finite, name, number, high};
+      require(name, number >= low && number <= high, number, number > high ? high : low);
+    }
+  }
+
+  std::span<const std::byte> left_;
+  Status status_;
+};
+
+/// Visits time, position, attitude and covariance of a pose.
+template <class Visit, class Pose>
+void visit_pose(Visit& visit, Pose& pose) {
+  visit("pose.time_ns", pose.time_ns);
+  visit("pose.p_WA_m", pose.p_WA_m, -kPositionMax_m, kPositionMax_m);
+  visit("pose.q_WA", pose.q_WA.coeffs(), -1.0, 1.0);
+  visit("pose.covariance", pose.covariance, -kVarianceMax, kVarianceMax);
+}
+/// Checks quaternion and covariance of a pose that was read.
+void check_pose(SavedReader& in, const PoseState& pose);
+
+}  // namespace tumble::odometry

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// tumbling_saving.cpp saves and loads calibration, saturation limits, map and pose of TumblingOdometry.
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "saved_rails.hpp"
+#include "tumble/angular_velocity/detail/learnt_rig.hpp"
+#include "tumble/odometry/detail/recording_estimate.hpp"
+#include "tumble/odometry/detail/saved_map.hpp"
+#include "tumble/odometry/tumbling_odometry.hpp"
+#include "tumbling_odometry_params.hpp"
+
+namespace tumble {
+
+namespace {
+
+/// SavedTumbling is the contents of a saved TumblingOdometry. The map follows in the format of save_map().
+struct SavedTumbling {
+  Eigen::Vector3d lever_arm_I_m = Eigen::Vector3d::Zero();        ///< stated lever arm
+  Eigen::Isometry3d stated_T_IL = Eigen::Isometry3d::Identity();  ///< stated mounting of the lidar
+  std::optional<RigCalibration> rig;                              ///< empty if the run did not estimate the rig
+  std::optional<KnownSensorErrors> sensor_errors;
+  SaturationLevels rails;
+  StatedCalibration lidar;  ///< estimated mounting and time offset, with standard deviations
+  std::optional<PoseState> pose;
+  bool extend = true;  ///< PriorMap::extend
+};
+
+template <class Visit, class Rig>
+void visit_rig(Visit& visit, Rig& rig) {
+  constexpr double kMost = RigConstants::kMagnitudeMax;
+  visit("lever_arm_m", rig.constants.lever_arm_m, -kMost, kMost);
+  visit("gyro_bias_rad_s", rig.constants.gyro_bias_rad_s, -kMost, kMost);
+  visit("accel_bias_m_s2", rig.constants.accel_bias_m_s2, -kMost, kMost);
+  visit("inertia", rig.constants.inertia, -kMost, kMost);
+  visit("gyro elements", rig.constants.elements, -kMost, kMost);
+  visit("calibration covariance", rig.covariance);
+}
+
+template <class Visit, class Errors>
+void visit_sensor_errors(Visit& visit, Errors& known) {
+  visit("gyro error", known.errors.gyro);
+  visit("accelerometer error", known.errors.accel);
+  visit("g_sensitivity_s_m", known.errors.g_sensitivity_s_m);
+  visit("accel_delay_s", known.errors.accel_delay_s);
+  visit("accel_filter_time_variance_s2", known.errors.accel_filter_time_variance_s2);
+  visit("covariance of the sensor errors", known.covariance);
+}
+
+template <class Visit, class Lidar>
+void visit_lidar(Visit& visit, Lidar& lidar) {
+  visit("T_IL", lidar.calibration.T_IL);
+  visit("time_offset_s", lidar.calibration.time_offset_s);
+  visit("mount_sigma_rad", lidar.mount_sigma_rad);
+  visit("mount_sigma_m", lidar.mount_sigma_m);
+  visit("time_offset_sigma_s", lidar.time_offset_sigma_s);
+}
+
+std::vector<std::byte> write(const SavedTumbling& saved, std::span<const MapPoint> map) {
+  odometry::SavedWriter out;
+  out("lever_arm_m", saved.lever_arm_I_m);
+  out("T_IL", saved.stated_T_IL);
+  if (out.present("calibration", saved.rig)) visit_rig(out, *saved.rig);
+  if (out.present("sensor errors", saved.sensor_errors)) visit_sensor_errors(out, *saved.sensor_errors);
+  odometry::write_rails(saved.rails, out);
+  visit_lidar(out, saved.lidar);
+  if (out.present("pose", saved.pose)) odometry::visit_pose(out, *saved.pose);
+  out("extend", saved.extend);
+  out.append(save_map(map));
+  return std::move(out).finish(odometry::SavedKind::tumbling);
+}
+
+/// Reads a saved run. `given` contains the stated parameters of the object that loads the run.
+Status read(std::span<const std::byte> bytes, const SavedTumbling& given, SavedTumbling& saved,
+            std::vector<MapPoint>& map) {
+  odometry::SavedReader in(odometry::SavedKind::tumbling, bytes);
+  in("lever_arm_m", saved.lever_arm_I_m);
+  in("T_IL", saved.stated_T_IL);
+  if (in.present("calibration", saved.rig)) visit_rig(in, *saved.rig);
+  if (in.present("sensor errors", saved.sensor_errors)) visit_sensor_errors(in, *saved.sensor_errors);
+  odometry::read_rails(in, saved.rails);
+  visit_lidar(in, saved.lidar);
+  if (in.present("pose", saved.pose)) odometry::visit_pose(in, *saved.pose);
+  if (saved.pose) odometry::check_pose(in, *saved.pose);
+  in("extend", saved.extend);
+  in.require_equal("lever_arm_m", saved.lever_arm_I_m, given.lever_arm_I_m);
+  in.require_equal("T_IL", saved.stated_T_IL.matrix(), given.stated_T_IL.matrix());
+  if (!in.status().ok()) return in.status();
+  if (saved.rig) {
+    if (const Status status = check_calibration(*saved.rig); !status.ok()) return status;
+  }
+  if (saved.sensor_errors) {
+    if (const Status status = check_known(*saved.sensor_errors); !status.ok()) return status;
+  }
+  return load_map(in.left(), map);
+}
+
+/// Sets the start pose in the prior map, and its standard deviations, which limit the search.
+void set_search(const PoseState& pose, PriorMap& map) {
+  Eigen::Isometry3d T_MI = Eigen::Isometry3d::Identity();
+  T_MI.linear() = pose.q_WA.toRotationMatrix();
+  T_MI.translation() = pose.p_WA_m;
+  map.T_MI = T_MI;
+  map.sigma_m = std::sqrt(pose.covariance.diagonal().head<3>().maxCoeff());
+  map.sigma_rad = std::sqrt(pose.covariance(5, 5));
+}
+
+/// Returns the pose to save. While a run is not localised in its prior map, its start pose relates it to this map.
+std::optional<PoseState> newest_or_start(const TumblingOdometry& odometry) {
+  const LidarInertialOdometry& mapper = odometry.mapper();
+  const std::optional<Eigen::Isometry3d>& start = mapper.start();
+  const bool in_map = mapper.localised().ok();
+  PoseState out;
+  const bool moved = odometry.newest(out).ok() || mapper.predict({}, {}, out).ok();
+  if (!start && (!moved || !in_map)) return std::nullopt;
+  if (!moved) {
+    out.time_ns = odometry.newest_ns().value_or(0);
+    out.p_WA_m = start->translation();
+    out.q_WA = Eigen::Quaterniond(start->linear()).normalized();
+  }
+  if (in_map) return out;
+  const PriorMap& map = *mapper.prior_map();
+  out.covariance.diagonal().head<3>().array() += map.sigma_m * map.sigma_m;
+  out.covariance(5, 5) += map.sigma_rad * map.sigma_rad;
+  return out;
+}
+
+}  // namespace
+
+std::vector<std::byte> TumblingOdometry::save() const {
+  SavedTumbling out;
+  out.lever_arm_I_m = params_.lever_arm_I_m;
+  out.stated_T_IL = stated_.calibration.T_IL;
+  const RateStream& stream = pass_.rates().rate();
+  const RateStream::State& state = pass_.rate_state().rate;
+  const RateStreamParams& used = pass_.rates().params().rate;
+  const bool estimated = whole_ ? !whole_->report.rate.calibration_at_prior : !is_at_prior(stream, state);
+  const RigCalibration found = rig();
+  if ((estimated || used.model.calibration) && check_calibration(found).ok()) out.rig = found;
+  if (whole_ && estimated) out.sensor_errors = whole_->report.rate.sensor_errors;
+  if (!whole_ && (state.device.front().delay.found || used.calibrated_errors))
+    out.sensor_errors = stream.sensor_errors(state);
+  out.rails = rails();
+  const auto sigma = mapper().calibration_weighting_covariance().diagonal().cwiseSqrt().eval();
+  out.lidar = {mapper().calibration(), sigma.head<3>().maxCoeff(), sigma.segment<3>(3).maxCoeff(), sigma[6]};
+
+  const PriorMap* const prior = mapper().prior_map();
+  out.extend = prior == nullptr || prior->extend;
+  out.pose = newest_or_start(*this);
+  return write(out, mapper().localised().ok() ? mapper().map() : prior->points);
+}
+
+Status TumblingOdometry::load(std::span<const std::byte> bytes, std::optional<PoseState>* last_pose) {
+  SavedTumbling given, saved;
+  given.lever_arm_I_m = params_.lever_arm_I_m;
+  given.stated_T_IL = stated_.calibration.T_IL;
+  PriorMap map;
+  if (const Status status = read(bytes, given, saved, map.points); !status.ok()) return status;
+  Params params = params_;
+  RateStreamParams& rate = params.expert.rate.rate;
+  if (saved.rig) {
+    rate.model.nominal.gyro_bias_rad_s = saved.rig->constants.gyro_bias_rad_s;
+    // biases change at every switch-on
+    auto variance = saved.rig->covariance.diagonal();
+    variance.segment<3>(3).array() += rate.model.gyro_bias_sigma_rad_s * rate.model.gyro_bias_sigma_rad_s;
+    variance.segment<3>(6).array() += rate.model.accel_bias_sigma_m_s2 * rate.model.accel_bias_sigma_m_s2;
+    rate.model.calibration = saved.rig;
+  }
+  if (saved.sensor_errors) rate.calibrated_errors = std::make_shared<KnownSensorErrors>(*saved.sensor_errors);
+  odometry::start_from_rails(saved.rails, rate.rails, rate.expert.planes, rate.expert.accel_planes);
+  // the mounting of further lidars relative to the first lidar is exact
+  for (FurtherLidar& further : params.further_lidars)
+    further.T_IL = saved.lidar.calibration.T_IL * params.T_IL.inverse() * further.T_IL;
+  params.T_IL = saved.lidar.calibration.T_IL;
+  params.expert.mapping.time_offset_s = saved.lidar.calibration.time_offset_s;
+  params.mount_sigma_rad = saved.lidar.mount_sigma_rad;
+  params.mount_sigma_m = saved.lidar.mount_sigma_m;
+  params.time_offset_sigma_s = saved.lidar.time_offset_sigma_s;
+  if (const Status status = check_odometry_params(odometry::mapper_params(params)); !status.ok()) return status;
+
+  auto fresh = std::make_unique<TumblingOdometry>(params);
+  fresh->stated_ = stated_;
+  map.extend = saved.extend;
+  if (saved.pose) {
+    set_search(*saved.pose, map);
+    fresh->pass_.set_start_pose(*map.T_MI);
+  }
+  if (check_prior_map(map).ok()) (void)fresh->use_map(std::move(map));
+  *this = std::move(*fresh);
+  if (last_pose) *last_pose = saved.pose;
+  return {};
+}
+
+}  // namespace tumble

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "tumble/tumble.hpp"
+
+/// answers() returns all numbers that an odometry object reports now and after finish(), for bitwise comparisons of two
+/// objects. Waiting sweeps, poses and readings therefore count.
+namespace tumble::test {
+
+class Answers {
+ public:
+  template <class Matrix>
+  void add(const Matrix& matrix) {
+    for (const auto number : matrix.reshaped()) numbers.push_back(static_cast<double>(number));
+  }
+  void add(double number) { numbers.push_back(number); }
+  void add(const PoseState& pose) {
+    add(static_cast<double>(pose.time_ns));
+    add(pose.p_WA_m);
+    add(pose.q_WA.coeffs());
+    add(pose.v_WA_m_s);
+    add(pose.covariance);
+  }
+  void add(const SensorHealth& health) {
+    for (const HealthFinding& finding : health.findings) {
+      add(static_cast<double>(finding.kind));
+      add(finding.value);
+    }
+  }
+  void add(const SaturationLevels& rails) {
+    for (const RailDetector::Channel& channel : rails.axis_aligned_rails.channels) add(channel.rail);
+    for (const RailPlanes* planes : {&rails.planes, &rails.accel_planes}) {
+      for (const std::optional<RailPlane>& plane : planes->element) add(plane ? plane->distance_rad_s : 0.0);
+    }
+  }
+
+  std::vector<double> numbers;
+};
+
+inline std::vector<double> answers(TumblingOdometry odometry) {
+  Answers out;
+  PoseState pose;
+  if (odometry.newest(pose).ok()) out.add(pose);
+  for (const std::optional<RateState>& rate : {odometry.newest_rate(), odometry.smoothed_rate()}) {
+    if (!rate) continue;
+    out.add(rate->w_WI_I_rad_s);
+    out.add(rate->covariance_rad2_s2);
+  }
+  out.add(odometry.rig().constants.vector());
+  out.add(odometry.rig().covariance);
+  out.add(odometry.rails());
+  out.add(odometry.health());
+  out.add(odometry.estimated_jitter_s().value_or(0.0));
+  odometry.finish();
+  while (const std::optional<TumblingOdometry::Sweep> sweep = odometry.take()) {
+    out.add(sweep->report.pose);
+    out.add(static_cast<double>(sweep->report.verdict));
+    for (const PoseState& each : sweep->report.trajectory) out.add(each);
+  }
+  for (const MapPoint& point : odometry.mapper().map()) out.add(point.position_W_m);
+  out.add(odometry.mapper().calibration().T_IL.matrix());
+  out.add(odometry.mapper().calibration().gravity_W_m_s2);
+  out.add(odometry.mapper().calibration_covariance());
+  for (const std::size_t count :
+       {odometry.restart_count(), odometry.rejected_readings(), odometry.rejected_samples(), odometry.dropped_sweeps(),
+        odometry.early_sweeps(), odometry.unused_odometer_readings(), odometry.unused_points()})
+    out.add(static_cast<double>(count));
+  return out.numbers;
+}
+
+inline std::vector<double> answers(RollingOdometry odometry) {
+  Answers out;
+  const auto add = [&](const RollingOdometry::Pose& pose) {
+    out.add(pose.pose);
+    out.add(pose.angular_velocity_rad_s);
+    out.add(pose.velocity_covariance_B_m2_s2);
+    out.add(static_cast<double>(pose.mode));
+  };
+  if (const std::optional<RollingOdometry::Pose> pose = odometry.newest()) add(*pose);
+  out.add(odometry.calibration().centre_B_m);
+  out.add(odometry.calibration().radius_m);
+  out.add(odometry.health());
+  for (const ImuMergeUnit& unit : odometry.units().units) out.add(unit.x);
+  odometry.finish();
+  while (const std::optional<RollingOdometry::Pose> pose = odometry.take()) add(*pose);
+  out.add(static_cast<double>(odometry.restart_count()));
+  out.add(static_cast<double>(odometry.rejected_readings()));
+  return out.numbers;
+}
+
+}  // namespace tumble::test

@@ -1,0 +1,366 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/methods/lidar_rotation.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+
+#include "scenarios/errors.hpp"
+#include "scenarios/methods/bridge.hpp"
+#include "scenarios/methods/method.hpp"
+#include "scenarios/recordings/number_text.hpp"
+#include "scenarios/recordings/repairable.hpp"
+#include "scenarios/recordings/upper_median.hpp"
+#include "tumble/common/so3.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+constexpr std::size_t kSpans = 10, kSweepsOfSpan = 12;
+constexpr double kSlowest_rad_s = 0.1, kFastest_rad_s = 2.0;
+constexpr std::size_t kLeastPairs = 12;
+/// kAgrees is the largest accepted rotation error between lidar and gyro, relative to the median rotation. A larger
+/// error indicates that lidar and gyro do not measure the same motion. The relative error of the lidar's rotation is
+/// about 0.1.
+constexpr double kAgrees = 0.3;
+/// A correction of the gyro is reported only if it reduces the error below this fraction. kConclusive applies to units
+/// and axes, and kDelayConclusive applies to a delay.
+constexpr double kConclusive = 0.5, kDelayConclusive = 0.6;
+constexpr double kDegreesPerRadian = 57.29577951308232;
+constexpr double kDelayMost_s = 0.5, kDelayStep_s = 0.01, kDelaySaid_s = 0.03;
+constexpr std::int64_t kGap_ns = 100'000'000;
+/// kInverted is the largest relative difference at which an attitude counts as the inverse of the given attitude, about
+/// 10 degrees.
+constexpr double kInverted = 0.2;
+
+/// Returns a recording that contains only this lidar, with the sweeps `first` to `last` - 1.
+sim::Sensors span_alone(const sim::LidarRecord& lidar, const PointStore* aside, std::size_t first, std::size_t last) {
+  sim::LidarRecord out = sweep_alone(lidar, aside, first);
+  const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
+  for (std::size_t k = first + 1; k < last; ++k) {
+    const sim::LidarRecord sweep = sweep_alone(lidar, aside, k);
+    append(out.sweep_start_ns, sweep.sweep_start_ns);
+    append(out.position_L_m, sweep.position_L_m);
+    append(out.range_m, sweep.range_m);
+    append(out.intensity, sweep.intensity);
+    append(out.offset_ns, sweep.offset_ns);
+    append(out.ring, sweep.ring);
+    out.sweep_first.push_back(out.position_L_m.size());
+  }
+  sim::Sensors sensors;
+  sensors.lidars.push_back(std::move(out));
+  return sensors;
+}
+
+void add_rotations(const Estimate& estimate, std::vector<SeenRotation>& out) {
+  const auto registered = [](const SweepReport& sweep) {
+    return sweep.verdict == SweepVerdict::first || sweep.verdict == SweepVerdict::registered;
+  };
+  for (std::size_t k = 1; k < estimate.sweeps.size(); ++k) {
+    const SweepReport &before = estimate.sweeps[k - 1], &after = estimate.sweeps[k];
+    if (!registered(before) || !registered(after)) continue;
+    SeenRotation seen{before.pose.time_ns, after.pose.time_ns,
+                      so3::log(before.pose.q_WA.conjugate() * after.pose.q_WA)};
+    const double length_s = seconds(seen.to_ns - seen.from_ns), angle_rad = seen.rotation_L_rad.norm();
+    if (angle_rad > kSlowest_rad_s * length_s && angle_rad < kFastest_rad_s * length_s) out.push_back(seen);
+  }
+}
+
+/// Integral integrates the angular rate of each gyro axis over time. Between two sweeps, the rotation is a few
+/// hundredths of a radian, so integrating each axis alone is accurate.
+class Integral {
+ public:
+  explicit Integral(const sim::ImuRecord& imu) : imu_(imu) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (std::size_t k = 0; k < imu.time_ns.size(); ++k) {
+      sum += imu.gyro_rad_s[k] * seconds(imu.time_ns[k] - start(k));
+      sum_.push_back(sum);
+    }
+  }
+
+  /// Returns the integral from `from_ns` to `to_ns`, or nothing if readings are missing in this interval.
+  std::optional<Eigen::Vector3d> between(std::int64_t from_ns, std::int64_t to_ns) const {
+    const auto first = sample_at(from_ns), last = sample_at(to_ns);
+    if (!first || !last) return std::nullopt;
+    for (std::size_t k = *first; k <= *last; ++k) {
+      if (imu_.time_ns[k] - start(k) > kGap_ns) return std::nullopt;
+    }
+    return Eigen::Vector3d(until(*last, to_ns) - until(*first, from_ns));
+  }
+
+ private:
+  std::int64_t start(std::size_t k) const { return k == 0 ? imu_.time_ns[0] - imu_.period_ns : imu_.time_ns[k - 1]; }
+  /// Returns the index of the sample whose averaging window contains `time_ns`.
+  std::optional<std::size_t> sample_at(std::int64_t time_ns) const {
+    const auto at = std::lower_bound(imu_.time_ns.begin(), imu_.time_ns.end(), time_ns);
+    if (at == imu_.time_ns.end() || time_ns < start(0)) return std::nullopt;
+    return static_cast<std::size_t>(at - imu_.time_ns.begin());
+  }
+  Eigen::Vector3d until(std::size_t k, std::int64_t time_ns) const {
+    return sum_[k] - imu_.gyro_rad_s[k] * seconds(imu_.time_ns[k] - time_ns);
+  }
+
+  const sim::ImuRecord& imu_;
+  std::vector<Eigen::Vector3d> sum_;
+};
+
+/// Pairs contains the rotations that lidar and gyro measured over the same time intervals, both in IMU axes.
+struct Pairs {
+  std::vector<Eigen::Vector3d> seen, said;
+  double rotation_rad = 0.0;  // median of the lidar's rotations
+
+  /// Returns the median over all pairs k of error(k), divided by the median rotation.
+  template <class Error>
+  double share(Error&& error) const {
+    std::vector<double> errors;
+    for (std::size_t k = 0; k < seen.size(); ++k) errors.push_back(error(k));
+    return upper_median(std::move(errors)) / rotation_rad;
+  }
+  double share_by(const Eigen::Matrix3d& matrix) const {
+    return share([&](std::size_t k) { return (seen[k] - matrix * said[k]).norm(); });
+  }
+};
+
+Pairs pairs_at(const Integral& integral, const Eigen::Matrix3d& R_IL, std::span<const SeenRotation> seen,
+               std::int64_t delay_ns) {
+  Pairs out;
+  std::vector<double> angles;
+  for (const SeenRotation& each : seen) {
+    const auto said = integral.between(each.from_ns - delay_ns, each.to_ns - delay_ns);
+    if (!said) continue;
+    out.seen.emplace_back(R_IL * each.rotation_L_rad);
+    out.said.push_back(*said);
+    angles.push_back(out.seen.back().norm());
+  }
+  if (!angles.empty()) out.rotation_rad = upper_median(std::move(angles));
+  return out;
+}
+
+/// Computes the orthogonal matrix with the given determinant, 1 or -1, that best maps the gyro's rotations to the
+/// lidar's rotations (Wahba 1965, by singular values).
+Eigen::Matrix3d best_orthogonal(const Pairs& pairs, double determinant) {
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  for (std::size_t k = 0; k < pairs.seen.size(); ++k) sum += pairs.seen[k] * pairs.said[k].transpose();
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const double found = (svd.matrixU() * svd.matrixV().transpose()).determinant();
+  const Eigen::Vector3d signs(1.0, 1.0, found * determinant < 0.0 ? -1.0 : 1.0);
+  return svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
+}
+
+/// Searches for the gyro unit and delay with the smallest error of rotation angles, which is independent of mounting
+/// and axes.
+void fit_unit(const Pairs& pairs, double delay_s, RotationAgreement& best, double& best_error) {
+  RotationAgreement at;
+  at.pairs = pairs.seen.size();
+  at.delay_s = delay_s;
+  for (const double unit : {1.0, kDegreesPerRadian, 1.0 / kDegreesPerRadian}) {
+    const double error =
+        pairs.share([&](std::size_t k) { return std::abs(pairs.seen[k].norm() - unit * pairs.said[k].norm()); });
+    if (error < at.unit_error) at.unit = unit, at.unit_error = error;
+  }
+  const double error = std::min(pairs.share_by(at.unit * best_orthogonal(pairs, 1.0)),
+                                pairs.share_by(at.unit * best_orthogonal(pairs, -1.0)));
+  if (error >= best_error) return;
+  best = at;
+  best_error = error;
+}
+
+void fit_axes(const Pairs& pairs, RotationAgreement& out) {
+  out.error_as_read = pairs.share_by(out.unit * Eigen::Matrix3d::Identity());
+  std::array<int, 3> axis{0, 1, 2};
+  do {
+    for (int signs = 0; signs < 8; ++signs) {
+      const SignedAxes axes{axis, {signs & 1 ? -1 : 1, signs & 2 ? -1 : 1, signs & 4 ? -1 : 1}};
+      const double error = pairs.share_by(out.unit * axes.matrix());
+      if (error < out.axes_error) {
+        out.next_error = out.axes_error;
+        out.axes_error = error;
+        out.axes = axes;
+      } else {
+        out.next_error = std::min(out.next_error, error);
+      }
+    }
+  } while (std::next_permutation(axis.begin(), axis.end()));
+  out.turned = Eigen::Quaterniond(best_orthogonal(pairs, 1.0));
+  out.turned_error = pairs.share_by(out.unit * out.turned.toRotationMatrix());
+}
+
+std::string percent(double share) {
+  return rounded(100.0 * share) + " %";
+}
+
+std::string pairs_text(const RotationAgreement& found) {
+  return fmt::format(" over {} pairs of sweeps", found.pairs);
+}
+
+/// Throws BadInput if gyro and lidar agree only after a conversion of the gyro's unit.
+std::string unit_text(const std::string& where, const RotationAgreement& found, GyroUnit unit) {
+  const bool degrees = unit == GyroUnit::deg_s;
+  const std::string read = fmt::format(
+      "if the gyro is read in {}, the lidar rotates {} times as far as the gyro measures (accurate to {}){}; this "
+      "ratio must be from 0.5 to 2",
+      degrees ? "deg/s" : "rad/s", rounded(found.unit), percent(found.unit_error), pairs_text(found));
+  if ((found.unit < 1.0) == degrees) return "caution: " + read;
+  const std::string fits = degrees ? "rad/s" : "deg/s";
+  throw RepairableInput(fmt::format("{}: {}; the rates may be in {} (set '--gyro-unit {}')", where, read, fits, fits),
+                        {"--gyro-unit", fits});
+}
+
+std::string delay_text(const RotationAgreement& found) {
+  if (std::abs(found.delay_s) < kDelaySaid_s) return "";
+  return fmt::format(
+      "caution: the lidar's rotation follows the gyro's rotation {}{}; check that both use one clock and that sweep "
+      "stamps are start times. After removal of this delay, ",
+      rounded(std::abs(found.delay_s)), found.delay_s > 0.0 ? " s later" : " s earlier");
+}
+
+std::string axes_text(const RotationAgreement& found) {
+  if (found.error_as_read <= kAgrees && kConclusive * found.error_as_read <= found.axes_error) {
+    return fmt::format(
+        "the rotations of lidar and gyro agree{} within {}{}", pairs_text(found), percent(found.error_as_read),
+        kConclusive * found.next_error > found.axes_error
+            ? ": units, signs and axes agree"
+            : ": the units agree; this motion does not rotate about all axes, so some axes are not checked");
+  }
+  const std::string off =
+      fmt::format("caution: the rotations of lidar and gyro differ{} (difference {}). They would agree if ",
+                  pairs_text(found), percent(found.error_as_read));
+  if (found.axes_error <= kAgrees) {
+    return fmt::format(
+        "{}the lidar's axes were {} (difference {}). Check the signs and order of the axes, and the mounting", off,
+        found.axes.text(), percent(found.axes_error));
+  }
+  const Eigen::Quaterniond& q = found.turned;
+  return fmt::format(
+      "{}the lidar's orientation relative to the IMU were the quaternion x y z w {} {} {} {} (difference {}). Check "
+      "the mounting",
+      off, rounded(q.x()), rounded(q.y()), rounded(q.z()), rounded(q.w()), percent(found.turned_error));
+}
+
+}  // namespace
+
+Eigen::Matrix3d SignedAxes::matrix() const {
+  Eigen::Matrix3d out = Eigen::Matrix3d::Zero();
+  for (int i = 0; i < 3; ++i) out(i, axis[static_cast<std::size_t>(i)]) = sign[static_cast<std::size_t>(i)];
+  return out;
+}
+
+std::string SignedAxes::text() const {
+  std::string out;
+  for (std::size_t i = 0; i < 3; ++i) {
+    out += (i == 0 ? "(" : ", ") + std::string(sign[i] < 0 ? "-" : "") + "xyz"[axis[i]];
+  }
+  return out + ")";
+}
+
+std::vector<SeenRotation> seen_rotations(const sim::LidarRecord& lidar, const PointStore* aside) {
+  std::vector<SeenRotation> out;
+  const std::size_t sweeps = lidar.sweep_start_ns.size();
+  const std::size_t spans = std::min(kSpans, (sweeps + kSweepsOfSpan - 1) / kSweepsOfSpan);
+  const MethodPointer method = find_methods("slam/constant_velocity").front();
+  const sim::Values parameters = sim::resolve(method->info.name, {}, method->info.parameters);
+  for (std::size_t k = 0; k < spans; ++k) {
+    const std::size_t first = k * sweeps / spans, last = std::min(first + kSweepsOfSpan, sweeps);
+    add_rotations(method->run(span_alone(lidar, aside, first, last), parameters, {}), out);
+  }
+  return out;
+}
+
+std::optional<RotationAgreement> rotation_agreement(const sim::ImuRecord& imu, const sim::LidarRecord& lidar,
+                                                    std::span<const SeenRotation> seen) {
+  const Integral integral(imu);
+  const Eigen::Matrix3d R_IL = bridge::T_IL(imu, lidar).linear();
+  RotationAgreement at_once, delayed;
+  double at_once_error = 1.0, delayed_error = 1.0;
+  const int steps = static_cast<int>(std::lround(kDelayMost_s / kDelayStep_s));
+  for (int step = -steps; step <= steps; ++step) {
+    const double delay_s = kDelayStep_s * step;
+    const Pairs pairs = pairs_at(integral, R_IL, seen, std::llround(1e9 * delay_s));
+    if (pairs.seen.size() < kLeastPairs) continue;
+    fit_unit(pairs, delay_s, delayed, delayed_error);
+    if (step == 0) fit_unit(pairs, delay_s, at_once, at_once_error);
+  }
+  // Among a hundred candidate delays, one may fit slightly better by chance.
+  RotationAgreement out = delayed_error < kDelayConclusive * at_once_error ? delayed : at_once;
+  if (out.unit_error > kAgrees) return std::nullopt;
+  fit_axes(pairs_at(integral, R_IL, seen, std::llround(1e9 * out.delay_s)), out);
+  // If lidar tracking fails in a tumble, the rotation angles alone may agree by chance.
+  if (std::min({out.error_as_read, out.axes_error, out.turned_error}) > kAgrees) return std::nullopt;
+  return out;
+}
+
+std::string agreement_text(const std::string& where, const RotationAgreement& found, GyroUnit unit) {
+  if (found.unit != 1.0) return unit_text(where, found, unit);
+  return delay_text(found) + axes_text(found);
+}
+
+namespace {
+
+/// Computes the attitude of the lidar on the body at which lidar and gyro agree. Returns nothing if lidar and gyro
+/// agree with the calibrated attitude, or if no attitude makes them agree.
+std::optional<Eigen::Matrix3d> better_attitude(const sim::ImuRecord& imu, const sim::LidarRecord& lidar,
+                                               const RotationAgreement& found) {
+  const bool agrees = found.error_as_read <= kAgrees && kConclusive * found.error_as_read <= found.axes_error;
+  const Eigen::Matrix3d axes = found.axes.matrix();
+  const bool by_axes =
+      found.axes_error <= kAgrees && axes.determinant() > 0.0 && kConclusive * found.next_error > found.axes_error;
+  if (agrees || found.unit != 1.0 || (!by_axes && found.turned_error > kAgrees)) return std::nullopt;
+  // In IMU axes, the lidar's rotation is M times the gyro's rotation, so the true attitude is M^T R_IL.
+  const Eigen::Matrix3d M = by_axes ? axes : found.turned.toRotationMatrix();
+  return imu.T_BI.linear() * M.transpose() * bridge::T_IL(imu, lidar).linear();
+}
+
+bool is_inverse(const Eigen::Matrix3d& R, const Eigen::Matrix3d& other) {
+  return R.transpose().isApprox(other, kInverted);
+}
+
+/// Returns the corrected pose of the lidar: the calibrated pose with the attitude `R_BL`. If the attitude `R_BL` is the
+/// inverse of the calibrated attitude, the function inverts the whole calibrated pose.
+Eigen::Isometry3d better_pose(const sim::LidarRecord& lidar, const Eigen::Matrix3d& R_BL) {
+  if (is_inverse(lidar.T_BL.linear(), R_BL)) return lidar.T_BL.inverse();
+  Eigen::Isometry3d out = lidar.T_BL;
+  out.linear() = R_BL;
+  return out;
+}
+
+/// Returns the program option that sets the corrected lidar pose; a remark follows if the calibrated pose is inverted.
+std::string pose_text(const sim::LidarRecord& lidar, const Eigen::Isometry3d& better_BL) {
+  const Eigen::Quaterniond q(better_BL.linear());
+  const Eigen::Vector3d p = better_BL.translation();
+  return fmt::format("{} (set '--T-body-lidar {} {} {} {} {} {} {}')",
+                     is_inverse(lidar.T_BL.linear(), better_BL.linear())
+                         ? "; the stated pose may be the pose of the body in the lidar frame"
+                         : "",
+                     rounded(p.x()), rounded(p.y()), rounded(p.z()), rounded(q.x()), rounded(q.y()), rounded(q.z()),
+                     rounded(q.w()));
+}
+
+}  // namespace
+
+LidarRotationCheck check_lidar_rotation(const std::string& where, const Imported& recording, GyroUnit unit) {
+  LidarRotationCheck out;
+  const sim::Sensors& sensors = recording.sensors;
+  if (sensors.lidars.empty() || sensors.imus.empty()) return out;
+  const sim::LidarRecord& lidar = sensors.lidars.front();
+  const std::vector<SeenRotation> seen =
+      seen_rotations(lidar, recording.points.empty() ? nullptr : &recording.points.front());
+  for (const sim::ImuRecord& imu : sensors.imus) {
+    const auto agreement = rotation_agreement(imu, lidar, seen);
+    if (!agreement) continue;
+    std::string text = agreement_text(where + ": '" + imu.name + "'", *agreement, unit);
+    if (&imu == &sensors.imus.front()) {
+      out.primary = agreement;
+      if (const auto R_BL = better_attitude(imu, lidar, *agreement)) {
+        out.better_BL = better_pose(lidar, *R_BL);
+        text += pose_text(lidar, *out.better_BL);
+      }
+    }
+    if (!text.empty()) out.notes.push_back(imu.name + ": " + text);
+  }
+  return out;
+}
+
+}  // namespace tumble::scenarios
