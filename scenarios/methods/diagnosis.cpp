@@ -8,6 +8,7 @@
 #include <cstdint>
 
 #include "scenarios/methods/bridge.hpp"
+#include "scenarios/methods/findings.hpp"
 #include "scenarios/methods/rate_baseline.hpp"
 #include "scenarios/recordings/number_text.hpp"
 #include "tumble/angular_velocity/clipping_finder.hpp"
@@ -115,13 +116,14 @@ void add_saturation(const sim::ImuRecord& imu, std::vector<RecordingFinding>& ou
                                percent_text(found.gyro_share), rounded(found.gyro_rad_s),
                                range(imu.stated_gyro_range_rad_s, "rad/s")),
                    "set a larger gyro range in the IMU's driver, if possible; 'tumble odometry' estimates the rates "
-                   "beyond the range"});
+                   "beyond the range",
+                   false});
   if (found.accel_share > 0.0)
     out.push_back({imu.name,
                    fmt::format("the accelerometer is saturated in {} of the samples, at {} m/s^2 and more{}",
                                percent_text(found.accel_share), rounded(found.accel_m_s2),
                                range(imu.stated_accel_range_m_s2, "m/s^2")),
-                   "set a larger accelerometer range in the IMU's driver"});
+                   "set a larger accelerometer range in the IMU's driver", false});
 }
 
 }  // namespace
@@ -210,7 +212,8 @@ std::vector<RecordingFinding> findings_in_estimate(const Estimate& estimate, std
                    "check --T-body-lidar and the other findings"});
   for (const HealthFinding& finding : estimate.faults.findings) {
     const bool mounting = finding.kind == HealthFinding::Kind::lidar_calibration;
-    out.push_back({"odometry", to_text(finding), mounting ? "--T-body-lidar with the measured pose of the lidar" : ""});
+    out.push_back({"odometry", report_text(finding),
+                   mounting ? "--T-body-lidar with the measured pose of the lidar" : "", is_current(finding)});
   }
   return out;
 }

@@ -13,11 +13,12 @@
 /// collect the warnings of importers and estimators, and check the sensors together.
 namespace tumble::scenarios {
 
-/// RecordingFinding describes one fault of a recording.
+/// RecordingFinding describes one fault of a recording, or a note on a property that is no fault.
 struct RecordingFinding {
   std::string where;     ///< sensor, topic or file
   std::string evidence;  ///< description of the fault, with numbers and limits
   std::string repair;    ///< option of `tumble import` that repairs the reading, or another change; "": see `evidence`
+  bool fault = true;     ///< false: a note, for example on saturation or on an ended finding
 
   bool operator==(const RecordingFinding&) const = default;
 };

@@ -275,7 +275,8 @@ void read_attitudes(const std::filesystem::path& folder, std::vector<AttitudeSta
   for (std::size_t k = 0; k < attitudes.size(); ++k) attitudes[k].covariance_rad2 = covariances_rad2[k];
 }
 
-json header_of(const std::string& method, Kind kind, const Estimate& estimate, const std::string& sensors_digest) {
+json header_of(const std::string& method, Kind kind, const Estimate& estimate, const std::string& sensors_digest,
+               std::int64_t origin_ns) {
   json health = json::object(), findings = json::array();
   for (const auto& [name, value] : estimate.health) health[name] = value;
   for (const HealthFinding& each : estimate.faults.findings) findings.push_back(json_of(each));
@@ -290,7 +291,8 @@ json header_of(const std::string& method, Kind kind, const Estimate& estimate, c
           {"health", health},
           {"findings", findings},
           {"parameters", json(estimate.parameters)},
-          {"sensors_digest", sensors_digest}};
+          {"sensors_digest", sensors_digest},
+          {"origin_ns", origin_ns}};
 }
 
 void read_header(const std::filesystem::path& path, Kind& kind, std::string& method, Estimate& estimate) {
@@ -323,7 +325,7 @@ void read_header(const std::filesystem::path& path, Kind& kind, std::string& met
 }  // namespace
 
 void write_estimate(const std::filesystem::path& folder, const std::string& method, Kind kind, const Estimate& estimate,
-                    const std::string& sensors_digest) {
+                    const std::string& sensors_digest, std::int64_t origin_ns) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw BadInput(fmt::format("{}: cannot create the folder: {}", folder.string(), error.message()));
@@ -359,7 +361,7 @@ void write_estimate(const std::filesystem::path& folder, const std::string& meth
   if (!estimate.transcript.empty()) replace_file(folder / "transcript.txt", estimate.transcript);
 
   // estimate.json is written last; its presence marks a complete folder.
-  replace_file(folder / "estimate.json", header_of(method, kind, estimate, sensors_digest).dump(2) + '\n');
+  replace_file(folder / "estimate.json", header_of(method, kind, estimate, sensors_digest, origin_ns).dump(2) + '\n');
 }
 
 std::string estimated_sensors(const std::filesystem::path& path) {

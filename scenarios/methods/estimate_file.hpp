@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 
@@ -16,7 +17,8 @@ inline constexpr const char* kEstimateFiles[] = {"estimate.json",           "rat
 
 /// Writes an estimate to a folder. Files without content are not written. ESTIMATE.md describes the columns.
 ///
-/// - The file estimate.json contains method, kind, frame, status, health, and digest of the input sensors.
+/// - The file estimate.json contains method, kind, frame, status, health, digest of the input sensors, and the
+///   recording's `origin_ns` (RecordingInfo).
 /// - The rates and attitudes are in rates.csv, attitude.tum and attitude_covariance.csv.
 /// - The poses are in trajectory.tum (t x y z qx qy qz qw), position_covariance.csv and contacts.csv.
 /// - The sweeps and the map are in sweeps.csv, sweep_poses.csv and map.ply.
@@ -29,7 +31,7 @@ inline constexpr const char* kEstimateFiles[] = {"estimate.json",           "rat
 /// Throws BadInput if writing fails. Throws std::invalid_argument if `contacts` or a non-empty `uncertain` differs in
 /// length from `poses`.
 void write_estimate(const std::filesystem::path& folder, const std::string& method, Kind kind, const Estimate& estimate,
-                    const std::string& sensors_digest = "");
+                    const std::string& sensors_digest = "", std::int64_t origin_ns = 0);
 
 /// Returns the digest of the sensor data from which the estimate was computed; empty if the folder contains no digest.
 std::string estimated_sensors(const std::filesystem::path& path);

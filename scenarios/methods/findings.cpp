@@ -79,6 +79,14 @@ bool report_localised(Estimate& estimate) {
   return localised;
 }
 
+bool is_current(const HealthFinding& finding) {
+  return !finding.ended || finding.invalidates_estimate();
+}
+
+std::string report_text(const HealthFinding& finding) {
+  return (is_current(finding) ? "" : "earlier in the run: ") + to_text(finding);
+}
+
 nlohmann::json json_of(const HealthFinding& finding) {
   return {{"kind", to_string(finding.kind)},
           {"sensor", finding.sensor},

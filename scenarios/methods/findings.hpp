@@ -28,6 +28,12 @@ bool has_implausible_readings(const Estimate& estimate);
 /// Sets the health entry `localised` and returns its value: false if a finding contradicts the pose in the map.
 bool report_localised(Estimate& estimate);
 
+/// Returns whether a finding applies at the end of the run: the finding has not ended, or its fault makes all later
+/// poses wrong.
+bool is_current(const HealthFinding& finding);
+/// Returns the text of a finding for tables and notes. The text of an ended finding starts with "earlier in the run: ".
+std::string report_text(const HealthFinding& finding);
+
 /// The functions json_of and finding_in write and read a finding in estimate.json (ESTIMATE.md). Reading throws
 /// BadInput with the file name for an invalid finding.
 nlohmann::json json_of(const HealthFinding& finding);

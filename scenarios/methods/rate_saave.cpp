@@ -51,16 +51,13 @@ Status saave_rates(const sim::Sensors& sensors, std::span<const ImuSample> sampl
   return Saave(params).estimate(samples, out);
 }
 
-// The figures come from the command tests/bench/rate_statistics hill 4201 4225 --method raw --method saave
-// --exact-mounting.
 Method rate_saave() {
   MethodInfo info;
   info.name = "saave";
   info.kind = Kind::rate;
   info.doc =
       "Estimates the clipped axis from the centripetal force in free flight, then applies a smoother with white noise "
-      "on jerk. With the exact lever arm, its median error on `hill` is 83.5 % smaller than that of the clipped gyro "
-      "(published: 83.4 %).";
+      "on jerk. docs/papers/rig.md compares its errors with the paper.";
   info.source = "Deschenes et al., Saturation-Aware Angular Velocity Estimation, ICRA 2024";
   info.settings = {&saave_settings()};
   info.robots = {"rig", "pendulum"};

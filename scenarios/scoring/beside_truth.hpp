@@ -35,6 +35,8 @@ struct PairedRate {
   std::uint8_t clipped_axes() const { return truth ? truth->clipped_axes : std::uint8_t{0}; }
   /// Returns the unclipped axes whose reading a clipped element disturbs (bit j: axis j), or 0 if the truth is unknown.
   std::uint8_t cross_axes() const { return truth ? truth->cross_axes : std::uint8_t{0}; }
+  /// Returns whether the method reports a covariance of this rate.
+  bool has_covariance() const { return estimate->covariance_rad2_s2.diagonal().maxCoeff() > 0.0; }
   /// Returns the estimated minus the true rate, in true IMU axes. The true rate must be known.
   Eigen::Vector3d error_rad_s() const { return estimate->w_WI_I_rad_s - truth->rate_rad_s; }
 };

@@ -10,6 +10,7 @@
 #include "scenarios/methods/findings.hpp"
 #include "scenarios/scoring/beside_truth.hpp"
 #include "scenarios/scoring/families.hpp"
+#include "scenarios/statistics/statistics.hpp"
 
 namespace tumble::scenarios {
 
@@ -31,13 +32,10 @@ double deviations_of(const Eigen::VectorXd& error, const Eigen::MatrixXd& covari
   return std::sqrt(error.dot(covariance.ldlt().solve(error)));
 }
 
-/// Returns the quantile of the values; 0 if there are none. NaN counts as the largest value.
-double quantile(std::vector<double> values, double share) {
-  if (values.empty()) return 0.0;
+/// Returns true if the quantile of the values exceeds the limit. NaN counts as the largest value.
+bool quantile_exceeds(double limit, std::vector<double> values, double share) {
   for (double& value : values) value = std::isnan(value) ? HUGE_VAL : value;
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size()));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
+  return quantile(values, share) > limit;
 }
 
 /// Findings (suspected faults) increase the covariances. The increase is subtracted here, because with it a reported
@@ -71,7 +69,7 @@ Errors attitude_errors(const ScoredEstimate& scored) {
 
 /// Returns true if a tenth of the errors exceed five standard deviations, or half of the errors exceed `gross_limit`.
 bool are_wrong(const Errors& errors, double gross_limit) {
-  return quantile(errors.deviations, 0.9) > kWrongDeviations || quantile(errors.gross, 0.5) > gross_limit;
+  return quantile_exceeds(kWrongDeviations, errors.deviations, 0.9) || quantile_exceeds(gross_limit, errors.gross, 0.5);
 }
 
 /// Returns true if the error of the last pose exceeds five standard deviations. The error is that of the metric

@@ -82,7 +82,7 @@ bool in_contact(const ScoredEstimate& scored, std::int64_t time_ns) {
 
 // NormalisedErrors contains squared rate errors divided by their reported variances. The errors of clipped axes are at
 // all samples (`all`), in flight (`flight`) and in contact (`impact`). `cross_axis` contains the errors of unclipped
-// axes that a clipped element disturbs.
+// axes that a clipped element disturbs. Rates without a covariance are left out.
 struct NormalisedErrors {
   std::vector<double> all, flight, impact, cross_axis;
 };
@@ -90,7 +90,7 @@ struct NormalisedErrors {
 NormalisedErrors normalised_rate_errors(const ScoredEstimate& scored) {
   NormalisedErrors normalised;
   for (const PairedRate& pair : paired_rates(scored)) {
-    if (pair.clipped_axes() == 0) continue;
+    if (pair.clipped_axes() == 0 || !pair.has_covariance()) continue;
     const Eigen::Vector3d error = pair.error_rad_s();
     std::vector<double>& part = in_contact(scored, pair.estimate->time_ns) ? normalised.impact : normalised.flight;
     for (int j = 0; j < 3; ++j) {

@@ -86,6 +86,7 @@ bool reference_coverage(const ScoredEstimate& scored, double& value) {
   const Eigen::Vector3d own = reference_variance(scored, truth);
   double axes = 0.0, within = 0.0;
   for (const PairedRate& pair : paired_rates(scored)) {
+    if (!pair.has_covariance()) continue;
     for (int j = 0; j < 3; ++j) {
       if ((pair.clipped_axes() & (1u << j)) == 0) continue;
       const double error = pair.error_rad_s()[j];

@@ -29,8 +29,8 @@ def legend(figure: object, panel: object, columns: int) -> None:
     figure.legend(*panel.get_legend_handles_labels(), loc="upper center", ncols=columns, fontsize="small")
 
 
-def save(figure: object, path: pathlib.Path, colours: int = 128) -> None:
-    """Writes a PNG with a palette, which needs a third of the bytes."""
+def save(figure: object, path: pathlib.Path, palette: bool = True) -> None:
+    """Writes a PNG. A palette of 128 colours needs a third of the bytes, but drops rare colours of a picture of points."""
     from PIL import Image
 
     figure.draw_without_rendering()  # the first drawing computes the size of the tick labels, which the layout needs
@@ -38,7 +38,9 @@ def save(figure: object, path: pathlib.Path, colours: int = 128) -> None:
     figure.savefig(memory, format="png", dpi=100)
     path.parent.mkdir(parents=True, exist_ok=True)
     image = Image.open(memory).convert("RGB")
-    image.quantize(colours, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE).save(path, optimize=True)
+    if palette:
+        image = image.quantize(128, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
+    image.save(path, optimize=True)
 
 
 def percentiles(panel: object, values: list[float], label: str, colour: str, limit: float) -> None:

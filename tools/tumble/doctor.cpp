@@ -62,12 +62,15 @@ int run_doctor(const Session& session, const ImportOptions& options) {
   table.wrap_last();
   nlohmann::json document = nlohmann::json::array();
   for (const RecordingFinding& each : findings) {
-    table.add_row({each.where, each.evidence + (each.repair.empty() ? "" : ". Repair: " + each.repair)});
-    document.push_back({{"where", each.where}, {"evidence", each.evidence}, {"repair", each.repair}});
+    table.add_row({each.where, (each.fault ? "" : "note: ") + each.evidence +
+                                   (each.repair.empty() ? "" : ". Repair: " + each.repair)});
+    document.push_back(
+        {{"where", each.where}, {"evidence", each.evidence}, {"repair", each.repair}, {"fault", each.fault}});
   }
-  if (findings.empty()) table.add_row({options.path.filename().string(), "no fault found"});
+  const bool any_fault = std::ranges::any_of(findings, &RecordingFinding::fault);
+  if (!any_fault) table.add_row({options.path.filename().string(), "no fault found"});
   session.print({table}, {{"findings", document}});
-  return findings.empty() ? kDone : kCheckFailed;
+  return any_fault ? kCheckFailed : kDone;
 }
 
 }  // namespace
@@ -75,7 +78,8 @@ int run_doctor(const Session& session, const ImportOptions& options) {
 Action declare_doctor(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<ImportOptions>();
   declare_sensors(verb, *options);
-  verb.footer("Exit status: 0 no fault found, 1 at least one finding, 2 wrong use.");
+  verb.footer(
+      "Exit status: 0 no fault found (perhaps notes, for example on saturation), 1 at least one fault, 2 wrong use.");
   return [&session, options] { return run_doctor(session, *options); };
 }
 

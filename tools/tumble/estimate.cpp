@@ -9,6 +9,7 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/estimate_file.hpp"
+#include "scenarios/methods/findings.hpp"
 #include "scenarios/methods/given_parameters.hpp"
 #include "scenarios/methods/prior_map_file.hpp"
 #include "scenarios/recordings/recording_check.hpp"
@@ -92,7 +93,7 @@ int run_estimate(const Session& session, const EstimateOptions& options) {
   const bool with_digest = scenarios::states_digest(options.recording);
   if (!with_digest) estimate.health["recording_without_digest"] = 1.0;
   scenarios::write_estimate(options.folder, method.info.name, method.info.kind, estimate,
-                            scenarios::digest(sensors, nullptr));
+                            scenarios::digest(sensors, nullptr), scenarios::read_info(options.recording).origin_ns);
   if (!estimate.map.empty()) scenarios::write_prior_map(options.folder / scenarios::kPriorMapName, estimate.map);
   learnt.keep(session);
   folder.keep();
@@ -113,7 +114,7 @@ int run_estimate(const Session& session, const EstimateOptions& options) {
   if (!with_digest) session.note("the recording contains no digest of its data, so the program cannot detect damage");
   // After a failure, the findings may name the cause: a sensor fault.
   for (const HealthFinding& each : estimate.faults.findings)
-    session.note(full_name(method.info) + ": " + to_text(each));
+    session.note(full_name(method.info) + ": " + scenarios::report_text(each));
   if (estimate.status.ok()) return kDone;
   // The incomplete estimate is kept for inspection.
   throw BadInput(options.recording.string() + ": " + full_name(method.info) +

@@ -95,8 +95,10 @@ void declare_lidar(VerbOptions& verb, ImportOptions& options) {
   verb.add("--lidar", options.lidar,
            "names the data sheet of the lidar ('tumble list sensors' lists the sheets) [default: unknown]");
   verb.add("--T-body-lidar", options.T_body_lidar,
-           "sets the pose of the lidar in the body frame: X Y Z in m, then the quaternion QX QY QZ QW [default: "
-           "identity]")
+           "sets the pose of the lidar in the body frame: X Y Z in m, then the quaternion QX QY QZ QW. The origin of "
+           "the "
+           "body frame is the centre of mass; its axes are the axes of 'body' or 'base_link' in /tf_static, else of "
+           "the IMU [default: from /tf_static, else identity]")
       .words(7);
   verb.add("--stem", options.stem,
            "selects the sweeps of one lidar in the folder by the part of their file names before the number");
@@ -141,11 +143,13 @@ void declare_reference(VerbOptions& verb, ImportOptions& options) {
 }  // namespace
 
 void declare_sensors(VerbOptions& verb, ImportOptions& options) {
-  verb.add("PATH", options.path,
-           "imports this file or folder. Lidar sweeps can be PLY, PCD, VTK or KITTI .bin files. IMU readings can be a "
-           "CSV file of a logger or of sensor_msgs/Imu, or the folder of a CSV export. A bag can be a ROS 1 file or a "
-           "folder of its parts, a ROS 2 folder, or an MCAP file. Poses can be a TUM file, a KITTI file, or a table "
-           "with named columns such as EuRoC's ground truth")
+  verb.add(
+          "PATH", options.path,
+          "reads this file or folder. Lidar sweeps can be PLY, PCD, VTK or KITTI .bin files. IMU readings can be a "
+          "CSV file of a logger or of sensor_msgs/Imu, or the folder of a CSV export. A bag can be a ROS 1 file or a "
+          "folder of its parts, a ROS 2 folder, or an MCAP file. Poses can be a TUM file, a KITTI file, or a table "
+          "with named columns such as EuRoC's ground truth. 'tumble odometry' and 'tumble doctor' also read recordings "
+          "of tumble (.h5)")
       .required();
   verb.add("--format", options.format,
            "sets the format of the input: csv, kitti, mcap, odometry, pcd, ply, rosbag1, rosbag2, tum or vtk [default: "
@@ -162,7 +166,9 @@ void declare_sensors(VerbOptions& verb, ImportOptions& options) {
            "names the columns of IMU readings in a CSV file: time=NAME,gyro=X,Y,Z,accel=X,Y,Z with names from the "
            "header, or with positions counted from 0 [default: common names]");
   verb.add("--lever-arm", options.lever_arm_m,
-           "sets the lever arm X Y Z from the robot's centre of mass to the IMU, m [default: 0 0 0]")
+           "sets the lever arm X Y Z from the robot's centre of mass to the IMU in body axes, m; for a bag, the body "
+           "axes "
+           "are then the IMU's axes [default: from /tf_static, else 0 0 0]")
       .words(3);
   verb.add("--imu-topic", options.imu_topics,
            "imports this IMU topic of a bag (sensor_msgs/Imu); the first topic is the primary IMU [default: all IMU "

@@ -12,6 +12,7 @@
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/diagnosis.hpp"
 #include "scenarios/methods/estimate_file.hpp"
+#include "scenarios/methods/findings.hpp"
 #include "scenarios/methods/given_parameters.hpp"
 #include "scenarios/methods/map_file.hpp"
 #include "scenarios/methods/prior_map_file.hpp"
@@ -122,7 +123,7 @@ std::string health_text(const Estimate& estimate, scenarios::OutcomeStatus statu
   if (status == scenarios::OutcomeStatus::failed) return "failed";
   std::string text;
   for (const HealthFinding& finding : estimate.faults.findings)
-    text += (text.empty() ? "" : ", ") + std::string(to_string(finding.kind));
+    if (scenarios::is_current(finding)) text += (text.empty() ? "" : ", ") + std::string(to_string(finding.kind));
   if (status == scenarios::OutcomeStatus::diverged) return "diverged: " + text;
   return text.empty() ? "ok" : text;
 }
@@ -170,7 +171,7 @@ void print_notes(const Session& session, const OpenRecording& recording, const E
     session.note(fmt::format("the option {} {} was set: {}", repair.option.name, repair.option.value, repair.cause));
   for (const scenarios::RecordingFinding& each : scenarios::findings_in_notes(recording.content.notes))
     session.note(each.where + ": " + each.evidence);
-  for (const HealthFinding& each : estimate.faults.findings) session.note(to_text(each));
+  for (const HealthFinding& each : estimate.faults.findings) session.note(scenarios::report_text(each));
 }
 
 int run_odometry(const Session& session, const OdometryOptions& options) {
@@ -188,7 +189,8 @@ int run_odometry(const Session& session, const OdometryOptions& options) {
   scenarios::OutputFolder folder(options.folder);
   Estimate estimate;
   const double run_s = run_with_progress(session, methods.front(), sensors, estimate);
-  scenarios::write_estimate(options.folder, info.name, info.kind, estimate, scenarios::digest(sensors, nullptr));
+  scenarios::write_estimate(options.folder, info.name, info.kind, estimate, scenarios::digest(sensors, nullptr),
+                            recording.content.info.origin_ns);
   if (!estimate.map.empty()) {
     scenarios::write_map_pcd(options.folder / "map.pcd", estimate.map);
     scenarios::write_prior_map(options.folder / scenarios::kPriorMapName, estimate.map);

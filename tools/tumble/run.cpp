@@ -8,6 +8,7 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/estimate_file.hpp"
+#include "scenarios/methods/findings.hpp"
 #include "scenarios/methods/given_parameters.hpp"
 #include "scenarios/recordings/recording_file.hpp"
 #include "scenarios/recordings/replace_file.hpp"
@@ -161,7 +162,8 @@ void say_troubles(const Session& session, const scenarios::RunResult& result) {
     if (outcome.status != scenarios::OutcomeStatus::ok)
       session.note(fmt::format("{}{}: {}", name, to_string(outcome.status), outcome.message));
     if (outcome.status == scenarios::OutcomeStatus::failed) continue;
-    for (const HealthFinding& each : result.estimates[i].faults.findings) session.note(name + to_text(each));
+    for (const HealthFinding& each : result.estimates[i].faults.findings)
+      session.note(name + scenarios::report_text(each));
   }
 }
 
@@ -257,9 +259,10 @@ Action declare_run(VerbOptions& verb, const Session& session) {
            "uses this number of threads to simulate the lidar; the result is the same for any number")
       .whole(1, 1024)
       .shows_default();
-  verb.add("-o,--output", options->folder,
-           "writes recording, estimates, pictures and replay to this folder [default: nothing is written; with only a "
-           "scenario and a seed, a folder named after the scenario]");
+  verb.add(
+      "-o,--output", options->folder,
+      "writes recording, estimates, pictures and replay to this folder; without --method, all methods that apply run "
+      "[default: nothing is written; with only a scenario and a seed, a folder named after the scenario]");
   verb.add("--learnt", options->learnt,
            "starts 'rate/tumble' and 'rate/tumble_lag' from the calibration of the rig in this FILE.json, if the file "
            "exists; at the end writes the calibration of this run to the file");

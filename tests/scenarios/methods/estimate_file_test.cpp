@@ -7,6 +7,7 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <nlohmann/json.hpp>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/map_file.hpp"
@@ -87,6 +88,12 @@ TEST_F(EstimateFile, AStatusThatIsNotOkComesBack) {
   Kind kind;
   std::string method;
   EXPECT_EQ(read_estimate(folder_, kind, method, Frame::imu).status.error_code, ErrorCode::gap);
+}
+
+TEST_F(EstimateFile, StatesTheOriginOfTheRecordingsClock) {
+  write_estimate(folder_, "raw", Kind::rate, {}, "", 1'700'000'000'123'456'789);
+  std::ifstream file(folder_ / "estimate.json");
+  EXPECT_EQ(nlohmann::json::parse(file)["origin_ns"], 1'700'000'000'123'456'789);
 }
 
 TEST_F(EstimateFile, WhatAProgramSaidStandsBesideItAndGoesWithIt) {

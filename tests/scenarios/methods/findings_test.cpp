@@ -80,6 +80,16 @@ TEST(SensorHealthOfALiveRun, AFindingThatEndsNoLongerInvalidatesTheEstimateUnles
   EXPECT_FALSE(vertical.invalidates_estimate());
 }
 
+TEST(Findings, AnEndedFindingIsReportedAsEarlier) {
+  HealthFinding lost = finding(About::tracking_lost), start = finding(About::not_localised);
+  EXPECT_EQ(report_text(start), to_text(start));
+  lost.ended = start.ended = true;
+  EXPECT_FALSE(is_current(start));
+  EXPECT_EQ(report_text(start), "earlier in the run: " + to_text(start));
+  EXPECT_TRUE(is_current(lost)) << "all later poses are wrong";
+  EXPECT_EQ(report_text(lost), to_text(lost));
+}
+
 TEST(SensorHealthOfALiveRun, AGyroScaleThatGravityConfirmsLaterIsNoFault) {
   SensorHealth run, now;
   now.add(finding(About::gyro_scale));

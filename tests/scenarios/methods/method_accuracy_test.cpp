@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <set>
+#include <string>
 #include <vector>
 
 #include "scenarios/draw/scenario.hpp"
@@ -41,6 +43,18 @@ TEST(MethodAccuracy, OracleRateIsExactAndRawMissesWhatTheRailTook) {
   EXPECT_GT(raw.at("rate_error_clipped_median_rad_s"), 0.5);
   // the sigma of `raw` is the noise alone, so only rates at the edges of the saturated segment lie within it
   EXPECT_LT(raw.at("rate_coverage_3sigma"), 0.05);
+}
+
+TEST(MethodAccuracy, ARateWithoutCovarianceHasNoConsistencyScores) {
+  const sim::Recording recording = testing::synthetic_rig();
+  Estimate estimate = find_methods("raw").at(0)->run(recording.sensors, {}, {});
+  for (RateState& rate : estimate.rates) rate.covariance_rad2_s2.setZero();
+  std::set<std::string> scored;
+  for (const Score& score : score(Kind::rate, estimate, {&recording.sensors, &recording.truth, nullptr}))
+    scored.insert(score.metric);
+  EXPECT_TRUE(scored.contains("rate_error_clipped_median_rad_s"));
+  for (const std::string& metric : scored)
+    EXPECT_TRUE(metric.find("coverage") == std::string::npos && metric.find("nees") == std::string::npos) << metric;
 }
 
 /// Returns the rig's turn without the force on its centre of mass, as in a fall.

@@ -76,6 +76,15 @@ TEST(Diagnosis, LateSensorsLossAndMotionAreFound) {
   EXPECT_THAT(evidence_of(untimed), ElementsAre(testing::HasSubstr("the points have no times")));
 }
 
+TEST(Diagnosis, SaturationIsANoteAndNoFault) {
+  sim::Sensors clipped = at_rest(0.0, 4.0);
+  for (std::size_t k = 200; k < 300; ++k) clipped.imus[0].gyro_rad_s[k].z() = 7.8, clipped.imus[0].clip_flags[k] = 4;
+  const std::vector<RecordingFinding> found = findings_in_readings(clipped);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_THAT(found[0].evidence, testing::StartsWith("the gyro is saturated"));
+  EXPECT_FALSE(found[0].fault);
+}
+
 std::vector<DataSheet> all_sheets() {
   const DataRoot data{test::source_dir()};
   std::vector<DataSheet> out;

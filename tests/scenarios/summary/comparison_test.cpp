@@ -104,6 +104,14 @@ TEST(Comparison, PairsByDrawAndSaysWhoIsBetter) {
   EXPECT_GT(apart.metrics[0].rank_chance, row.rank_chance);
 }
 
+TEST(Comparison, TheMedianOfAnEvenNumberOfDrawsIsTheMeanOfTheMiddleTwo) {
+  const Values raw = {1.0, 2.0, 4.0, 8.0}, ours = {0.5, 1.0, 3.0, 4.0};
+  const Comparison found = compare(summary_of(kError, {{"raw", raw}, {"ours", ours}}), on(kError));
+  ASSERT_EQ(found.metrics.size(), 1u);
+  EXPECT_EQ(found.metrics[0].median, 2.0);
+  EXPECT_EQ(found.metrics[0].against_median, 3.0);
+}
+
 TEST(Comparison, AFailureIsTheWorstAndTwoOfThemAreEqual) {
   Values raw(20, 1.0), ours(20, 0.5);
   for (std::size_t i : {0u, 1u, 2u}) ours[i] = std::nullopt;
