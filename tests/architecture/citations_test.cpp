@@ -52,17 +52,21 @@ std::set<std::string> defined_twice(const std::string& text) {
   return out;
 }
 
-/// Comments continue over lines, so the comment marks are removed from citations.
+/// Returns the citations "note.md (S1), (S2)" and "(S1) and (S2) of note.md". Comments continue over lines, so the
+/// comment marks are removed first.
 std::vector<Citation> cited_in(const std::string& source) {
   static const std::regex line_break(R"(\s*\n\s*(///<?|//)?\s*)"), number(R"(\(([A-Z]{1,2}[0-9]+[a-z]?)\))");
-  static const std::regex citation(R"(\b([a-z_]+\.md) ((?:\([A-Z]{1,2}[0-9]+[a-z]?\)(?:, | and | to )?)+))");
+  static const std::string numbers = R"(((?:\([A-Z]{1,2}[0-9]+[a-z]?\)(?:, | and | to )?)+))",
+                           note = R"(\b([a-z_]+\.md))";
+  static const std::regex note_first(note + " " + numbers), number_first(numbers + " of " + note);
   const std::string text = std::regex_replace(source, line_break, " ");
   std::vector<Citation> out;
-  for (std::sregex_iterator it(text.begin(), text.end(), citation), end; it != end; ++it) {
-    const std::string numbers = (*it)[2];
-    for (std::sregex_iterator n(numbers.begin(), numbers.end(), number); n != end; ++n)
-      out.push_back({(*it)[1], (*n)[1]});
-  }
+  const auto add = [&](const std::string& cited_note, const std::string& cited) {
+    for (std::sregex_iterator n(cited.begin(), cited.end(), number), end; n != end; ++n)
+      out.push_back({cited_note, (*n)[1]});
+  };
+  for (std::sregex_iterator it(text.begin(), text.end(), note_first), end; it != end; ++it) add((*it)[1], (*it)[2]);
+  for (std::sregex_iterator it(text.begin(), text.end(), number_first), end; it != end; ++it) add((*it)[2], (*it)[1]);
   return out;
 }
 
