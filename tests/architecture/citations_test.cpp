@@ -147,6 +147,7 @@ TEST(Citations, CheckerFindsWhatIsMissing) {
   EXPECT_EQ(notes.at("mapping.md"), (std::set<std::string>{"R1", "R3", "R3a"}));
   const auto found = cited_in("/// By mapping.md (R1),\n  /// (R3) and (R2); rolling.md (R1).");
   ASSERT_EQ(found.size(), 4u);
+  EXPECT_EQ(cited_in("/// equations (R2) and\n/// (R7) of mapping.md").size(), 2u);
   EXPECT_EQ(complaint(found[0], notes), "");
   EXPECT_EQ(complaint(found[1], notes), "");
   EXPECT_NE(complaint(found[2], notes), "") << "(R2) is mentioned there, not defined";
