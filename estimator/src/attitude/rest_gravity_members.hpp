@@ -11,6 +11,7 @@ template <StateOf<RestGravity::MagnitudeState> Self, class Visitor>
 void members(Self& s, Visitor& visit) {
   visit("gravity.rest", s.rest);
   visit("gravity.weightless", s.weightless);
+  visit("gravity.heavy", s.above_gravity);
   visit("gravity.rest_s", s.rest_s);
   visit("gravity.force_sum_m", s.force_sum_m);
   visit("gravity.weightless_s", s.weightless_s);
