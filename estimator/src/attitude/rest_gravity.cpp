@@ -32,6 +32,18 @@ RestDetector::Params without_force_limits() {
   return rests;
 }
 
+/// Returns parameters of the rest detector for forces in mg, cm/s^2 or counts, whose numbers (also of the noise) are
+/// larger than in m/s^2. Readings far above gravity at rest prove a wrong unit, because no robot stands still at ten
+/// times gravity.
+RestDetector::Params scaled_to_larger_units() {
+  constexpr double kLarger = 100.0;
+  RestDetector::Params rests = kRests;
+  rests.force_min_m_s2 = kLarger;
+  rests.force_max_m_s2 = 1e6;
+  rests.force_spread_m_s2 = std::min(kLarger * rests.force_spread_m_s2, 1e6);
+  return rests;
+}
+
 /// Returns the largest accepted angle error between two rests, if the rates have the standard deviation `sigma_rad`:
 /// imu_merge.md (I24).
 double allowed_rad(double sigma_rad) {
@@ -41,7 +53,10 @@ double allowed_rad(double sigma_rad) {
 }  // namespace
 
 RestGravity::RestGravity(const Params& params)
-    : params_(params), detector_(kRests), weightless_(without_force_limits()) {
+    : params_(params),
+      detector_(kRests),
+      weightless_(without_force_limits()),
+      above_gravity_(scaled_to_larger_units()) {
   require_valid_fields(params);
 }
 
@@ -53,12 +68,13 @@ RestGravity::Step RestGravity::follow(const ImuSample& sample, MagnitudeState& s
   state.started = true;
   state.last_time_ns = sample.time_ns;
   if (!follows.ok()) {
-    state.rest = state.weightless = {};
+    state.rest = state.weightless = state.above_gravity = {};
     state.rests = false;
   }
   if (weightless_.observe(sample, state.weightless)) state.weightless_s += dt_s;
+  const bool above_gravity = above_gravity_.observe(sample, state.above_gravity);
   state.rests = detector_.observe(sample, state.rest);
-  if (state.rests) {
+  if (state.rests || above_gravity) {
     state.rest_s += dt_s;
     state.force_sum_m += dt_s * sample.specific_force_m_s2.norm();
   }

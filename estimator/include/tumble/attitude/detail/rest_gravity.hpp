@@ -41,7 +41,7 @@ class RestGravity {
   };
   /// MagnitudeState contains the sums for checking the magnitude of the force at rest.
   struct MagnitudeState {
-    RestDetector::State rest, weightless;
+    RestDetector::State rest, weightless, above_gravity;
     double rest_s = 0.0, force_sum_m = 0.0;  ///< total duration of rests, and integral of the force at rest
     double weightless_s = 0.0;               ///< duration of rests without force
     TimeNs last_time_ns = 0;
@@ -95,7 +95,7 @@ class RestGravity {
   void finish_span(State& state) const;
 
   Params params_;
-  RestDetector detector_, weightless_;
+  RestDetector detector_, weightless_, above_gravity_;
 };
 
 }  // namespace tumble
