@@ -36,7 +36,10 @@ constexpr std::array kMeanings = {
         "flight_forces", true,
         "the specific force in free flight contradicts the rotation; axes of the accelerometer seem to be inverted; do "
         "not use the estimate"},
-    Meaning{"rotation", true, "the gyro contradicts the rotation of the body; do not use the estimate"},
+    Meaning{
+        "rotation", true,
+        "the gyro contradicts the rotation of the body, probably because of wrong axes, signs or units; do not use the "
+        "estimate"},
     Meaning{"gyro_scale", true, "the forces of the IMUs contradict the gyros; do not use the estimate"},
     Meaning{"lidar_scale", true, "the scale of the lidar's ranges contradicts the motion measured by the IMU"},
     Meaning{"lidar_calibration", true, "the stated mounting or clock of the lidar seems to be wrong"},
