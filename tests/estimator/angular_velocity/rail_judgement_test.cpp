@@ -242,12 +242,8 @@ TEST(RailJudgement, AnAuxiliaryImuIsReadAlongItsElements) {
 TEST(RailJudgement, PublishedFamiliesKeepUprightRailsUnlessAsked) {
   const TumbleRecording tumble = tilted_gyro();
   std::vector<RateState> upright, planes;
-  ASSERT_TRUE(baselines::ClippedBaseline({.kind = baselines::ClippedBaseline::Kind::interpolate})
-                  .estimate(tumble.samples, upright)
-                  .ok());
-  ASSERT_TRUE(baselines::ClippedBaseline({.kind = baselines::ClippedBaseline::Kind::interpolate, .tilted_rails = true})
-                  .estimate(tumble.samples, planes)
-                  .ok());
+  ASSERT_TRUE(baselines::ClippedBaseline({}).estimate(tumble.samples, upright).ok());
+  ASSERT_TRUE(baselines::ClippedBaseline({.tilted_rails = true}).estimate(tumble.samples, planes).ok());
   Share by_rails, by_planes;
   for (std::size_t k = 0; k < upright.size(); ++k) {
     by_rails.add(tumble.hidden[k], upright[k].clipped_axes);
