@@ -130,7 +130,7 @@ void write_texts(const path& folder) {
   put_text(in(folder, "pcd_cloud") / "text",
            "VERSION 0.7\nFIELDS x y z intensity\nSIZE 4 4 4 4\nTYPE F F F F\nCOUNT 1 1 1 1\nWIDTH 2\nHEIGHT 1\n"
            "VIEWPOINT 0 0 0 1 0 0 0\nPOINTS 2\nDATA ascii\n1 2 3 0.5\n4 5 6 1\n");
-  for (const auto& [name, bytes] : saved_run_seeds()) put_text(in(folder, "saved_run") / name, bytes);
+  for (const auto& [name, bytes] : fuzz::saved_run_seeds()) put_text(in(folder, "saved_run") / name, bytes);
   put_text(in(folder, "vtk_cloud") / "small",
            "# vtk DataFile Version 3.0\nFile created by libpointmatcher\nASCII\nDATASET POLYDATA\nPOINTS 3 float\n"
            "1 2 3\n4 5 6\n7 8 9\nVERTICES 3 6\n1 0\n1 1\n1 2\nPOINT_DATA 3\nSCALARS intensity float\n"
