@@ -349,13 +349,11 @@ void write_estimate(const std::filesystem::path& folder, const std::string& meth
         fmt::format("the estimate has {} flags of uncertainty for {} contacts; their numbers must be equal",
                     estimate.uncertain.size(), estimate.contacts.size()));
   }
-  if (!estimate.contacts.empty()) {
-    if (estimate.contacts.size() != estimate.poses.size()) {
-      throw std::invalid_argument(fmt::format("the estimate has {} contacts for {} poses; their numbers must be equal",
-                                              estimate.contacts.size(), estimate.poses.size()));
-    }
-    write_contacts(folder / "contacts.csv", estimate);
+  if (!estimate.contacts.empty() && estimate.contacts.size() != estimate.poses.size()) {
+    throw std::invalid_argument(fmt::format("the estimate has {} contacts for {} poses; their numbers must be equal",
+                                            estimate.contacts.size(), estimate.poses.size()));
   }
+  if (!estimate.contacts.empty()) write_contacts(folder / "contacts.csv", estimate);
   if (!estimate.sweeps.empty()) write_sweeps(folder, estimate);
   if (!estimate.map.empty()) write_map(folder / "map.ply", estimate.map);
   if (!estimate.transcript.empty()) replace_file(folder / "transcript.txt", estimate.transcript);

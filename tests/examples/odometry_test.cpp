@@ -179,7 +179,8 @@ TEST(OdometryExamples, TheRebootExampleStartsAtTheSavedPose) {
     return output_of(std::string(TUMBLE_REBOOT) + " " + (folder / state).string() + " < " +
                      (folder / messages).string() + " 2> " + (folder / "errors.txt").string());
   };
-  const std::vector<Line> before = lines_of(poses("first.txt", "parts")), after = lines_of(poses("second.txt", "parts"));
+  const std::vector<Line> before = lines_of(poses("first.txt", "parts")),
+                          after = lines_of(poses("second.txt", "parts"));
   EXPECT_EQ(text_of(folder / "errors.txt"), "");
   ASSERT_GT(before.size(), 3u);
   ASSERT_GT(after.size(), 3u);

@@ -50,7 +50,7 @@ _HEADERS = {
     "numbers": "numbers",
     "numeric": "accumulate inner_product iota",
     "optional": "nullopt optional",
-    "random": "exponential_distribution mt19937 mt19937_64 normal_distribution uniform_real_distribution",
+    "random": "chi_squared_distribution exponential_distribution mt19937 mt19937_64 normal_distribution uniform_real_distribution",
     "regex": "regex regex_replace regex_search smatch sregex_iterator",
     "set": "multiset set",
     "span": "as_bytes as_writable_bytes span",

@@ -36,10 +36,10 @@ struct Alternative {
 
 constexpr std::array<Alternative, FlightSignCheck::kAlternatives> kAlternativeSensors = {{
     {{1, 1, 1}, "flight time in s"},
-    {{-1, -1, -1}, "flight time in s that a sign error of the accelerometer explains"},
-    {{-1, 1, 1}, "flight time in s that a sign error of accelerometer axis x explains"},
-    {{1, -1, 1}, "flight time in s that a sign error of accelerometer axis y explains"},
-    {{1, 1, -1}, "flight time in s that a sign error of accelerometer axis z explains"},
+    {{-1, -1, -1}, "flight time in s that agrees with an inverted accelerometer"},
+    {{-1, 1, 1}, "flight time in s that agrees with an inverted accelerometer axis x"},
+    {{1, -1, 1}, "flight time in s that agrees with an inverted accelerometer axis y"},
+    {{1, 1, -1}, "flight time in s that agrees with an inverted accelerometer axis z"},
 }};
 
 /// Corrects a reading for a hypothetical sign of the accelerometer: imu_merge.md (I32). `known` is true

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "tumble/common/imu.hpp"
+#include "tumble/mapping/detail/sweep_unknowns.hpp"
 
 namespace tumble {
 

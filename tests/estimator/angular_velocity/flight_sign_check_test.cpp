@@ -89,9 +89,9 @@ std::string sense_told(std::vector<ImuSample> samples, FlightSignCheck::Body bod
 
 const std::vector<std::pair<std::string, std::function<void(ImuSample&)>>>& other_senses() {
   static const std::vector<std::pair<std::string, std::function<void(ImuSample&)>>> all = {
-      {" that a sign error of the accelerometer explains", [](ImuSample& s) { s.specific_force_m_s2 *= -1.0; }},
-      {" that a sign error of accelerometer axis x explains", [](ImuSample& s) { s.specific_force_m_s2.x() *= -1.0; }},
-      {" that a sign error of accelerometer axis z explains", [](ImuSample& s) { s.specific_force_m_s2.z() *= -1.0; }}};
+      {" that agrees with an inverted accelerometer", [](ImuSample& s) { s.specific_force_m_s2 *= -1.0; }},
+      {" that agrees with an inverted accelerometer axis x", [](ImuSample& s) { s.specific_force_m_s2.x() *= -1.0; }},
+      {" that agrees with an inverted accelerometer axis z", [](ImuSample& s) { s.specific_force_m_s2.z() *= -1.0; }}};
   return all;
 }
 

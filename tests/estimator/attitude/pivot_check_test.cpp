@@ -15,7 +15,7 @@
 namespace tumble {
 namespace {
 
-const std::string kEvidence = "evidence for other axes, signs or scale of the gyro, from rotation about a pivot";
+const std::string kEvidence = "evidence from rotation about a pivot for other axes, signs or scale of the gyro";
 const std::string kScale = "scale of the gyro estimated from rotation about a pivot";
 
 struct PivotMotion {
