@@ -216,12 +216,6 @@ void bind_map(nb::module_& m) {
           nb::arg("position"), "Returns map points with fitted normals for positions (N, 3) [m].");
 }
 
-Poses joined(const std::vector<std::vector<PoseState>>& parts) {
-  Poses out;
-  for (const std::vector<PoseState>& part : parts) out.rows.insert(out.rows.end(), part.begin(), part.end());
-  return out;
-}
-
 void bind_findings(nb::module_& m) {
   nb::class_<HealthFinding>(m, "HealthFinding",
                             "A suspected fault of a sensor or of the estimate. str() gives a sentence.")
@@ -246,6 +240,12 @@ void bind_findings(nb::module_& m) {
 }
 
 }  // namespace
+
+Poses joined(const std::vector<std::vector<PoseState>>& parts) {
+  Poses out;
+  for (const std::vector<PoseState>& part : parts) out.rows.insert(out.rows.end(), part.begin(), part.end());
+  return out;
+}
 
 void bind_results(nb::module_& m) {
   bind_findings(m);
