@@ -112,8 +112,8 @@ void add_tumbling_sweep(BoundTumblingOdometry& self, const WholeNumber& start_ns
   require(status, std::nullopt, nb::none(), exact_sweep(status, start, end, before.sweep_end_ns));
 }
 
-void add_tumbling_position(BoundTumblingOdometry& self, const WholeNumber& time_ns, nb::handle position,
-                           nb::handle covariance, nb::handle lever_arm) {
+void add_tumbling_position(BoundTumblingOdometry& self, const WholeNumber& time_ns, const ArrayLike& position,
+                           const ArrayLike& covariance, nb::handle lever_arm) {
   PositionReading reading{.time_ns = time_of(time_ns, "time_ns"), .p_PA_m = vector_of(position, "position")};
   const std::vector<double> numbers = numbers_of(as_array(covariance, "covariance").attr("ravel")(), "covariance", 9);
   reading.covariance_m2 = Eigen::Map<const Eigen::Matrix3d>(numbers.data());

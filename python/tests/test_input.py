@@ -337,7 +337,7 @@ def test_sweeps(hill):
 
 def test_doubt_names_what_cannot_be_believed(hill, slip):
     imu, unit = hill.imus[0], slip.imus[0]
-    from_on = len(imu.time_ns) // 4
+    from_on = 3 * len(imu.time_ns) // 10  # the reading is below the saturation limit there
     frozen = imu.gyro.copy()
     frozen[from_on:, 0] = frozen[from_on, 0]
     for make in (lambda: tumble.TumblingOdometry(**tumble.tumbling_options(hill)), STREAMS["rate"], STREAMS["regime"]):

