@@ -50,7 +50,7 @@ struct Shrunk {
   bool complete = false;    ///< the budget was sufficient, and no single complication can be removed
   bool controlled = false;  ///< the control succeeded on all accepted runs
   /// Input (sweep/triage.hpp) whose true value prevents the failure of the original run and of every accepted run;
-  /// empty if there is none.
+  /// empty if no input does so.
   std::string cure;
 };
 

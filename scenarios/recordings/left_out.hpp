@@ -49,7 +49,7 @@ class LeftOut {
   /// If too many items are faulty, throws BadInput with the message of the first one. `kept` is the number of remaining
   /// items.
   void require_few(std::size_t kept) const;
-  /// Returns a note for the user about the skipped items; empty if there are none.
+  /// Returns a note for the user about the skipped items; empty if no item was skipped.
   std::string note(std::size_t kept) const;
 
  private:

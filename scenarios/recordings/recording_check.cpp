@@ -120,7 +120,7 @@ std::string sweep_problem(const sim::LidarRecord& lidar, std::size_t points) {
   return "";
 }
 
-/// Returns the first problem that `judge(row, index)` finds; empty if there is none.
+/// Returns the first problem that `judge(row, index)` finds; empty without a problem.
 template <class Row, class Judge>
 std::string first_wrong(std::span<const Row> rows, const Judge& judge, std::size_t first = 0) {
   std::string problem;

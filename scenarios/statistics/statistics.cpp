@@ -71,7 +71,7 @@ bool quantile_of(std::span<const double> values, double share, double& value) {
 namespace {
 
 /// Returns the largest rank r, counted from 1, with P(fewer than r of n values are below the median) <= kTail, or 0 if
-/// there is none.
+/// no rank fulfils the condition.
 std::size_t tail_rank(std::size_t values) {
   const auto n = static_cast<double>(values);
   const auto exponent = [&](std::size_t k) {

@@ -13,9 +13,9 @@ struct Interval {
   double value, low, high;
 };
 
-/// Returns the sample quantile (Hyndman and Fan type 7) of the values other than NaN; NaN if there are none. Infinite
-/// values rank like finite values, so that failures are worst; the quantile may be infinite. `share` is the probability
-/// of the quantile, in [0, 1].
+/// Returns the sample quantile (Hyndman and Fan type 7) of the values other than NaN; NaN without such a value.
+/// Infinite values rank like finite values, so that failures are worst; the quantile may be infinite. `share` is the
+/// probability of the quantile, in [0, 1].
 double quantile(std::span<const double> values, double share);
 /// Returns the quantile of all values. Returns NaN if a value is not finite, and nothing if there are no values.
 std::optional<double> quantile_of_all(std::span<const double> values, double share);

@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 constexpr std::size_t kCountMax = 1000;
 constexpr std::string_view kWorst = "worst:";
 
-/// Returns the first metric of a kind that ranks runs; empty if there is none.
+/// Returns the first metric of a kind that ranks runs; empty if no metric ranks runs.
 std::string ranking_metric(Kind kind) {
   for (const std::string& name : headline_metrics(kind)) {
     const MetricInfo& info = metric_info(name);

@@ -103,7 +103,7 @@ std::string file_name(const json& picture) {
   return file_name(picture.at("file"), ".png", "picture");
 }
 
-/// Returns the file name of the replay; empty if there is none, for example in a list of an earlier version.
+/// Returns the file name of the replay; empty without a replay, for example in a list of an earlier version.
 std::string replay_name(const json& example) {
   const std::string name = example.value("replay", "");
   return name.empty() ? name : file_name(name, ".html", "replay");
@@ -111,7 +111,7 @@ std::string replay_name(const json& example) {
 
 constexpr const char* kMovingEnding = "moving.webp";
 
-/// Returns the file name of the animation; empty if there is none, for example in a list of an earlier version.
+/// Returns the file name of the animation; empty without an animation, for example in a list of an earlier version.
 std::string moving_name(const json& example) {
   if (!example.contains("moving")) return "";
   return file_name(example.at("moving").at("file"), ".webp", "moving picture");

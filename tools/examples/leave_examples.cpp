@@ -145,7 +145,7 @@ std::vector<std::string> keep_known(const scenarios::DataRoot& data, const fs::p
 }
 
 /// Generates the example in a separate process, so that a crash affects only this example. Writes the example, or the
-/// reason why there is none, to `fd`.
+/// reason of the failure, to `fd`.
 void make(const scenarios::DataRoot& data, const fs::path& folder, const Making& making, int fd) {
   try {
     const scenarios::RunResult run =

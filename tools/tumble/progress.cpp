@@ -15,7 +15,7 @@ namespace {
 constexpr double kLinePeriodS = 10.0;
 constexpr int kBarWidth = 24;
 
-/// Describes the failures, for example " (2 diverged, 1 timeout)"; empty if there are none.
+/// Describes the failures, for example " (2 diverged, 1 timeout)"; empty without failures.
 std::string failures_text(const scenarios::SweepProgress& progress) {
   std::string text;
   for (const auto& [status, count] : progress.failures)

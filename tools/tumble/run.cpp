@@ -52,7 +52,7 @@ fs::path free_folder(const std::string& name) {
   return folder;
 }
 
-/// Returns the first method of a kind without truth that fulfils the condition; null if there is none.
+/// Returns the first method of a kind without truth that fulfils the condition; null without such a method.
 template <class Is>
 const scenarios::MethodInfo* first_of(scenarios::Kind kind, Is is) {
   for (const scenarios::Method& method : scenarios::methods()) {

@@ -80,7 +80,7 @@ struct LidarInertialOdometry::Impl {
                              mapping::LagWindow* into) const;
   void revert_to_inertia();
   /// Returns the state at the sweep boundary according to a relocalisation that later sweeps contradicted. Returns null
-  /// if there is none. The search after a tracking failure uses this state as an initial pose.
+  /// without a contradicted relocalisation. The search after a tracking failure uses this state as an initial pose.
   const MotionState* rejected_relocalisation() const;
   void add_map_drift(const mapping::UpdatedSweep& sweep, const SweepReport& report);
   void prune_until(TimeNs end_ns);

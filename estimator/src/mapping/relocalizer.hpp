@@ -19,7 +19,7 @@ struct Attempt {
 struct SearchContext {
   const TrackingState& tracking;
   const Registration::Prior& prior;
-  /// State according to a contradicted relocalisation, as an initial pose of the search; null if there is none.
+  /// State according to a contradicted relocalisation, as an initial pose of the search; otherwise null.
   const MotionState* contradicted = nullptr;
 };
 

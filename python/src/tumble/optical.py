@@ -192,7 +192,7 @@ def without_glitches(time_ns: Array, q: Array) -> tuple[Array, Array]:
 
 
 def _beside(speed: Array) -> Array:
-    """Returns the lower median of the speeds three to six steps before each step; 0 if there are none."""
+    """Returns the lower median of the speeds three to six steps before each step; 0 without such a step."""
     at = np.arange(len(speed))[:, None] - np.arange(3, 7)
     ordered = np.sort(np.where(at >= 0, speed[at], np.inf), axis=1)
     count = (at >= 0).sum(1)

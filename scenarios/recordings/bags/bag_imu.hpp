@@ -17,7 +17,7 @@ namespace tumble::scenarios {
 sim::ImuRecord read_imu(const OpenedBag& bag, SensorMountings& places, const std::string& topic,
                         const BagReading& reading, std::vector<std::string>& notes);
 
-/// Describes the number of duplicate messages; empty if there are none.
+/// Describes the number of duplicate messages; empty without duplicates.
 std::string repeats_text(std::size_t repeated);
 
 }  // namespace tumble::scenarios

@@ -51,7 +51,7 @@ class File {
 
   /// Returns the uncompressed records of a segment, after a check of its checksum.
   std::string records(const Segment& segment);
-  /// Returns the message index of the channel that follows the segment's chunk; empty if there is none.
+  /// Returns the message index of the channel that follows the segment's chunk; empty if the chunk has no index.
   std::optional<MessageIndex> index_of(const Segment& segment, std::uint16_t channel);
 
   /// Calls `take(record)` for each of `records`. For uncompressed records, `at` is their position in the file.

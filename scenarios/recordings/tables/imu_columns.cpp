@@ -64,7 +64,7 @@ std::optional<std::size_t> find_any(const CsvLine& header, const std::vector<std
   });
 }
 
-/// RequiredColumns collects columns of a header, all of which must exist.
+/// RequiredColumns collects columns that a header must contain.
 class RequiredColumns {
  public:
   explicit RequiredColumns(const CsvLine& header) : header_(header) {}

@@ -45,7 +45,7 @@ bool is_in_g(const sim::ImuRecord& imu);
 /// Returns a note; empty if no time stamp was rounded.
 std::string even_out_stamps(sim::ImuRecord& imu);
 
-/// Describes gaps longer than one second, which no estimator bridges; empty if there are none.
+/// Describes gaps longer than one second, which no estimator bridges; empty without such a gap.
 std::string gaps_text(const sim::ImuRecord& imu);
 
 /// RotationWindows selects the time windows in which the rotation of the measured gravity is compared with the gyro. In

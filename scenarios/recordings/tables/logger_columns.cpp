@@ -137,7 +137,7 @@ std::optional<NamedAxis> axis_of(const std::vector<std::string_view>& names, std
   return is_one_of(names, quantity) ? std::optional(out) : std::nullopt;
 }
 
-/// Returns the unit in the name of a column of any quantity; empty if there is none.
+/// Returns the unit in the name of a column of any quantity; empty if the name contains no unit.
 template <class Value>
 std::optional<Value> unit_in(std::string_view field, const UnitNames<Value>& units) {
   if (const std::size_t open = field.find_first_of("[("); open != std::string_view::npos)
