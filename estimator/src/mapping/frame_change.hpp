@@ -9,7 +9,7 @@ namespace tumble::mapping {
 /// FrameChange converts estimates from the local frame W to the frame M of a prior map.
 struct FrameChange {
   Eigen::Isometry3d T_MW;
-  /// Covariance of T_MW in axes of M: displacement and rotation of frame W about the point `sensor_M_m`.
+  /// covariance of T_MW in axes of M: displacement and rotation of frame W about the point `sensor_M_m`
   Eigen::Matrix<double, 6, 6> covariance;
   Eigen::Vector3d sensor_M_m;
 
