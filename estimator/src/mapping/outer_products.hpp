@@ -9,9 +9,8 @@
 
 namespace tumble::mapping {
 
-/// OuterProducts computes the sum of the outer products v v^T of many columns v with up to `Rows` numbers. The sum
-/// equals SelfAdjointView<Lower>::rankUpdate bit for bit. Eigen's rankUpdate keeps its blocks on the stack, which needs
-/// 86 KiB for 128 columns of 28 numbers. OuterProducts keeps the blocks on the heap and calls Eigen's kernel directly.
+/// The sum equals Eigen's rankUpdate bit for bit. Eigen's rankUpdate keeps its blocks on the stack (86 KiB for 128
+/// columns of 28 numbers), OuterProducts on the heap.
 template <int Rows, int Columns>
 class OuterProducts {
  public:
@@ -43,7 +42,7 @@ class OuterProducts {
   Blocks blocks_{Rows, Rows, Columns, 1, false};
 };
 
-/// Spare is a pool of work buffers for threads. The pool grows to the number of threads that use it at the same time.
+/// The pool of work buffers grows to the number of threads that use it at the same time.
 template <class Work>
 class Spare {
  public:
