@@ -15,11 +15,10 @@ namespace {
 constexpr double kBufferLead_s = 0.1;  // buffered time before the first sweep, because the clocks may differ
 constexpr std::size_t kSweepsPerExtraRejection =
     20;  // rejections by second pass <= rejections by first pass + sweeps / kSweepsPerExtraRejection
-// The second pass uses the estimated calibration only if at most one in kSweepsPerRejection sweeps was rejected.
+// After more rejected sweeps, the estimated calibration is not used.
 constexpr std::size_t kSweepsPerRejection = 5;
 
-/// Initialises the stream with the saturation levels that the first pass detected. The covariances of the saturation
-/// planes are multiplied by `inflation`.
+/// The covariances of the detected saturation planes are multiplied by `inflation`.
 void start_from_rails(const SaturationLevels& known, double inflation, RateStream::Params& params) {
   params.expert.planes.known = known.planes;
   params.expert.accel_planes.known = known.accel_planes;

@@ -9,7 +9,7 @@ namespace tumble {
 
 namespace {
 
-// Number of stored readings per gyro or accelerometer, enough for some seconds near the largest readings.
+// enough stored readings per sensor for some seconds near the largest readings
 constexpr int kReadings = 512;
 constexpr double kStatedMax_rad_s = 1000.0;  // maximum stated range that RailDetector uses
 
