@@ -13,7 +13,6 @@ namespace {
 using Matrix = SensorErrors::Matrix;
 using Vector = SensorErrors::Vector;
 
-// A weight of 1 would classify half of the calibrated devices as uncalibrated while the rig's calibration is uncertain.
 constexpr double kOddsEvidenceWeight = 0.3;
 
 // Computes I + share U L U, with the information matrix L of the sensor errors and their standard deviations U.
@@ -36,13 +35,12 @@ double log_odds(const SensorErrorEvidence& evidence, const Vector& deviation, Ma
 }
 
 // Computes the second moment (covariance plus squared mean) of one device's sensor errors: rate_stream.md (R102).
-// Returns false if the information matrix is indefinite.
 bool corrected_covariance(const SensorErrorEvidence& evidence, const Vector& deviation, DeviceUncertainty::Work& work) {
   constexpr int kRest = SensorErrors::kSize - SensorErrors::kGSensitivity;
   constexpr double kEvidenceWeight = DeviceUncertainty::kEvidenceWeight;
   set_system(evidence, deviation, kEvidenceWeight, work.system);
-  // The estimated scale and misalignment errors stay zero, because errors of the flight model look like scale and
-  // misalignment errors.
+  // Errors of the flight model look like errors of scale and misalignment, so estimates of scale and misalignment stay
+  // zero.
   Vector mean = Vector::Zero();
   const Eigen::Matrix<double, kRest, kRest> rest = work.system.bottomRightCorner<kRest, kRest>();
   mean.tail<kRest>() = rest.llt().solve(kEvidenceWeight * deviation.cwiseProduct(evidence.gradient).tail<kRest>());

@@ -13,7 +13,6 @@ namespace {
 
 constexpr double kDeterminedSlopeSigma = 2e-3, kNegligibleSlope = 3e-3;
 constexpr double kUnequalLevelsRatio = 1e-4;
-// standard deviations: tilt of the saturation plane of a device that clips its digital output; cross-axis sensitivity
 constexpr double kUprightSigma = 1e-5, kSlopeSigmaMin = 3e-4;
 // A reading next to a saturated reading is partly saturated if |level - reading| < kEdgeStepRatio |reading - other
 // neighbour|.
@@ -23,7 +22,7 @@ int side(const ImuSample& sample, Triad triad, std::size_t j) {
   return reading_of(sample, triad)[static_cast<Eigen::Index>(j)] < 0.0 ? -1 : 1;
 }
 
-// A saturated reading is on the saturation plane, rails.md (R55), or has the device's saturation flag.
+// Saturated readings are on the saturation plane, rails.md (R55), or have the device's saturation flag.
 bool at_rail(const ImuSample& sample, Triad triad, const RailPlane& rail, std::size_t j) {
   const Eigen::Vector3d& reading = reading_of(sample, triad);
   return (sample.device_clip_flags >> (first_channel(triad) + j) & 1u) != 0 || rail.holds(reading, -1) ||

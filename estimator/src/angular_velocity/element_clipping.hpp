@@ -26,8 +26,7 @@ std::array<std::array<RailPlaneFinder, 2>, 2> plane_finders(const ClippingFinder
 
 bool stated_range_contradicted(const RailDetector& axis_aligned_rails, const RailDetector::State& state, Triad triad);
 
-/// Returns whether the device clips each output axis separately (upright rails). Two cross-axis sensitivities that are
-/// known to be zero prove separate clipping. A run of equal readings counts as one of them.
+/// Returns whether the device clips each output axis separately (upright rails).
 bool are_upright(std::span<const Eigen::Vector3d> readings, const RailPlanes& planes, const RailDetector::State& rails,
                  Triad triad);
 
@@ -36,7 +35,7 @@ RailPlanes without_plateaus(const RailPlanes& planes, const RailDetector::State&
 
 /// Marks a sample as clipped if its reading is on a saturation plane, or if the device flags the sample. A sample next
 /// to a clipped sample counts as clipped if its distance from the plane is less than half the step to its other
-/// neighbour. `before` and `after` are the neighbouring samples, or null.
+/// neighbour.
 Clipping classify_by_planes(const RailPlanes& planes, Triad triad, const Clipping& by_axis_aligned_rails,
                             const ImuSample* before, const ImuSample& now, const ImuSample* after);
 

@@ -18,8 +18,6 @@ constexpr double kForceMin_m_s2 = 2.5;     // a smaller force of the rotation is
 constexpr double kTolerance = 0.25;        // tolerance of the agreement, as a fraction of the force of free flight
 constexpr double kRun_s = 0.02;            // minimum duration of agreement, which excludes chance on the ground
 constexpr double kFlightGapMax_s = 0.1;    // a longer gap resets the current run
-// minimum flight time with the corrected accelerometer; its minimum ratios to the flight time without correction, for a
-// possibly hand-held and a thrown body
 constexpr double kAlternativeMin_s = 0.1, kAlternativeRatioMin = 4.0, kThrownRatioMin = 2.0;
 constexpr double kAcross = 0.05;    // minimum squared component of the lever arm across a saturated axis, as a fraction
 constexpr double kBelowRail = 0.1;  // fraction of the saturation level by which a recovered rate may be below the level
@@ -78,7 +76,7 @@ bool agrees_with_flight(const Alternative& sense, const std::array<FlightSignChe
   return size >= kForceMin_m_s2 && (middle.force_m_s2 - expected).norm() <= kTolerance * size;
 }
 
-/// For a body that may be hand-held, the check tests only an accelerometer with three inverted axes.
+/// If a body may be hand-held, the check tests only an accelerometer with three inverted axes.
 bool is_tested(std::size_t sense, FlightSignCheck::Body body) {
   return body == FlightSignCheck::Body::thrown || sense <= 1;
 }

@@ -20,7 +20,6 @@ constexpr double kAxisFrozen_s = 0.5;  // longest repetition of a working axis w
 constexpr double kMinRepetitionRatio = 10.0;
 constexpr double kPossibleRailRatio = 0.9;  // fraction of the stated range above which a reading may be saturated
 constexpr double kExtremeRatio = 0.5;       // the same fraction for the extreme reading of an axis
-// minimum change of another axis, in quantisation steps; 2 % cross-axis sensitivity causes one step
 constexpr double kMotionQuanta = 50.0;
 constexpr double kRotating_rad_s = 0.3;    // change of another gyro axis that indicates motion
 constexpr double kMotionForce_m_s2 = 1.0;  // change of another accelerometer axis that indicates motion

@@ -8,12 +8,9 @@ namespace tumble {
 
 namespace {
 
-// minimum rate of a moving body; minimum correlation of rate change and force; delay's standard deviation in sample
-// periods
 constexpr double kMovingRateMin_rad_s = 1.0, kCorrelationMin = 0.6, kDelaySigmaRatio = 0.15;
 constexpr double kCorrelatedImpactsMin = 30.0;
-// Impacts exceed `kImpactForceMin_m_s2`, and flight stays below `kFlightForceMax_m_s2`. A body with impacts counts as
-// hand-held if less than `kFlightFractionMin` of the time is flight.
+// A body with impacts counts as hand-held if less than `kFlightFractionMin` of the time is flight.
 constexpr double kImpactForceMin_m_s2 = 30.0, kFlightForceMax_m_s2 = 5.0, kFlightFractionMin = 0.1;
 constexpr double kImpactsMin = 10.0;
 

@@ -12,8 +12,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-// In a stream, a reading is equally likely at any time of a sample period (standard deviation 1/sqrt(12)). In a
-// recording, the estimated sensor clock reduces this uncertainty.
+// In a stream, the time of a reading is uniformly distributed over a sample period (standard deviation 1/sqrt(12)). In
+// a recording, the estimated sensor clock reduces the uncertainty of a reading's time.
 constexpr double kReadingTimeSigma_samples = 0.29, kClockedReadingSigma_samples = 0.1;
 
 struct TimedReading {
@@ -26,7 +26,6 @@ Vector3d slope(const TimedReading& a, const TimedReading& b) {
   return (b.rate_rad_s - a.rate_rad_s) / (b.time_s - a.time_s);
 }
 
-// Interpolates the rate between the readings `a` and `b` by a cubic, with the slopes towards `z` and `c` if usable.
 std::optional<InterpolatedRate> between(const TimedReading& z, const TimedReading& a, const TimedReading& b,
                                         const TimedReading& c, double time_s, double moment_s) {
   const double span_s = b.time_s - a.time_s, u = (time_s - a.time_s) / span_s, v = 1.0 - u;

@@ -16,10 +16,8 @@ namespace tumble {
 namespace {
 
 constexpr double kNextRunInflation = 4.0;
-// standard deviation of the change of a gyro's cross-axis sensitivity between runs; six runs of one device: 0.017 to
-// 0.021
+// In six runs of one hand-held device, a gyro's cross-axis sensitivity ranged from 0.017 to 0.021.
 constexpr double kElementDrift = 2e-3;
-// standard deviation of the change of an accelerometer's cross-axis sensitivity between runs
 constexpr double kSlopeDrift = 2e-3;
 // At a maximum of the motion, readings can resemble a saturation plane.
 constexpr double kCertainLogOdds = 10.0;

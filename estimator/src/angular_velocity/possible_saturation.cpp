@@ -10,12 +10,9 @@ namespace tumble {
 
 namespace {
 
-// maximum tilt between the saturation planes of two sensing elements; saturation deficit as a fraction of the step to
-// the neighbouring reading
+// maximum tilt between the saturation planes of two sensing elements
 constexpr double kMaxPlaneTilt = 0.06, kDeficitStepRatio = 0.5;
 
-// `kTopRatio` suits a plane tilted by kMaxPlaneTilt if the rate about the other axes is a sixth of the saturation
-// level.
 constexpr double kTopRatio = 0.01, kMaxElementSigmas = 3.0;
 
 double lowest_rail(const RailPlanes& planes) {
@@ -40,7 +37,7 @@ double other_axes_rate(const Eigen::Vector3d& rate_rad_s, Eigen::Index axis) {
 
 }  // namespace
 
-// Every reading is below its saturation level: rails.md (R75).
+// Every reading is a lower bound of its saturation level: rails.md (R75).
 void MinSaturationLevels::add(const Eigen::Vector3d& rate_rad_s) {
   for (Eigen::Index j = 0; j < 3; ++j) {
     double& least = min_levels_rad_s_[rate_rad_s[j] < 0.0 ? 0 : 1][j];

@@ -9,15 +9,14 @@
 
 namespace tumble {
 
-/// Marks readings near the known saturation levels of other sensing elements, if the level of their own element is
-/// unknown. The assumed saturation deficit of a marked reading is up to the step to the previous or next reading.
-/// Readings below `least`, the smallest possible saturation level, remain unmarked.
+/// Marks possibly saturated readings of a sensing element whose saturation level is unknown. A marked reading is near
+/// the known saturation levels of other sensing elements. Readings below `least`, the smallest possible saturation
+/// level, remain unmarked.
 void inflate_possible_saturation(const RailPlanes& planes, const MinSaturationLevels& least, double noise_rad_s,
                                  const ImuSample* before, RateObservation& now, const ImuSample* after);
 
-/// Marks flat maxima of the readings that may hide a saturated peak. Cost: O(N). `offset_sigma_ratio` is the standard
-/// deviation of the relative difference between saturation levels (RailPlaneFinder::Params). The function has no effect
-/// if the device flags clipping, or if no saturation level is known.
+/// Marks flat maxima of the readings that may hide a saturated peak. No reading is marked if the device flags clipping,
+/// or if no saturation level is known.
 void inflate_motion_plateaus(const RailPlanes& planes, const MinSaturationLevels& least, double offset_sigma_ratio,
                              double noise_rad_s, std::span<RateObservation> observations);
 

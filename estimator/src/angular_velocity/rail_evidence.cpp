@@ -19,7 +19,6 @@ using Eigen::Vector3d;
 // prior probability that a long segment of equal readings is a constant rate (spin, turntable) instead of saturation
 constexpr double kConstantRateFraction = 0.05;
 constexpr double kBendRatioMin = 3.0;
-// assumed range of constant rates, as a fraction of the saturation level
 constexpr double kLevelRangeFraction = 0.2;
 constexpr std::size_t kNoiseWindow = 9;
 constexpr double kNoiseQuantile = 0.2;
@@ -29,10 +28,7 @@ constexpr double kMotionSigmasMin = 10.0;
 constexpr double kThinLogLikelihoodMin = 8.0;
 // The fitted line and the partly saturated ends of a segment each cost two degrees of freedom.
 constexpr std::size_t kThinLostFreedom = 4;
-// maximum distance of a saturated reading from its plane, in standard deviations of the noise and relative to the level
 constexpr double kAtRailSigmas = 4.0, kAtRailRatioMax = 0.006;
-// decrease of a saturation plane's log odds per reading beyond the plane; fraction of readings beyond it without
-// decrease
 constexpr double kBeyondPenalty = 5.0, kOutlierFraction = 0.02;
 
 // See rails.md (R56).
@@ -84,7 +80,6 @@ double thin_log_likelihood(const DistinctReadings& readings, const RailFacet& fa
   return scatter < noise ? free * (std::log(noise / scatter) - 0.5 * (1.0 - std::pow(scatter / noise, 2))) : 0.0;
 }
 
-// `bend` is the height of a parabola that is as long as the segment; `flat` is the range of the segment's readings.
 struct SegmentShape {
   double bend = 0.0, flat = 0.0;
   bool bends() const { return bend >= kBendRatioMin * flat; }
@@ -93,7 +88,6 @@ struct SegmentShape {
 std::optional<SegmentShape> shape_of(const DistinctReadings& readings, const RailFacet& facet, const Segment& s) {
   const std::vector<Vector3d>& rates = readings.rates;
   const auto value = [&](std::size_t k) { return facet.sign * facet.row.dot(rates[k]); };
-  // saturation level minus the readings next to the segment
   double depth = std::numeric_limits<double>::max();
   if (s.first >= 2) depth = std::min(depth, facet.level - value(s.first - 2));
   if (s.last + 2 < rates.size()) depth = std::min(depth, facet.level - value(s.last + 2));

@@ -7,7 +7,6 @@
 
 namespace tumble {
 
-/// readings of a gyro without repeated readings
 struct DistinctReadings {
   std::vector<Eigen::Vector3d>& rates;
   Eigen::Vector3d noise = Eigen::Vector3d::Zero();  ///< lower quantile of the noise of all windows [rad/s]
@@ -27,8 +26,7 @@ struct RailFacet {
 };
 
 /// Returns the log-likelihood ratio between saturation and natural causes (maxima of the motion, constant rates) for
-/// the readings on `facet`. `inliers` contains ascending indices in DistinctReadings::rates. `slope_information` is the
-/// prior information about the cross-axis sensitivities.
+/// the readings on `facet`. `slope_information` is the prior information about the cross-axis sensitivities.
 double segment_evidence(const DistinctReadings& readings, const Eigen::Matrix2d& slope_information,
                         std::span<const std::size_t> inliers, RailFacet& facet);
 

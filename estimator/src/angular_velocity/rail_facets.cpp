@@ -16,7 +16,6 @@ using Workspace = RailPlaneFinder::Workspace;
 
 constexpr double kGridStep = 0.01;  // step of the search grid over cross-axis sensitivities
 constexpr int kRefinements = 10;
-// maximum distance from a saturation plane, in standard deviations of the residuals, with limits relative to the level
 constexpr double kSlabDeviations = 4.0, kSlabRatioMin = 2e-4, kSlabRatioMax = 0.006;
 
 // Collects readings that may be within `slab` of the largest reading along a sensing direction, for any cross-axis

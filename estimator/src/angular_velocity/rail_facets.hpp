@@ -10,8 +10,6 @@
 
 namespace tumble::rails {
 
-/// Gate selects readings whose projection onto `row` is at least `from`, and whose highest_value() is at least
-/// `near_min`.
 struct Gate {
   Eigen::Vector3d row = Eigen::Vector3d::Zero();
   double from = 0.0, steepest = 0.0, near_min = 0.0;
@@ -55,8 +53,7 @@ std::optional<Extreme> find_extreme(const RailPlaneFinder::Params& params, const
 Eigen::Vector2d search_slopes(const DistinctReadings& readings, const Extreme& extreme, double slope_max,
                               const FacetPrior& prior, RailPlaneFinder::Workspace& workspace);
 
-/// Fits the saturation plane, starting from the cross-axis sensitivities `slopes`: rails.md (R58). `deviation` is the
-/// initial standard deviation of the residuals.
+/// Fits the saturation plane, starting from the cross-axis sensitivities `slopes`: rails.md (R58).
 Side fit_facet(const DistinctReadings& readings, const Extreme& extreme, const FacetPrior& prior,
                const Eigen::Vector2d& slopes, double deviation, RailPlaneFinder::Workspace& workspace);
 

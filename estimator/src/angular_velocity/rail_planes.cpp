@@ -28,11 +28,10 @@ using rails::others;
 using rails::Side;
 
 // The robust plane fit starts from two standard deviations, as fractions of the thickness of the layer of readings. The
-// small standard deviation suits a thin layer with a few partly saturated readings below it.
+// small initial standard deviation suits a thin layer of saturated readings with a few partly saturated readings below
+// it.
 constexpr double kInitialSigmaRatios[] = {0.5, 0.02};
-// The saturation levels of one device's sensing elements usually differ by less than the fraction kElementLevelRatio.
 constexpr double kElementLevelRatio = 0.04;
-// log odds of a saturation level near another element's level, the data sheet's range, or the opposite sign's level
 constexpr double kNearElementLogOdds = 5.0, kNearStatedLogOdds = 3.0, kOppositeSignLogOdds = 5.0,
                  kImpossibleLogOdds = -100.0;
 // A saturation level far from the level of an earlier run loses few log odds, since the device may have been replaced.
@@ -74,7 +73,7 @@ double level_log_odds(const RailPlaneFinder::Params& params, const DistinctReadi
   return odds;
 }
 
-// See rails.md (R53). One of the two planes may be missing.
+// See rails.md (R53).
 RailPlane joined(const RailPlaneFinder::Params& params, const DistinctReadings& readings, const Side* minus,
                  const Side* plus) {
   Eigen::Matrix4d H = Eigen::Matrix4d::Zero();
@@ -106,8 +105,7 @@ RailPlane joined(const RailPlaneFinder::Params& params, const DistinctReadings& 
     out.tolerance_rad_s = std::max(out.tolerance_rad_s, side->facet.tolerance);
     out.log_odds = std::max(out.log_odds, side->log_odds);
   }
-  // If two sensing elements always clip together, their cross-axis sensitivity is undetermined and H is badly
-  // conditioned.
+  // If two sensing elements always clip together, their cross-axis sensitivity is undetermined.
   const Eigen::LDLT<Eigen::Matrix4d> factor(H);
   out.covariance = factor.solve(Eigen::Matrix4d::Identity());
   const Eigen::Vector4d x = factor.solve(g);

@@ -12,7 +12,7 @@ namespace tumble {
 
 namespace {
 
-// If less than `kFlightShareExpected` of the clipped samples is in flight, other contact thresholds may fit better.
+// If few clipped samples are in flight, other contact thresholds may fit better.
 constexpr double kRestartThresholds[] = {16.0, 0.25};
 constexpr double kFlightShareExpected = 0.5;
 
@@ -118,7 +118,7 @@ bool RateIteration::factorise(const RateModel& model, std::span<const RateEstima
   return arrow::solve_corner(corner_, rig_step_, rig_covariance_);
 }
 
-// See rate_smoother.md (R30). The gradients of the eliminated blocks are L^-1 g.
+// See rate_smoother.md (R30).
 double RateIteration::newton_decrement() const {
   double sum = rig_step_.dot(corner_.gradient);
   for (const arrow::Block& block : blocks_) sum += block.gradient.squaredNorm();

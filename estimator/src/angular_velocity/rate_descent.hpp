@@ -20,7 +20,8 @@ class RateIteration {
   /// angular rate before scaling.
   double apply(const RateModel& model, double step_max, std::span<RateEstimate> estimates, RigConstants& rig) const;
 
-  /// Calls use(k, conditional) for each sample k from last to first, with the conditional distribution of its unknowns.
+  /// Calls use(k, conditional) for each sample k from last to first, with the conditional distribution of the sample's
+  /// unknowns.
   template <typename Use>
   void for_each_conditional(Use use) const {
     arrow::Conditional conditional;
@@ -30,8 +31,7 @@ class RateIteration {
     }
   }
 
-  /// Derivatives and evidence refer to the state before apply(). `evidence` is the information about the sensor errors
-  /// after elimination of all other unknowns.
+  /// `evidence` is the information about the sensor errors after elimination of all other unknowns.
   struct SensorErrorDerivatives {
     std::vector<arrow::ErrorMatrix> of_sample;
     arrow::BorderErrors calibration_by_errors;

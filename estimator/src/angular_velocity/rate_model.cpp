@@ -71,7 +71,7 @@ Eigen::Matrix3d euler_spread(const RateFactor& f, const RigConstants::Matrix& ri
   return IC.lazyProduct(I.transpose());
 }
 
-// The covariance of the residual contains sensor noise and the uncertainty of the calibration: rate_smoother.md (R16).
+// See rate_smoother.md (R16).
 double normalised(const RateFactor& f, Eigen::Matrix3d spread, double sigma, const Vector3d& more = Vector3d::Zero()) {
   spread.diagonal().array() += sigma * sigma;
   spread.diagonal() += more;
@@ -125,7 +125,7 @@ void add_euler(const RateFactor& f, const Eigen::Matrix3d& information, double t
   add_to_rig<kInertia, 5>(f, information, At, block, corner);
 }
 
-// The covariance of the residual increases by `spread`: rate_stream.md (R92).
+// See rate_stream.md (R92).
 Eigen::Matrix3d with_spread(const Eigen::Matrix3d& information, const Eigen::Matrix3d& spread) {
   return (Eigen::Matrix3d::Identity() + information * spread).inverse() * information;
 }
@@ -291,7 +291,7 @@ Eigen::Matrix3d RateModel::euler_information(const RateEstimate& estimate) const
 void RateModel::add_step(const RateEstimate& from, const RateEstimate& to, double dt_s, arrow::Block& block,
                          arrow::Block& next) const {
   const double h = time_scale_s_, ratio = dt_s / h;
-  // During model_error_s, a contact changes the angular acceleration by up to gain * force: rate_smoother.md (R5).
+  // See rate_smoother.md (R5).
   const double change =
       params_.expert.contact.gain_rad_m * std::max(from.contact_force_m_s2.norm(), to.contact_force_m_s2.norm());
   const double psd = params_.expert.flight.jerk_psd_rad2_s5 + share_ * change * change / dt_s;

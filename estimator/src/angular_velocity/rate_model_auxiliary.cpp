@@ -30,13 +30,12 @@ bool depends_on_unclipped_axes(const Eigen::RowVector3d& axis, const RateObserva
   return true;
 }
 
-// Returns the rotation from the primary IMU's axes to an auxiliary IMU's axes, or to its sensing directions if clipped.
 Eigen::Matrix3d axes_of_auxiliary(const Eigen::Matrix3d& R_CI, const SensingDirections& elements,
                                   bool is_element_clipped) {
   return is_element_clipped ? Eigen::Matrix3d(elements.rows * R_CI) : R_CI;
 }
 
-// Returns the standard deviation [m/s^2] of a reading due to its uncertain sensing direction. `most` is the largest
+// Returns the standard deviation [m/s^2] of a reading due to an uncertain sensing direction. `most` is the largest
 // possible saturation deficit of the other sensing elements.
 double sensing_direction_sigma(const SensingDirections& elements, bool is_element_clipped, int j, double most) {
   return is_element_clipped ? elements.slope_sigma[j] * most : 0.0;

@@ -12,7 +12,7 @@ namespace tumble {
 
 namespace {
 
-// Shifts the accelerometer's readings by `shift` samples, and repeats the last available reading at the ends.
+// At the ends of the recording, the last available reading repeats.
 void shift_force(std::span<const ImuSample> samples, std::span<const Clipping> clippings, std::ptrdiff_t shift,
                  std::span<const double> accel_age_s, std::span<RateObservation> observations) {
   const auto last = static_cast<std::ptrdiff_t>(samples.size()) - 1;
@@ -31,7 +31,6 @@ SensorErrorPriors data_sheet_priors(SensorErrorPriors sizes) {
   return sizes;
 }
 
-// A difference of more than kDeviations standard deviations comes from the flight model, not from the device.
 bool plausible(const SensorErrors& found, const SensorErrors& given, const SensorErrorPriors& sizes) {
   constexpr double kDeviations = 6.0;
   const SensorErrors errors = SensorErrors::from(found.vector() - given.vector());
@@ -68,7 +67,7 @@ RateModelParams fixed_calibration(const RateModelParams& params, const RateModel
   return out;
 }
 
-// See rate_smoother.md (R32). The prior covariance includes the effect of uncertain sensor errors.
+// See rate_smoother.md (R32).
 double mahalanobis_of(const RateModelParams& known, const RateModel& model, double period_s,
                       std::span<const RateObservation> observations, const RateSolution& solution) {
   RateIteration again(observations);
@@ -124,8 +123,7 @@ void add_guess(const TriadDelay& guess, SensorErrorEvidence& evidence) {
 
 constexpr double kContradictionOdds = 0.05;
 
-// A wrong scale also makes the sampling times of the data sheet unreliable, and vice versa; naive Bayes combines both
-// kinds of evidence.
+// A wrong scale also makes the sampling times of the data sheet unreliable, and vice versa.
 bool contradicts_data_sheet(const SensorErrorFit& device, const SensorErrorPriors& sizes, bool triads_asynchronous) {
   const SensorErrorFit before = fit_sensor_errors({}, sizes);
   const auto odds = [](double p) { return std::max(p, 1e-12) / std::max(1.0 - p, 1e-12); };
@@ -220,7 +218,7 @@ Status collect_evidence(const Rounds& rounds, const SensorErrors& errors, RateFi
   const RateSolution& solution = fit.solution;
   fit.moved = solution.iteration.error_derivatives(fit.model, solution.estimates, solution.rig);
   if (rounds.estimated) {
-    // Without convergence, the gradient is not evidence of sensor errors.
+    // Before convergence, the gradient is not evidence of sensor errors.
     RateIteration again = solution.iteration;
     if (!again.factorise(fit.model, solution.estimates, solution.rig)) {
       return {ErrorCode::diverged, "iteration", static_cast<double>(health.iterations), 0.0};

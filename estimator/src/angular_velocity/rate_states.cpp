@@ -35,7 +35,7 @@ Eigen::Matrix3d sensor_error_covariance(const arrow::ErrorMatrix& moved, const S
   return std::min(1.0, most / std::max(out.trace(), 1e-300)) * out;
 }
 
-// For readings that may be saturated, the rate of change follows from the contact force.
+// If readings may be saturated, the contact force determines the rate of change.
 double rate_change_rad_s2(const RateModelParams& params, std::span<const RateObservation> observations,
                           std::span<const RateEstimate> estimates, std::size_t k) {
   const RateObservation &from = observations[k], &to = observations[k + 1];
@@ -48,7 +48,7 @@ double rate_change_rad_s2(const RateModelParams& params, std::span<const RateObs
 }
 
 // Returns the covariance of a rate due to an unknown delay that gyro and accelerometer have in common. The search for
-// the steepest slope includes neighbouring samples, because the delay may shift an impact to them.
+// the steepest slope includes neighbouring samples, because the delay may shift an impact.
 Eigen::Matrix3d common_delay_covariance(double variance_s2, const RateModelParams& params,
                                         std::span<const RateObservation> observations,
                                         std::span<const RateEstimate> estimates, std::size_t k) {
@@ -64,7 +64,6 @@ Eigen::Matrix3d common_delay_covariance(double variance_s2, const RateModelParam
   return variance_s2 * (alpha * alpha.transpose() + change * change * Eigen::Matrix3d::Identity());
 }
 
-// Returns the rate `late_s` after sample k by cubic interpolation; the covariance is interpolated linearly.
 RateState extrapolated_state(std::span<const RateObservation> observations, std::span<const RateEstimate> estimates,
                              std::span<const Eigen::Matrix3d> covariances, std::size_t k, double late_s) {
   RateState out;

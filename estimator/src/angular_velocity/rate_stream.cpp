@@ -135,8 +135,7 @@ void RateStream::marginalise_leaving(State& state) const {
   state.window.erase(state.window.begin(), state.window.begin() + static_cast<std::ptrdiff_t>(count));
 }
 
-// Measured axes have the gyro's noise; the covariance of clipped axes follows from the possible motion since the
-// previous sample.
+// The covariance of clipped axes follows from the possible motion since the previous sample.
 void RateStream::predict_covariance(State& state) const {
   Knot& newest = state.window.back();
   const Knot& before = state.window[state.window.size() - std::min<std::size_t>(2, state.window.size())];
@@ -147,8 +146,7 @@ void RateStream::predict_covariance(State& state) const {
   newest.covariance_rad2_s2 += sigma.cwiseAbs2().asDiagonal();
 }
 
-// Marginalises a sample: rate_stream.md (R90). A sample in a short flight has a reduced weight: rate_stream.md (R92).
-// The final flight weight follows from rate_smoother.md (R16) to (R19).
+// See rate_stream.md (R90), (R92).
 void RateStream::marginalise(std::size_t first, State& state) const {
   Knot& oldest = state.window[first];
   const Knot& next = state.window[first + 1];
@@ -179,7 +177,6 @@ void RateStream::marginalise(std::size_t first, State& state) const {
     state.prior_corner = corner;
     store_errors(block, errors, state);
   } else {
-    // The prior is not positive definite.
     reset_prior(state);
     ++state.failures;
   }

@@ -29,7 +29,7 @@ bool repeats_readings(const RateStream::State& state) {
          state.repeat_state.of(Triad::accelerometer).is_slower_than_log();
 }
 
-// ForceNormIntegral integrates the norm of the specific force, which is linear between readings and constant outside.
+// The norm of the specific force is assumed linear between readings and constant outside.
 class ForceNormIntegral {
  public:
   ForceNormIntegral(const std::vector<RateStream::Knot>& window, std::size_t middle, std::size_t first) {
@@ -85,8 +85,7 @@ std::size_t RateStream::pair_newest(State& state) const {
   return first;
 }
 
-// See rate_stream.md (R104). An interval is added after its clipped axes and all forces up to the maximum delay are
-// known.
+// See rate_stream.md (R104).
 void RateStream::accumulate_impacts(State& state) const {
   if (!delay_is_estimated_ || state.window.size() < ForceNormIntegral::kReadings) return;
   const std::size_t first = state.window.size() - ForceNormIntegral::kReadings, after = first + kBeside + 1;
@@ -156,7 +155,7 @@ void RateStream::apply_delay(double delay_s, bool found, State& state) const {
   }
 }
 
-// The prior of the samples before the window changes to first order: rate_stream.md (R107).
+// See rate_stream.md (R107).
 void RateStream::refine_delay(State& state) const {
   RateStreamDevice& device = state.device.front();
   const std::ptrdiff_t before = force_shift(state);

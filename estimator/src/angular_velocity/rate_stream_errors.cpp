@@ -28,7 +28,7 @@ bool moves(const RateStream::Knot& knot) {
 
 }  // namespace
 
-// A Schur complement eliminates the sample's unknowns and keeps the sensor errors: rate_stream.md (R100).
+// See rate_stream.md (R100).
 void RateStream::store_errors(const arrow::Block& block, arrow::ErrorMatrix& errors, State& state) const {
   RateStreamDevice& device = state.device.front();
   device.prior.setZero();
@@ -37,7 +37,6 @@ void RateStream::store_errors(const arrow::Block& block, arrow::ErrorMatrix& err
   device.evidence.gradient.noalias() += errors.transpose().lazyProduct(block.gradient);
 }
 
-// Deletes the prior of the samples before the window, but keeps the estimated calibration.
 void RateStream::reset_prior(State& state) const {
   state.prior = {};
   state.prior_corner = {};
@@ -49,7 +48,6 @@ void RateStream::reset_prior(State& state) const {
   device.evidence.gradient.setZero();
 }
 
-// Resets the calibration to its prior, and deletes the information about the motion before the window.
 void RateStream::reset_rig(State& state) const {
   state.rig = state.prior_rig = model_.prior_constants();
   state.rig_covariance = model_.prior_covariance();
@@ -100,7 +98,7 @@ void RateStream::add_sensor_error_covariance(const arrow::BorderVector& rig_step
   RateStreamDelay& delay = device.delay;
   if (delay.found) {
     if (const TriadDelay& guess = delay.guess; guess.sigma_s > 0.0) {
-      // The delay from impacts has full weight, so this division cancels the factor kEvidenceWeight.
+      // The factor kEvidenceWeight is cancelled, because the delay from impacts has full weight.
       const double information = 1.0 / (DeviceUncertainty::kEvidenceWeight * guess.sigma_s * guess.sigma_s);
       window_evidence.information(SensorErrors::kDelay, SensorErrors::kDelay) += information;
       window_evidence.gradient[SensorErrors::kDelay] += information * (guess.delay_s - delay.applied_delay_s);

@@ -15,8 +15,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-// The slopes at both ends of a run of high readings predict the height of the run's maximum. For a rounded maximum of n
-// readings, the predicted height is at most (n/(n - 1))^2 <= 2.25 times the measured height.
+// For a rounded maximum of n readings, the height predicted from the slopes is at most (n/(n - 1))^2 <= 2.25 times the
+// measured height.
 constexpr double kSlopeSigmasMax = 3.0, kHeightRatioMin = 4.0, kHeightNoiseSigmas = 5.0;
 constexpr std::ptrdiff_t kPlateauReadingsMin = 3;
 
@@ -29,7 +29,7 @@ bool is_near_other_rails(const RailPlanes& planes, double peak_rad_s) {
   });
 }
 
-// Returns nothing if the reading before the reading of sample k begins before the window.
+// Returns nothing if the previous reading begins before the window.
 std::optional<std::size_t> reading_before(std::size_t k, const std::vector<RateStream::Knot>& window) {
   while (k > 0 && window[k].repeats) --k;
   if (k == 0) return std::nullopt;
@@ -46,7 +46,6 @@ std::size_t reading_after(std::size_t k, const std::vector<RateStream::Knot>& wi
   return k;
 }
 
-// gyro readings before and after a sample's reading; null outside the window
 struct Beside {
   const ImuSample *before = nullptr, *after = nullptr;
 };
@@ -76,7 +75,7 @@ void RateStream::reclassify_window(State& state) const {
   for (std::size_t k = 0; force_shift(state) != 0 && k < state.window.size(); ++k) pair_force(k, state);
 }
 
-// The classification starts one reading before `changed`, because it depends on neighbouring readings.
+// The classification of a sample depends on neighbouring readings.
 void RateStream::classify_from(std::size_t changed, State& state) const {
   const std::size_t first = reading_before(changed, state.window).value_or(0);
   const SaturationLevels& rails = state.rails.known;
@@ -140,7 +139,7 @@ void RateStream::mark_undetected_clipping(std::size_t k, State& state) const {
                               now, after);
 }
 
-// A larger reading or a newly detected saturation level makes suspect marks obsolete.
+// A larger reading or a newly detected saturation level shows that marked readings are unsaturated.
 void RateStream::clear_suspects(State& state) const {
   for (std::size_t k = 0; k < state.window.size(); ++k) {
     if (state.window[k].observation.possibly_saturated_axes() == 0) continue;
@@ -159,7 +158,6 @@ void RateStream::mark_possible_saturation(State& state) const {
       const int sign = state.window[k].observation.sample.angular_velocity_rad_s[j] < 0.0 ? -1 : 1;
       std::size_t end = k;
       while (end < state.window.size() && may_clip(state.window[end].observation.sample, j, sign, state)) ++end;
-      // The first samples of such a run have already left the window.
       const bool goes_on = k == 0 && end > k && (stood >> j & 1u) != 0;
       const auto readings = std::count_if(state.window.begin() + static_cast<std::ptrdiff_t>(k),
                                           state.window.begin() + static_cast<std::ptrdiff_t>(end),
@@ -170,8 +168,8 @@ void RateStream::mark_possible_saturation(State& state) const {
   }
 }
 
-// Returns the slope of the readings per sample at the ends of a suspect run. Each slope is the smaller of two
-// consecutive steps, because an impact causes a single large step.
+// Returns the slope of the readings per sample at the ends of a run of possibly saturated readings. Each slope is the
+// smaller of two consecutive steps, because an impact causes a single large step.
 double RateStream::run_slope(int axis, std::size_t first, std::size_t last, const State& state) {
   const auto size = [&](std::size_t k) {
     return std::abs(state.window[k].observation.sample.angular_velocity_rad_s[axis]);
@@ -214,7 +212,6 @@ void RateStream::mark_suspect_run(int axis, std::size_t first, std::size_t last,
 }
 
 // Returns the smaller of two consecutive increases of the gyro's reading, because an impact causes a single large step.
-// A constant spin after an impact is not saturation.
 Vector3d RateStream::reading_growth(const std::vector<Knot>& window) {
   const std::optional<std::size_t> one = reading_before(window.size() - 1, window);
   const std::optional<std::size_t> two = one ? reading_before(*one, window) : std::nullopt;
@@ -228,8 +225,8 @@ Vector3d RateStream::reading_growth(const std::vector<Knot>& window) {
   return now.cwiseMin(before).cwiseMax(0.0);
 }
 
-// After the first reading of a clipped run has left the window, the run's saturation deficit still depends on this
-// slope.
+// The saturation deficit of a clipped run depends on the slope before the run, even after that slope has left the
+// window.
 void RateStream::store_slope_before_clipping(const Knot& leaving, const Knot& next, State& state) {
   const auto hidden = [](const Knot& knot, int j) {
     return ((knot.observation.clipping.gyro | knot.observation.partly_saturated_axes()) >> j & 1) != 0;
@@ -241,7 +238,6 @@ void RateStream::store_slope_before_clipping(const Knot& leaving, const Knot& ne
   }
 }
 
-// Each step adds the information of the saturation planes again, because the planes become more accurate.
 void RateStream::add_rails(const State& state, arrow::Corner& corner) const {
   const SaturationLevels& rails = state.rails.known;
   const RailPlanes planes = rails.planes_in_use();

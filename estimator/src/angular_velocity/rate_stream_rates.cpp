@@ -18,8 +18,7 @@ bool RateStream::in_long_flight(std::size_t at, const State& state) const {
   return last - first + 1 + (first > 0 ? 0 : state.flight_run) >= needed;
 }
 
-// See rate_stream.md (R99). A run of clipped readings also ends at the start of a flight, where the specific force
-// determines the rate.
+// See rate_stream.md (R99).
 double RateStream::deficit_from_slopes_rad_s(std::size_t at, int axis, const State& state) const {
   const std::vector<Knot>& window = state.window;
   const auto hidden = [&](std::size_t k) {
@@ -70,7 +69,7 @@ bool RateStream::may_be_partly_saturated(std::size_t at, const State& state) con
   return (window[next].near | after.clipping.gyro | after.possibly_saturated_axes()) != 0;
 }
 
-// See rate_stream.md (R108). The angular acceleration is assumed constant after the newest sample.
+// See rate_stream.md (R108). After the newest sample, the angular acceleration is assumed constant.
 void RateStream::extrapolate_estimate(std::size_t at, double late_s, const State& state, RateState& out) const {
   const auto reported = [&](std::size_t k) {
     const Knot& knot = state.window[k];

@@ -45,10 +45,8 @@ struct PhaseRun {
   int count = 0;
 };
 
-// The search stops early if each phase has more than `most` wrong predictions.
 PhaseRun best_phases(double period, std::span<const std::size_t> moving, const std::vector<bool>& repeats,
                      std::size_t most) {
-  // A change of the period does not change the phase at the middle of the motion.
   const auto middle = static_cast<double>(moving[moving.size() / 2]);
   std::array<std::size_t, kPhases> misses;
   PhaseRun out{most + 1};
@@ -57,7 +55,7 @@ PhaseRun best_phases(double period, std::span<const std::size_t> moving, const s
     misses[p] = count_misses(clock, moving, repeats, std::min(most, out.misses));
     out.misses = std::min(out.misses, misses[p]);
   }
-  // Two turns around the circle of phases also find a run that crosses phase 0.
+  // Two turns around the circle of phases also find a run of phases that crosses phase 0.
   int run = 0;
   for (int p = 0; p < 2 * kPhases; ++p) {
     run = misses[static_cast<std::size_t>(p % kPhases)] == out.misses ? std::min(run + 1, kPhases) : 0;
@@ -68,7 +66,7 @@ PhaseRun best_phases(double period, std::span<const std::size_t> moving, const s
   return out;
 }
 
-// Several equally good clocks form an area in period and phase; the result is the middle of the area.
+// If several clocks predict the repetitions equally well, the result is the middle of their periods and phases.
 Clock best_clock(const Clock& first, double reach, int periods, std::span<const std::size_t> moving,
                  const std::vector<bool>& repeats, double& found) {
   PhaseRun best{moving.size()};

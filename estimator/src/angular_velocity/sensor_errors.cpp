@@ -55,7 +55,7 @@ Vector deviations(const SensorErrorPriors& s, const Shares& shares) {
 
 constexpr double kPlain = 0.05;
 
-// Errors of the flight model last longer than a sample, so the readings have less weight in the covariance.
+// Errors of the flight model last longer than a sample, so the information of the readings is reduced.
 constexpr double kEvidenceWeight = 0.03;
 
 struct Hypothesis {
@@ -65,7 +65,7 @@ struct Hypothesis {
   Matrix covariance;
 };
 
-// See rate_smoother.md (R40), (R41), (R43). `h` is the gradient plus information * errors.
+// See rate_smoother.md (R40), (R41), (R43).
 Hypothesis posterior(const Matrix& information, const Matrix& earlier_runs, const Vector& h, const Vector& deviation,
                      double log_prior) {
   constexpr int kRest = SensorErrors::kSize - SensorErrors::kGSensitivity;
@@ -196,7 +196,6 @@ SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const Sens
     if (one.shares.scale == 0.0) out.data_sheet_probability += one.log_odds;
     if (one.shares.delay == 0.0) out.synchronous_probability += one.log_odds;
   }
-  // Corrections deviate from the data sheet only if the readings clearly contradict the data sheet.
   Vector mean = Vector::Zero();
   double kept = 0.0;
   for (const Hypothesis& one : all) {

@@ -19,10 +19,10 @@ constexpr double kNearExtremeRatio = 0.9, kStoreRatio = 0.85;
 constexpr std::size_t kBeside = 4;
 // The first readings of a run determine the gyro's noise.
 constexpr std::size_t kLatestReadings = 48;
-// The search for saturation repeats when the number n of readings near the extremes has grown by n /
+// The search for saturation repeats when the number of readings near the extremes has grown by the fraction 1 /
 // kSearchGrowthDivisor.
 constexpr std::size_t kSearchGrowthDivisor = 8;
-// Gravity requires the larger fraction for the accelerometer.
+// Gravity requires a larger fraction for the accelerometer than for the gyro.
 constexpr double kLowReadingRatios[] = {0.5, 0.9};
 
 std::array<std::optional<double>, 6> rails_of(const RailDetector& axis_aligned_rails,

@@ -14,7 +14,7 @@ constexpr double kDeficitSigmaRatio = 0.5, kDepthSigmaRatio = 0.25, kDepthMax = 
 
 }  // namespace
 
-// Assumes that the rate crosses the saturation level with constant slope: rails.md (R69), (R70).
+// The rate is assumed to cross the saturation level with constant slope: rails.md (R69), (R70).
 SubsampleSaturation subsample_saturation(double reading_rad_s, double neighbour_rad_s, double rail_rad_s,
                                          double noise_rad_s) {
   const double depth = rail_rad_s - reading_rad_s, slope = reading_rad_s - neighbour_rad_s;

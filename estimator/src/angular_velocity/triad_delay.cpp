@@ -69,7 +69,6 @@ struct RotationSample {
   Matrix3d jacobian_lever;  ///< [alpha]x + [w]x [w]x
 };
 
-// Interpolates by a cubic; `from` is the index of the last reading before `time_s`.
 bool force_at(const TriadReadings& force, double time_s, std::size_t& from, Vector3d& out) {
   while (from + 2 < force.size() && force.time_s[from + 1] <= time_s) ++from;
   if (from < 1 || from + 2 >= force.size() || force.time_s[from] > time_s) return false;
@@ -130,7 +129,7 @@ double cost(const TriadReadings& accel, std::span<const RotationSample> instants
   return sum;
 }
 
-// ForceIntegral integrates the norm of the specific force, which is linear between readings and constant afterwards.
+// The norm of the specific force is assumed linear between readings and constant after the last reading.
 class ForceIntegral {
  public:
   explicit ForceIntegral(const TriadReadings& force)
@@ -154,7 +153,7 @@ class ForceIntegral {
   std::vector<double> norm_, sum_;
 };
 
-// See rate_smoother.md (R45). Sets `sigma_s` to 0 if there are too few impacts.
+// See rate_smoother.md (R45).
 TriadDelay struck(const TriadReadings& gyro, const TriadReadings& accel, double period_s) {
   if (accel.size() < 4) return {};
   const ForceIntegral force(accel);
@@ -179,7 +178,6 @@ TriadDelay struck(const TriadReadings& gyro, const TriadReadings& accel, double 
   return sums.estimate_delay(period_s, std::max(mean_period(gyro), mean_period(accel)));
 }
 
-// Returns 0 if there is too little flight.
 double delay_from_flight_s(const TriadReadings& gyro, const TriadReadings& accel, const Vector3d& lever_arm_m,
                            double period_s) {
   const std::vector<RotationSample> turning = rotation_samples(gyro);

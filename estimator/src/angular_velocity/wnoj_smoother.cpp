@@ -11,16 +11,14 @@ namespace {
 constexpr double kVarianceMin = 1e-18;
 constexpr double kVarianceMax = 1e18;
 
-// EliminatedKnot is the equation R x_k + S x_{k+1} = z of one axis: saave.md (S6). R is upper triangular, and z has
-// noise of unit variance. The time scale gives both components of x, rate and acceleration * time_scale, similar
-// magnitudes.
+// Represents the equation R x_k + S x_{k+1} = z of one axis: saave.md (S6). The state x is (rate, acceleration *
+// time_scale), R is upper triangular, and z has noise of unit variance.
 struct EliminatedKnot {
   Eigen::Matrix2d R, S;
   Eigen::Vector2d z;
 };
 
-// Carried is the equation R x = z with upper triangular R for the state x of the current sample, from all earlier
-// samples.
+// Represents the equation R x = z with upper triangular R for the state x of the current sample.
 struct Carried {
   Eigen::Matrix2d R = Eigen::Matrix2d::Zero();
   Eigen::Vector2d z = Eigen::Vector2d::Zero();
@@ -47,7 +45,7 @@ void triangularise(Stack& a) {
 
 EliminatedKnot eliminate(Carried& carried, double rate, double deviation, double dt_s, double psd,
                          double time_scale_s) {
-  // With the scaled process noise Q = L L', L^-1 (F x_k - x_{k+1}) is white noise of unit variance: saave.md (S5).
+  // See saave.md (S5).
   const double ratio = dt_s / time_scale_s;
   const double unit = std::sqrt(psd * dt_s) * dt_s;
   const double l11 = unit / std::sqrt(3.0);
@@ -118,7 +116,7 @@ void smooth_axis(std::span<const WnojSmoother::Measurement> measurements, int ax
   }
   measure(carried, measurements.back().rate_rad_s[axis], std::sqrt(measurements.back().variance_rad2_s2[axis]));
 
-  // See saave.md (S7). The covariance is a sum of positive terms, so no digits are lost by cancellation.
+  // See saave.md (S7).
   Eigen::Matrix2d R_inv = carried.R.triangularView<Eigen::Upper>().solve(Eigen::Matrix2d::Identity());
   Eigen::Vector2d x = R_inv * carried.z;
   Eigen::Matrix2d P = R_inv * R_inv.transpose();

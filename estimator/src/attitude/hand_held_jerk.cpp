@@ -26,8 +26,7 @@ struct Reach {
         last(std::min(nodes, static_cast<std::size_t>(std::max(0.0, std::floor(to_s / node_s) + 1.0)))) {}
 };
 
-// See carried.md (C24). Each reading is the mean rate over a window P, and the second difference has six times the
-// noise variance.
+// See carried.md (C24).
 void add_curvature_densities(const GyroReadings& rates, const Eigen::Matrix3d& rows, double noise_rad_s, double node_s,
                              std::vector<double>& densities) {
   const double period_s = rates.windows.period_s, reach_s = kJerkSpan_periods * std::max(period_s, node_s);
@@ -64,8 +63,7 @@ bool slope_of(const GyroReadings& rates, const Eigen::Matrix3d& rows, std::size_
   return true;
 }
 
-// See carried.md (C25). A motion that reverses above the saturation level has a larger jerk than the unsaturated
-// readings.
+// See carried.md (C25).
 void add_clipped_slope_densities(const GyroReadings& rates, const Eigen::Matrix3d& rows, double noise_rad_s,
                                  double node_s, std::vector<double>& densities) {
   const std::size_t count = rates.samples.size();

@@ -46,8 +46,6 @@ void add_gyro_row(const GyroRow& state, const BorderRow& border, double weight, 
   corner.gradient.noalias() -= slope * border.transpose();
 }
 
-// derivatives of one sensing element's rate (`value`, `border`) and angular acceleration (`slope`) with respect to a
-// node's state and the constants
 struct GyroRows {
   GyroRow value = GyroRow::Zero(), slope = GyroRow::Zero();
   BorderRow border = BorderRow::Zero();
@@ -110,7 +108,7 @@ double add_bound(const ElementSums& e, const GyroRows& rows, double sigma, doubl
   return minus_two_log_phi(u);
 }
 
-// Adds a prior with mean zero and information (inverse variance) `w` for the three states from index `i`.
+// Adds a prior with mean zero and information (inverse variance) `w` for three states.
 double add_zero_prior(const Vector3d& value, double w, int i, System::Block& block) {
   block.diagonal.diagonal().segment<3>(i).array() += w;
   block.gradient.segment<3>(i) -= w * value;

@@ -43,7 +43,6 @@ Status HandHeldPipeline::push(const ImuSample& sample, State& state, std::option
   if (!status.ok()) return status;
   state.repeat_state = repeat_state;
   state.levels_changed = clipping_finder_.observe(sample, state.rails);
-  // classify() updates the hysteresis of the clipped axes.
   clipping_finder_.axis_aligned_rails().classify(sample, state.rails.known.axis_aligned_rails);
   return status;
 }

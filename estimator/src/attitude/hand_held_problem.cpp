@@ -15,7 +15,6 @@ namespace {
 constexpr double kRotationMax_rad = 0.8;
 constexpr double kConvergenceTolerance = 1e-3;  // attitudes [rad]; ten times for rates [rad/s]
 constexpr int kFirstAdaptIteration = 3;         // iterations before the hand's acceleration density is estimated
-// A constant density in later iterations ensures convergence.
 constexpr int kLastAdaptIteration = 8;
 constexpr double kHandAveraging_s = 0.25;  // averaging time of the hand's acceleration
 constexpr int kHalvings = 4;               // maximum number of times that a step is halved if the cost increases
@@ -53,7 +52,7 @@ ReadingNoise reading_noise(const HandHeldSmoother::Params& p, double period_s) {
 namespace {
 
 // Lower bounds of the rate do not reduce a covariance. The mean rate over a window P differs from the rate at the
-// window's centre with variance q P^3/320: carried.md (C26).
+// window's centre with variance q P^3/320 (jerk density q): carried.md (C26).
 ReadingNoise stated_noise(const HandHeldSmoother::Params& params, ReadingNoise noise, double period_s) {
   noise.bound = 0.0;
   noise.window_rate_sigma_rad_s = params.jerk_rad_s3_sqrts * std::sqrt(period_s * period_s * period_s / 320.0);
@@ -208,7 +207,6 @@ Status Problem::solve(HandHeldSmoother::Report& report) {
     if (report.converged && k > kFirstAdaptIteration) break;
   }
   if (before && !report.converged) {
-    // The last Gauss-Newton step may have increased the cost.
     report.cost = linearise();
     (void)halve_step_until_decrease(*before, report.cost);
   }
@@ -217,7 +215,6 @@ Status Problem::solve(HandHeldSmoother::Report& report) {
   return {};
 }
 
-// If no shorter step decreases the cost, the function restores the nodes and returns false.
 bool Problem::halve_step_until_decrease(const Iterate& before, double& cost) {
   const auto cost_decreases = [&] { return cost < before.cost + kCostRiseMax; };
   for (int k = 0; k < kHalvings && !cost_decreases(); ++k) {
@@ -233,7 +230,7 @@ bool Problem::halve_step_until_decrease(const Iterate& before, double& cost) {
   return false;
 }
 
-// See carried.md (C21), (C22), (C23). Lower bounds of the rate do not reduce the covariances.
+// See carried.md (C21), (C22), (C23).
 Status Problem::covariances(HandHeldSmoother::Report& report) {
   for (std::size_t i = 0; i < jerk_.size(); ++i)
     jerk_[i] = std::max(params_.expert.jerk_inflation, measured_jerk_[i] / params_.jerk_rad_s3_sqrts);

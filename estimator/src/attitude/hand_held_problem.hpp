@@ -10,7 +10,7 @@
 
 namespace tumble::hand_held {
 
-/// `jerk` multiplies the root density of the angular jerk.
+/// `jerk` is a factor on the root density of the angular jerk.
 Motion::Params motion_params(const HandHeldSmoother::Params& params, double jerk = 1.0);
 ReadingNoise reading_noise(const HandHeldSmoother::Params& params, double period_s);
 double add_node(const NodeReadings& readings, const Eigen::Matrix3d& rows, const ReadingNoise& noise,
@@ -53,8 +53,7 @@ class Problem {
   };
   Answer answer() const { return {nodes_, constants_, constants_covariance_, hand_, covariances_}; }
   void restore(Answer answer);
-  /// Computes the priors on both ends of each part from all other nodes. Returns false if the normal equations are not
-  /// positive definite.
+  /// Returns false if the normal equations are not positive definite.
   bool condense_rest(std::span<Part> parts) const;
   /// Returns the cost at the solution, or infinity without convergence.
   double converge();

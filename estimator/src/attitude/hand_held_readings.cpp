@@ -45,10 +45,9 @@ double since_s(std::span<const ImuSample> samples, std::size_t from, std::size_t
   return seconds(samples[to].time_ns - samples[from].time_ns);
 }
 
-// minimum fraction of equal readings that a regular clock predicts if they are repetitions of a slow sensor
 constexpr double kMinClockAgreement = 0.9;
-// Averaging windows of 20 ms were partly saturated in recordings of pendulums; windows of 10 ms of hand-held wands were
-// not.
+// In recordings of pendulums, averaging windows of 20 ms were partly saturated; windows of 10 ms of hand-held wands
+// were not.
 constexpr double kLongWindow = 1.5;
 
 TimeNs nanoseconds(double s) {
@@ -88,7 +87,7 @@ void add_gyro_reading(double z, double t, int sign, ElementSums& e) {
   e.reading_time_sum += z * t;
 }
 
-/// Replaces a clipped segment of one sensing element by a cubic. `raw` contains all readings of the element.
+/// Replaces a clipped segment of one sensing element by a cubic.
 void fill_segment(std::span<const ImuSample> samples, const std::vector<double>& raw, std::size_t begin,
                   std::size_t end, int sign, std::vector<double>& filled) {
   if (begin < 2 || end + 1 >= raw.size()) return;
@@ -122,8 +121,7 @@ HiddenSegment hidden_segment(std::span<const ClipSigns> signs, std::size_t eleme
     if (sign == 0 || (sign != ClipSigns::kMissing && out.sign != 0 && sign != out.sign)) break;
     if (sign != ClipSigns::kMissing) out.sign = sign;
   }
-  // If all readings of a segment are unusable, the rate is assumed to exceed the saturation level with the previous
-  // sign.
+  // If all readings of a segment are unusable, the rate is assumed to be beyond the saturation level.
   if (out.sign == 0) out.sign = raw[begin == 0 ? begin : begin - 1] < 0.0 ? -1 : 1;
   return out;
 }

@@ -21,7 +21,7 @@ struct Windows {
   std::vector<std::size_t> node_of;  ///< nearest node to the centre of each window
 };
 
-/// The sensor may be slower than the log. The readings have their true times, without repetitions.
+/// The times of repeated readings are corrected, and each reading is contained once.
 struct TimedReadings {
   std::vector<ImuSample> samples;  ///< stamped at the end of their windows
   std::vector<ClipSigns> signs;    ///< one per sample
@@ -48,12 +48,12 @@ NodeData collect(const HandHeldSmoother::Params& params, std::span<const ImuSamp
 inline constexpr double kLongest = 1.5;  ///< longest averaging window, in sample periods
 
 /// Estimates the root density of the angular jerk near each node [rad/s^3 sqrt(s)]: carried.md (C24), (C25). Cost:
-/// O(N). The result is 0 where the readings do not determine the jerk.
+/// O(N). The root density is 0 where the readings do not determine the jerk.
 std::vector<double> estimate_jerk(const GyroReadings& rates, const Eigen::Matrix3d& rows, double noise_rad_s,
                                   double node_s, std::size_t nodes);
 
-/// Returns the gyro's rates, with a cubic polynomial in place of each clipped segment of a sensing element. The cubic
-/// stays between 1 and kFillRatioMax times the saturation level.
+/// Returns the gyro's rates, with a cubic in place of each clipped segment of a sensing element. The cubic stays
+/// between 1 and kFillRatioMax times the saturation level.
 std::vector<Eigen::Vector3d> filled_rates(std::span<const ImuSample> samples, const ClippedElements& clipped);
 
 /// heuristic upper limit of the initial rates, as a multiple of the saturation level
@@ -68,12 +68,12 @@ bool clips(const NodeReadings& readings);
 /// periods.
 inline constexpr double kWindowCentreSigmaRatio = 0.144;
 
-/// The reading is `t` seconds after the node.
+/// The reading is `t` seconds later than the node.
 void add_rate(const ImuSample& sample, const Eigen::Matrix3d& rows, const ClipSigns& signs, double t,
               const Eigen::Vector3d& subsample_sigma_rad_s, NodeReadings& node);
 void add_force(const ImuSample& sample, const ClipSigns& signs, double t, NodeReadings& node);
 
-/// Initialises attitude and rates of the nodes by a VQF filter with the rates of filled_rates().
+/// A VQF filter with the rates of filled_rates() initialises attitude and rates of the nodes.
 Status start_nodes(const HandHeldSmoother::Params& params, const Eigen::Matrix3d& rows, const NodeData& collected,
                    std::vector<Node>& nodes);
 

@@ -53,8 +53,8 @@ RateSource source(const RateState& rate, double recovered_sigma) {
   return variance < recovered_sigma * recovered_sigma ? RateSource::recovered_contact : RateSource::bounded_only;
 }
 
-/// Adds the effect of the gyro's scale error to the attitude covariance: carried.md (C27). The attitude error grows
-/// with the rotation since the last rest, or until the next rest if this rotation is smaller.
+/// The gyro's scale error increases the attitude covariance in proportion to the rotation since the last rest:
+/// carried.md (C27).
 void widen_by_rotation(const HandHeldSmoother::Params& params, const hand_held::NodeData& collected,
                        const std::vector<RateState>& rates, std::vector<AttitudeState>& attitudes) {
   const double share = params.expert.readings.recovered_scale_sigma;

@@ -126,7 +126,6 @@ void HandHeldStream::predict_newest(State& state) const {
   }
 }
 
-// After missing samples, the averaging window of the next reading has the usual length.
 void HandHeldStream::append(const ImuSample& sample, const RepeatDetector::State& repeated, State& state) const {
   Reading reading;
   reading.sample = sample;
@@ -168,8 +167,8 @@ void HandHeldStream::rebuild(State& state) const {
   for (const Reading& reading : std::span(state.readings).first(state.readings.size() - 1)) add(reading, state);
 }
 
-// The averaging window of a slow sensor ended at an unknown time since the previous sample: rate_stream.md (R95). A
-// slow accelerometer averages over an unknown part of its period: carried.md (C12).
+// A slow sensor's averaging window ended at an unknown time since the previous sample: rate_stream.md (R95). A slow
+// accelerometer averages over an unknown part of its period: carried.md (C12).
 void HandHeldStream::add(const Reading& reading, State& state) const {
   const double node_s = params_.body.expert.node_s;
   const auto readings_at = [&](std::int64_t node) -> hand_held::NodeReadings* {
@@ -207,7 +206,6 @@ void HandHeldStream::add(const Reading& reading, State& state) const {
   if (hand_held::NodeReadings* const own = readings_at(reading.node)) own->rest = own->rest || reading.rest;
 }
 
-// If the log repeats readings, the noise belongs to the gyro's longer period.
 hand_held::ReadingNoise HandHeldStream::adapted_noise(const State& state) const {
   const RepeatedReading& gyro = state.readings.back().gyro;
   return gyro.is_slower_than_log() ? hand_held::reading_noise(params_.body, gyro.period_samples * params_.period_s)
@@ -223,8 +221,8 @@ Node HandHeldStream::begin(const State& state) const {
   return out;
 }
 
-// Each unsaturated sensing element measures one component of the rate. For clipped elements, the predicted rate is at
-// or beyond the saturation level.
+// Each unsaturated sensing element measures one component of the rate. For clipped sensing elements, the predicted rate
+// is at or beyond the saturation level.
 void HandHeldStream::predict(const Node& before, const Eigen::Matrix3d& rows, Knot& knot) const {
   const double h = params_.body.expert.node_s;
   Node& node = knot.node;
@@ -283,7 +281,6 @@ void HandHeldStream::marginalise_oldest(State& state) const {
     state.prior = after;
     state.prior_corner = corner;
   } else {
-    // The prior is not positive definite.
     state.prior = {};
     state.prior_corner = {};
     (void)motion_.add_initial_prior(next, state.prior);
@@ -301,7 +298,6 @@ void HandHeldStream::marginalise_oldest(State& state) const {
   prune_output_samples(state);
 }
 
-// A reading can be deleted after its rate has been reported and its node has left the window.
 void HandHeldStream::prune_output_samples(State& state) const {
   std::size_t gone = 0;
   const std::size_t given = first_unreported(state);

@@ -28,7 +28,6 @@ std::uint8_t clipped_axes(const ClipSigns& signs) {
 
 }  // namespace
 
-// All readings of one node share the node's covariance until the next optimisation step.
 RateState HandHeldStream::compute_report(std::size_t at, bool due, bool factorised, State& state) const {
   const Reading& reading = state.readings[at];
   if (reading.smoothed) return *reading.smoothed;
@@ -42,7 +41,6 @@ RateState HandHeldStream::compute_report(std::size_t at, bool due, bool factoris
   return rate;
 }
 
-// push() is still processing the newest reading.
 std::size_t HandHeldStream::first_unreported(const State& state) const {
   return state.readings.size() - std::min(state.readings.size(), delay_ + 1);
 }
@@ -98,8 +96,8 @@ void HandHeldStream::count_revolutions(std::size_t at, const RateState& rate, St
   }
 }
 
-// Near clipped readings, the covariances follow from carried.md (C23), (C42). `factorised` is true if the solver has
-// already factorised the equations for the assumed jerk density.
+// See carried.md (C23), (C42). `factorised` is true if the equations are already factorised for the assumed jerk
+// density.
 void HandHeldStream::report_rates(std::size_t first, std::size_t last, bool factorised, State& state,
                                   std::span<RateState> out) const {
   const auto of = [&](std::size_t k) {

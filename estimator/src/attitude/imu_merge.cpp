@@ -21,8 +21,7 @@ constexpr double kCertainDeviations = 4.0;
 constexpr int kMinImusForRecovery = 3;          // minimum number of IMUs for recovering a rate from accelerometers
 constexpr double kUnsaturatedForceRatio = 0.8;  // accelerometer errors are estimated up to this fraction of the range
 constexpr int kOffset = ImuMerge::kErrorCount - 1;
-// At this integral of the squared lever arm force (1 m/s^2 for 1 s), an accelerometer bias of 0.05 m/s^2 changes
-// lever_arm_agreement() by 0.05.
+// At 1 m^2/s^3, an accelerometer bias of 0.05 m/s^2 changes lever_arm_agreement() by 0.05.
 constexpr double kArmSquareMin_m2_s3 = 1.0;
 constexpr double kRepeated_s = 0.03;
 constexpr double kWindowMax_s = 0.05;  // maximum window for a central difference
@@ -41,7 +40,6 @@ ForceErrors::Params ImuMerge::force_params(const Params& p) {
   return out;
 }
 
-/// The IMU positions are relative to their mean.
 RateRecovery::Params ImuMerge::recovery_params(const Params& p) {
   RateRecovery::Params out;
   out.count = p.count;
@@ -194,7 +192,7 @@ ImuMerge::UnitMask ImuMerge::select_units(const Readings& readings, const UnitMa
     used[i] = agrees && (readings[i].device_clip_flags & clipping) == 0;
   }
   const auto kept = std::count(used.begin(), used.end(), true);
-  // A minority of agreeing IMUs does not show which IMUs are right.
+  // Without a majority, it is unknown which IMUs are right.
   if (units < kMinImusForRecovery ? kept == 0 : 2 * kept <= units && kept < units) used = present;
   const bool apart = state.windows > 0 && h > 0.0;  // derivatives from the last window exist
   if (units >= kMinImusForRecovery && apart && middle_rate.cwiseAbs().maxCoeff() < params_.gyro_range_rad_s) {
@@ -204,7 +202,7 @@ ImuMerge::UnitMask ImuMerge::select_units(const Readings& readings, const UnitMa
   return used;
 }
 
-/// See imu_merge.md (I1), (I2). The result is valid at the mean position of all IMUs.
+/// See imu_merge.md (I1), (I2).
 ImuSample ImuMerge::mean_of_used(const Vectors& rates, const Vectors& forces, const UnitMask& used, double h,
                                  const State& state) const {
   const auto kept = static_cast<int>(std::count(used.begin(), used.end(), true));
@@ -271,9 +269,8 @@ void ImuMerge::close_windows(const UnitMask& present, const Vectors& rates, cons
   ++state.windows;
 }
 
-/// Excludes IMUs whose accelerometer may be saturated for a part of the window because of an impact: imu_merge.md (I6).
-/// The force along the line between two IMUs does not depend on the angular acceleration. If no two IMUs agree, the
-/// function first estimates a common angular acceleration that started within the window: imu_merge.md (I7).
+/// Excludes accelerometers that an impact may have saturated for a part of the averaging window: imu_merge.md (I6). If
+/// no two IMUs agree, a common angular acceleration within the averaging window is estimated first: imu_merge.md (I7).
 void ImuMerge::exclude_subsample_saturated(const Readings& samples, const UnitMask& present, const Vectors& forces,
                                            const Eigen::Vector3d& rate, double h, State& state, UnitMask& used) const {
   const double since_s = 0.5 * (h + state.length_s);
@@ -328,8 +325,7 @@ void ImuMerge::recover(const Readings& readings, const UnitMask& present, double
   recovery_.step({corrected.data(), static_cast<std::size_t>(params_.count)}, h, state.recovery, merged);
 }
 
-/// See imu_merge.md (I3), (I8). The angular acceleration is the central difference of the rates in the next and
-/// previous window.
+/// See imu_merge.md (I3), (I8).
 void ImuMerge::calibrate(const Vectors& rates, State& state) const {
   const auto count = static_cast<std::size_t>(params_.count);
   Eigen::Vector3d now = Eigen::Vector3d::Zero(), mean = Eigen::Vector3d::Zero();

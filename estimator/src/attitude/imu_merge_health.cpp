@@ -12,21 +12,21 @@ namespace {
 // A frozen IMU repeats its reading for longer than any sample and hold, while other IMUs change or gravity rotates.
 constexpr double kUnitFrozen_s = 0.1, kOthersRate_rad_s = 0.03, kOthersForce_m_s2 = 0.3, kGravityRotation_rad = 1.0;
 constexpr double kUnfreeze_s = 0.5;
-// The limit of the rate grows with the rate, for errors of scale.
+// The tolerance of the rate grows with the rate, because of scale errors.
 constexpr double kDisagreeRate_rad_s = 0.1, kDisagreeRateRatio = 0.06, kDisagreeForce_m_s2 = 1.0, kDisagrees_s = 0.3;
 constexpr int kMinImusForFault = 3;  // minimum number of IMUs for identifying the faulty IMU
 constexpr double kMisfitTau_s = 0.5;
 constexpr double kComparableRateRatio = 0.8;  // fraction of the gyro's range up to which IMUs are compared
 
 constexpr double kArmShareMin = 0.5;  // smallest plausible lever_arm_agreement() if the gyros are confirmed
-// Centripetal force grows with the squared rate, so the limit corresponds to a gyro scale error of 3 %. In runs without
-// faults, lever_arm_agreement() was 0.999 to 1.002.
+// A deviation of 6 % corresponds to a gyro scale error of 3 %, because the centripetal force grows with the squared
+// rate. In runs without faults, lever_arm_agreement() was 0.999 to 1.002.
 constexpr double kArmShareOff = 0.06;
 
 constexpr double kAxisContributionMin =
     0.02;  // another axis counts as clipped if a clipped axis contributes more than this fraction to it
 
-/// The repeated force is mostly gravity, whose direction should rotate with the body.
+/// A repeated force is mostly gravity, whose direction should rotate with the body.
 double rotation_across_force_rad(const ImuMerge::Repetition& hold) {
   return hold.turned_rad.cross(hold.reading.stableNormalized()).norm();
 }

@@ -19,7 +19,7 @@ constexpr double kGravityNear = 0.25;     // directions are compared if force an
 // Pendulums and hand-held wands reach slopes of 0.75 and 1.21 between the rotations of gravity and gyro.
 constexpr double kSlopeMin = 0.65, kSlopeMax = 1.5;
 constexpr double kRotationMin_rad2 = 0.5, kRotationMin_rad = 0.15;  // minimum rotation in total, and of a window
-// Fewer windows may be a push, or the centripetal force of a spin in flight.
+// A push, or the centripetal force of a spin in flight, may also rotate the measured force for a few windows.
 constexpr double kRotatedWindowsMin = 5.0;
 // Pushes of the body also cause slopes between 0 and 1, so these slopes need a smaller residual.
 constexpr double kScaledResidualMax = 0.75, kReducedResidualMax = 0.33;
@@ -30,7 +30,7 @@ constexpr double kNonRestForceRatio = 0.5;  // difference from gravity that excl
 constexpr double kPushedMin_s = 0.2;        // minimum duration of a force that excludes rest
 constexpr double kDirectionForceRatioMin = 0.05;  // minimum force with a usable direction, as a fraction of gravity
 
-// See imu_merge.md (I20). The product a b follows from |a - b|^2 = |a|^2 + |b|^2 - 2 a b.
+// See imu_merge.md (I20).
 double rotation_product_rad2(const ImuPlausibility::State& state) {
   return 0.5 * (state.force_rotation_rad2 + state.gyro_rotation_rad2 - state.unexplained_rad2);
 }
@@ -96,7 +96,7 @@ void ImuPlausibility::process_average(State& state) const {
     state.non_rest_force_s += length_s;
   if (state.window_started) {
     // Each averaged force is valid at the centre of its averaging interval. To first order, the rotation between two
-    // forces is the sum of all rotations except the first.
+    // averaged forces is the sum of all rotations except the first.
     state.gyro_rotation = (state.gyro_rotation * so3::exp(turned)).normalized();
     state.length_s += length_s;
     const double start = state.force_start_m_s2.norm();
@@ -151,9 +151,9 @@ double ImuPlausibility::unexplained_rotation_ratio(const State& state) const {
                                : 0.0;
 }
 
-/// A sensor whose reading never changed counts as frozen only while the body moves. While the gyro repeats, a rotating
-/// force, or a force that excludes rest, indicates motion. An accelerometer that reads zero for longer than a free fall
-/// is frozen if the gyro indicates motion.
+/// A sensor whose reading never changed counts as frozen only while the body moves. A rotating force, or a force that
+/// excludes rest, proves that the body moves. An accelerometer that reads zero for longer than a free fall is frozen if
+/// the gyro measures rotation.
 double ImuPlausibility::frozen_s(const State& state) const {
   const auto never_moved = [&](const Repetition& hold) {
     return hold.changing_duration_s == 0.0 && hold.repeated_s >= kFrozen_s;

@@ -37,7 +37,7 @@ constexpr double kClearLogRatio = 0.4;
 
 using Readings = std::array<Eigen::Matrix3d, kReadings>;
 
-/// matrices by which each hypothesis about the gyro multiplies the rates: imu_merge.md (I27)
+/// Each hypothesis about the gyro multiplies the rates by a matrix: imu_merge.md (I27).
 Readings all_readings() {
   Readings out;
   for (std::size_t k = 0; k < kAxisLabels; ++k) {
@@ -53,7 +53,7 @@ Readings all_readings() {
   return out;
 }
 
-/// `step` is the Newton step from gyro scale 1, and `weight` is the second derivative of the residual there.
+/// `step` is the Newton step from gyro scale 1, and `weight` is the second derivative of the cost.
 struct ScaleVote {
   double step, weight;
 };
@@ -70,7 +70,6 @@ class Segments {
     rotated_rad_ += dt_s * rate_rad_s.norm();
     if (length_s_ >= kSegment_s) close();
   }
-  /// A segment shorter than half of the nominal length is discarded.
   void close() {
     if (length_s_ >= 0.5 * kSegment_s && rotated_rad_ >= kSegmentRotationMin_rad) take();
     sums_ = {};
@@ -92,7 +91,6 @@ class Segments {
 
   /// See imu_merge.md (I28), (I29).
   void compare(const std::array<PivotFit, kReadings>& fits) {
-    // The residual combines the unexplained velocity with the difference between mean force and gravity.
     const auto residual = [&](std::size_t k) {
       return std::hypot(fits[k].residual_m_s, length_s_ * (fits[k].gravity_m_s2 - gravity_m_s2_) / std::sqrt(12.0));
     };
@@ -128,7 +126,7 @@ class Segments {
   double length_s_ = 0.0, rotated_rad_ = 0.0;
 };
 
-/// See imu_merge.md (I30). The standard deviation is heteroscedasticity-consistent (White, 1980).
+/// See imu_merge.md (I30), with a heteroscedasticity-consistent standard deviation (White, 1980).
 void conclude_scale(const std::vector<ScaleVote>& votes, PivotCheck& found) {
   double weight = 0.0, sum = 0.0, spread = 0.0;
   for (const ScaleVote& vote : votes) weight += vote.weight, sum += vote.weight * vote.step;
@@ -148,7 +146,8 @@ void conclude_scale(const std::vector<ScaleVote>& votes, PivotCheck& found) {
 PivotCheck PivotCheck::of(std::span<const ImuSample> samples, double gravity_m_s2, double gyro_range_rad_s,
                           double accel_range_m_s2) {
   static const Readings readings = all_readings();
-  // An event at a boundary between two segments is inside a segment of the other, shifted series.
+  // An event at the boundary between two segments is inside a segment of the second series, which is shifted by half a
+  // segment.
   std::array<Segments, 2> series = {Segments(gravity_m_s2, readings), Segments(gravity_m_s2, readings)};
   double mean_s = 0.0, since_s = 0.0;
   Eigen::Vector3d turned = Eigen::Vector3d::Zero(), gained = Eigen::Vector3d::Zero();

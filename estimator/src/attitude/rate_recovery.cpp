@@ -31,7 +31,6 @@ struct Seen {
   Eigen::Vector3d reading, slope_sigma = Eigen::Vector3d::Zero();
   std::array<bool, 3> railed{};
 
-  // Returns the root sum of squares of the saturation deficits, for the true values `expected`.
   double hidden(const Eigen::Vector3d& expected) const {
     double sum2 = 0.0;
     for (int axis = 0; axis < 3; ++axis) {
@@ -130,12 +129,10 @@ void RateRecovery::step(std::span<const ImuSample> units, double dt_s, State& st
   } else if (met.rate) {
     merged.device_clip_flags = static_cast<std::uint8_t>(merged.device_clip_flags | kClipGyro);
   }
-  // The mean force depends on a possibly wrong rate.
   if (met.rate || met.force) merged.specific_force_m_s2 = state.x.segment<3>(kForce);
 }
 
 void RateRecovery::start(const ImuSample& merged, State& state) const {
-  // The lever arms keep their estimates when the filter restarts.
   state.P.topRows<kArms>().setZero();
   state.P.leftCols<kArms>().setZero();
   auto diagonal = state.P.diagonal();

@@ -11,7 +11,7 @@ namespace tumble {
 
 namespace {
 
-/// A reading that was saturated for a part of its averaging window does not count.
+/// Partly saturated readings do not count as unusable.
 bool unusable_count(const RateReport& report, const RateState& rate, std::size_t k) {
   return rate.clipped_axes != 0 || report.suspect_axes[k] != 0;
 }
@@ -72,13 +72,11 @@ void RegimeSmoother::join(std::span<const ImuSample> samples, std::vector<RateSt
     if (by_segment[k] <= params_.hand_held_probability_min) continue;
     const bool only_suspect = rates[k].clipped_axes == 0 && rates[k].source != RateSource::measured;
     rates[k] = mix_rate_states(rates[k], other[k], by_segment[k]);
-    // No motion type assumes clipping at a suspect sample.
     if (only_suspect) rates[k].clipped_axes = 0, rates[k].source = RateSource::bounded_only;
   }
 }
 
-/// HandHeldSmoother replaces the rates between two gaps of the recording, if it succeeds. The report describes the last
-/// replaced part.
+/// HandHeldSmoother replaces the rates between two gaps of the recording. The report describes the last replaced part.
 bool RegimeSmoother::estimate_hand_held(std::span<const ImuSample> samples, const ClippedReadings& known,
                                         std::vector<RateState>& rates, HandHeldSmoother::Report& report) const {
   bool any = false;
@@ -100,8 +98,8 @@ bool RegimeSmoother::estimate_hand_held(std::span<const ImuSample> samples, cons
   return any;
 }
 
-/// See carried.md (C40). Within `segment_gap_max_s` of clipped or suspect readings, the result is the smallest
-/// probability of their samples. Elsewhere, the result is 0.
+/// See carried.md (C40). Near clipped or suspect readings, the result is the smallest probability of the samples within
+/// `segment_gap_max_s`. Elsewhere, the result is 0.
 std::vector<double> RegimeSmoother::segment_hand_held_probability(std::span<const RegimeProbabilities> probabilities,
                                                                   const RateReport& report,
                                                                   std::span<const RateState> rates) const {

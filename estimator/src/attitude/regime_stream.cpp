@@ -9,7 +9,6 @@ namespace tumble {
 namespace {
 
 constexpr double kAccelerationSpan_s = 0.01;  // = model_error_s of the rate model
-// The calibration is unstable if more than this fraction of the solver steps within a lag reset the calibration.
 constexpr double kResetFraction = 0.5;
 
 HandHeldStream::Params joined(const RegimeStream::Params& params) {
@@ -37,7 +36,6 @@ ClipSigns signs_of(const RateObservation& observation) {
 RateState mixed_rate(const RateState& rate, const RateState& hand_held, double share) {
   RateState out = mix_rate_states(rate, hand_held, share);
   out.clipped_axes = rate.clipped_axes;
-  // Only RateStream detects partly saturated readings.
   if (rate.source == RateSource::bounded_only && out.source == RateSource::measured) out.source = rate.source;
   return out;
 }
@@ -45,7 +43,7 @@ RateState mixed_rate(const RateState& rate, const RateState& hand_held, double s
 // See carried.md (C44). The angular acceleration of RateStream is unsuitable, because RateStream uses the specific
 // force under test.
 Eigen::Vector3d angular_acceleration(std::span<const RateStream::Knot> window, std::size_t k) {
-  // Seconds since the epoch would lose precision.
+  // Seconds since the epoch as a floating-point number would lose precision.
   const auto between_s = [&](std::size_t from, std::size_t to) {
     return seconds(window[to].observation.sample.time_ns - window[from].observation.sample.time_ns);
   };
@@ -82,7 +80,8 @@ Status RegimeStream::push(const ImuSample& sample, std::span<const AuxiliaryRead
     share = hand_held_weight(*out, state);
   }
   std::optional<RateState> hand_held;
-  // HandHeldStream only rejects such a sample if the sensing directions do not span three dimensions.
+  // HandHeldStream rejects an accepted sample of RateStream only if the sensing directions do not span three
+  // dimensions.
   if (state.probabilities.hand_held >= params_.hand_held_probability_min) {
     if (!state.hand_held_running) {
       hand_held_.restart(state.hand_held);
@@ -122,7 +121,7 @@ RegimeProbabilities RegimeStream::next(const RegimeProbabilities& before, double
                                        std::span<const RateStream::Knot> window, std::size_t k,
                                        const RigCalibration& rig, bool unstable) const {
   const RateStream::Knot& knot = window[k];
-  // With an invalid calibration, the rate was fitted to the force, so both agree in any motion.
+  // An invalid calibration was fitted to the force, so rate and force agree in any motion.
   if (unstable && knot.observation.unmeasured_axes() != 0) return before;
   RateState rate;
   rate.w_WI_I_rad_s = knot.estimate.knot.rate_rad_s;

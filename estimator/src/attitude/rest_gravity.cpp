@@ -15,7 +15,7 @@ namespace {
 // The limits of the rest detector accept any unit of the force and any plausible gyro bias.
 constexpr RestDetector::Params kRests{.rate_max_rad_s = 0.15, .force_min_m_s2 = 0.3};
 constexpr double kMagnitudeErrorMax = 0.15;  // covers 80 mg of bias and 3 % of scale
-// The tolerance of the angle covers bias and pushes at rest. Above the maximum tolerance, chance alone would pass.
+// The tolerance of the angle between measured and expected gravity covers gyro bias and pushes at rest.
 constexpr double kAngleMax_sigmas = 5.0, kAngleToleranceMin_rad = 0.3, kAngleToleranceMax_rad = 0.6;
 constexpr double kCorrelation_s = 0.1;        // minimum correlation time of a rate's error
 constexpr double kSpanRotationMin_rad = 1.0;  // less rotation between two rests hides most faults
@@ -31,7 +31,7 @@ RestDetector::Params without_force_limits() {
   return rests;
 }
 
-/// Forces in mg, cm/s^2 or counts have larger numbers, also of the noise, than in m/s^2. Readings far above gravity at
+/// In mg, cm/s^2 or counts, forces and their noise have larger numbers than in m/s^2. Readings far above gravity at
 /// rest prove a wrong unit, because no robot stands still at ten times gravity.
 RestDetector::Params scaled_to_larger_units() {
   constexpr double kLarger = 100.0;

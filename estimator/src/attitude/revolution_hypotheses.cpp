@@ -26,7 +26,6 @@ constexpr double kRevolutionCost = 100.0;  // limit of a revolution's jerk cost:
 constexpr double kSurroundings_s = 0.3;    // duration before and after a segment that is solved with the segment
 constexpr double kAcceptLogOdds = 3.0;     // log odds (20 to 1) for a change; the cost excludes model errors
 constexpr int kExtraRevolutionsMax = 2;    // maximum number of revolutions more or less than in the optimised solution
-// Each round tests all segments and solves the whole problem.
 constexpr int kRounds = 3;
 
 /// range of nodes [first, last] in which all readings of a sensing element are clipped or unusable
@@ -80,8 +79,7 @@ std::vector<Segment> suspect_segments(const Problem& problem) {
   return out;
 }
 
-/// Adds `turns` revolutions about `axis` between nodes a and b as a smooth bump of the rate. The remaining attitude
-/// error is distributed over the nodes.
+/// Adds `turns` revolutions about `axis` between nodes a and b as a smooth bump of the rate.
 std::vector<Node> with_more_revolutions(const Problem& part, const Vector3d& axis, double turns, std::size_t a,
                                         std::size_t b) {
   std::vector<Node> nodes(part.nodes().begin(), part.nodes().end());
@@ -97,7 +95,6 @@ std::vector<Node> with_more_revolutions(const Problem& part, const Vector3d& axi
   const Vector3d& g_W = part.gravity_W_m_s2();
   for (std::size_t i = a; i <= b; ++i) {
     nodes[i].q_WI = (nodes[i].q_WI * so3::exp(along(i) * missed)).normalized();
-    // The specific force in sensor axes must remain unchanged.
     const Node& before = part.nodes()[i];
     nodes[i].a_W_m_s2 = nodes[i].q_WI * (before.q_WI.conjugate() * (before.a_W_m_s2 - g_W)) + g_W;
   }
@@ -149,7 +146,7 @@ struct TestedSegment {
   bool another = false;
 };
 
-/// See carried.md (C29). `standing` is the index of the current solution.
+/// See carried.md (C29).
 AlternativeSolutions alternative_probabilities(const TestedSegment& tested, std::optional<std::size_t> standing) {
   AlternativeSolutions out{tested.from, {}};
   const double least = tested.found.front().cost;
@@ -190,7 +187,7 @@ std::vector<Part> with_surroundings(const Problem& problem, std::span<const Segm
   return out;
 }
 
-/// In segments marked in `fallen`, an earlier test has excluded the current solution.
+/// `fallen` marks segments whose current solution an earlier test has excluded.
 std::vector<TestedSegment> test_segments(const Problem& problem, std::span<const Segment> segments,
                                          std::span<const Part> parts, std::vector<bool>& fallen) {
   std::vector<TestedSegment> out;
@@ -235,7 +232,7 @@ void test_revolutions(Problem& problem, HandHeldSmoother::Report& report, SolveA
   std::vector<Part> parts = with_surroundings(problem, segments);
   std::vector<AlternativeSolutions> open;
   std::vector<bool> fallen(parts.size(), false);
-  // The tests linearise the equations of the nodes outside a part, so a changed solution requires new tests.
+  // The tests linearise the equations outside a segment, so a changed solution requires new tests.
   for (int round = 0; round < kRounds; ++round) {
     if (!problem.condense_rest(parts)) break;
     const std::vector<TestedSegment> tested = test_segments(problem, segments, parts, fallen);

@@ -5,7 +5,7 @@
 
 namespace tumble::hand_held {
 
-/// A segment is tested if its angle's standard deviation reaches this fraction of pi (a revolution is then six sigma).
+/// A clipped segment is tested if the standard deviation of its angle reaches this fraction of pi.
 inline constexpr double kAngleShare = 1.0 / 3.0;
 inline constexpr double kLogOdds = 6.9;  ///< alternatives with odds below 1 to 1000 are ignored
 
@@ -13,23 +13,19 @@ inline constexpr double kLogOdds = 6.9;  ///< alternatives with odds below 1 to 
 /// root density [rad/s^3 sqrt(s)]: carried.md (C28).
 double revolution_cost(double span_s, double jerk_rad_s3_sqrts);
 
-/// Tests for each clipped segment of the gyro whether the body made one revolution more or less than in the solution.
-/// Cost: two eliminations over all nodes, plus O(N) for N nodes in tested segments.
+/// Tests for each clipped gyro segment whether the body made one revolution more or less than in the solution. Cost:
+/// two eliminations over all nodes, plus O(N) for N nodes in tested segments.
 ///
-/// Data after a clipped segment determine the rotation during the segment only up to whole revolutions. A segment is
-/// tested if the time integral of the rate's standard deviation reaches a third of pi. A long segment is also tested if
-/// the estimated rate stays at the saturation level.
+/// Data after a clipped segment determine the rotation during the segment only up to whole revolutions. A clipped
+/// segment is tested if the time integral of the rate's standard deviation reaches a third of pi.
 ///
-/// The solution with the lowest cost is selected. Alternatives with odds above 1 to 1000 enlarge the covariances to
-/// those of the mixture of all solutions. If the whole problem has no solution with the new number of revolutions, the
-/// previous solution remains.
+/// Alternatives with odds above 1 to 1000 enlarge the covariances to those of the mixture of all solutions.
 ///
 /// The caller must have computed the covariances of `problem`. The test neglects correlations between the revolutions
-/// of two segments, and the effect on the calibration constants. The alternatives differ only by whole revolutions
-/// about the clipped element's axis.
+/// of two segments, and the effect on the calibration constants. The alternative solutions differ only by whole
+/// revolutions about the clipped element's axis.
 void test_revolutions(Problem& problem, HandHeldSmoother::Report& report);
 
-/// Unit tests pass a solver `again` that fails.
 using SolveAgain = Status (*)(Problem& problem, HandHeldSmoother::Report& report);
 void test_revolutions(Problem& problem, HandHeldSmoother::Report& report, SolveAgain again);
 

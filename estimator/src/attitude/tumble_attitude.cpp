@@ -21,8 +21,7 @@ constexpr double kDisplacementSigmaStart_m = 0.1;
 constexpr double kContradicts_sigma2 = 4.0;
 constexpr int kTilt = 0, kBias = 2, kVelocity = 5, kDisplacement = 7, kHeading = 9;
 
-/// Applies a scalar Kalman update with the innovation measurement minus prediction: attitude.md (A4). The variance of
-/// the heading remains unchanged: attitude.md (A9).
+/// Applies a scalar Kalman update: attitude.md (A4). The variance of the heading remains unchanged: attitude.md (A9).
 void update(int index, double innovation, double variance, TumbleAttitude::State& state) {
   const double heading = state.covariance(kHeading, kHeading);
   const Eigen::Matrix<double, TumbleAttitude::State::kStates, 1> correction =
@@ -179,7 +178,7 @@ void TumbleAttitude::bridge_gap(const ImuSample& after, const Eigen::Matrix3d& r
   predict_node(state);
   // A sphere that gripped before the gap is assumed to roll without slip after the gap.
   if (params_.radius_m > 0.0 && !state.slipping) state.v_W_m_s = velocity_from_rotation(state);
-  // The tilt variance must be computed before the correction.
+  // The correction changes the tilt variance, so the tilt variance is computed first.
   const double tilt = reported_tilt_rad2(state);
   state.alignment = {};
   correct_node(state);
@@ -197,7 +196,6 @@ void TumbleAttitude::end_node(State& state) const {
   clear_node(state);
 }
 
-/// Returns the expected variance of a body's velocity per axis, from its earlier motion and its rotation.
 double TumbleAttitude::body_velocity_variance_m2_s2(double power_m2_s2, const State& state) const {
   if (state.at_rest) return squared(params_.expert.at_rest.velocity_sigma_m_s);
   const double assumed = squared(params_.velocity_m_sqrts) / params_.motion_tau_s;
@@ -205,7 +203,7 @@ double TumbleAttitude::body_velocity_variance_m2_s2(double power_m2_s2, const St
   return std::max({assumed, power_m2_s2, turning});
 }
 
-/// See attitude.md (A19), (A20). The filter has rotated the world frame W by `corrected`.
+/// See attitude.md (A19), (A20).
 void TumbleAttitude::align(const Eigen::Quaterniond& corrected, State& state) const {
   CoarseAlignment& alignment = state.alignment;
   alignment.force_W_m_s = corrected * alignment.force_W_m_s;
@@ -223,7 +221,7 @@ void TumbleAttitude::align(const Eigen::Quaterniond& corrected, State& state) co
   alignment = {};
 }
 
-/// `levelling` rotates the world frame W.
+/// `levelling` is a rotation of the world frame W.
 void TumbleAttitude::restart(const Eigen::Quaterniond& levelling, double tilt_rad2, double velocity_m2_s2,
                              State& state) const {
   state.q_WI = (levelling * state.q_WI).normalized();
@@ -305,7 +303,7 @@ bool TumbleAttitude::detect_slip(const Eigen::Vector2d& misfit_m_s, State& state
   return state.slipping;
 }
 
-/// See attitude.md (A13). `power` is the variance at the previous node.
+/// See attitude.md (A13).
 double TumbleAttitude::motion_variance(const Eigen::Vector2d& misfit, int index, double sigma_sqrts, double power,
                                        const State& state) const {
   const double seen = 0.5 * (misfit.squaredNorm() - state.covariance.block<2, 2>(index, index).trace());

@@ -98,8 +98,7 @@ void Vqf::estimate_bias(const Eigen::Vector3d& up_W, double dt_s, State& state) 
     noise.setConstant(steady_noise(params_.expert.bias_sigma_rest_rad_s, growth));
   } else if (params_.motion_bias_estimation) {
     H = Eigen::Map<const Eigen::Matrix3d>(state.R_WI.value.data());
-    // The correction rate of the vertical contains the remaining bias and the bias corrected after the force entered
-    // the low-pass filter.
+    // The correction rate of the vertical contains the remaining gyro bias and the recently corrected gyro bias.
     const Eigen::Vector2d low_passed = state.bias_W_rad_s.value;
     innovation = Eigen::Vector3d(low_passed.x() - up_W.y() / dt_s, low_passed.y() + up_W.x() / dt_s, 0.0) - H * b;
     const double motion = steady_noise(params_.expert.bias_sigma_motion_rad_s, growth);

@@ -3,14 +3,14 @@
 
 #include <Eigen/Core>
 
-/// Fixed-size Eigen decompositions would double the compile time, so this header declares one decomposition for all
-/// sizes. The factorisations equal Eigen's bit for bit; the eigenvalues are equal up to rounding. Each decomposition
-/// allocates memory.
+/// Fixed-size Eigen decompositions would double the compile time, so these functions accept matrices of all sizes. The
+/// factorisations equal Eigen's bit for bit; the eigenvalues are equal up to rounding. Each decomposition allocates
+/// memory.
 namespace tumble::dense {
 
 using Symmetric = Eigen::Ref<const Eigen::MatrixXd>;  ///< only the lower triangle is read
 
-/// If A is not positive definite, `ok()` returns false and the results are undefined.
+/// If the matrix A is not positive definite, `ok()` returns false and the results are undefined.
 class Cholesky {
  public:
   explicit Cholesky(const Symmetric& A);

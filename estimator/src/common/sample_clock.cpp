@@ -15,7 +15,7 @@ constexpr double kOutlier = 4.0;  // largest error of an accepted stamp, in stan
 constexpr double kStray = 0.4;    // error of a stamp, in periods, above which the sample number is uncertain
 constexpr std::size_t kConsecutiveOutliersMax = 8;
 constexpr double kPeriodJitterMax = 0.25;  // maximum jitter in periods; random stamps have 0.29
-// If successive errors correlate more strongly, the fitted line does not follow the clock.
+// If successive residuals correlate more strongly, the fitted line does not follow the sensor's clock.
 constexpr double kErrorCorrelationMax = 0.5;
 constexpr double kStepMin_periods = 0.25;      // minimum time between two samples, in periods
 constexpr double kSampleNumberSigmaMax = 0.1;  // maximum uncertainty of the sample number after a gap, in periods
@@ -28,7 +28,6 @@ double after_ns(TimeNs later_ns, TimeNs earlier_ns) {
 }
 
 struct Line {
-  /// slope of the line; value of the line at the last stamp, relative to the first stamp
   double period_ns = 0.0, last_ns = 0.0;
   double weighted_number_sum = 0.0,
          weighted_number_squared_sum = 0.0;  ///< sums over the sample numbers, counted from the last stamp

@@ -7,10 +7,10 @@ namespace tumble::so3 {
 
 namespace {
 
-// For smaller angles, two terms of the power series are exact to rounding.
+// For angles below 1e-4, two terms of the power series are exact to rounding.
 constexpr double kSmallAngle = 1e-4;
-// For smaller angles x, x - sin(x) loses digits by cancellation. Six terms of the power series are exact to rounding up
-// to 0.5.
+// For angles x below 0.5, x - sin(x) loses digits by cancellation, and six terms of the power series are exact to
+// rounding.
 constexpr double kCancellingAngle = 0.5;
 
 // Returns (1 - cos x) / x^2 by the half-angle formula, which avoids cancellation of digits.

@@ -14,7 +14,6 @@ Registration::Params full_params(const LidarInertialOdometry::Params& params) {
   return out;
 }
 
-// maximum distance between point and map points in the coarse stage, as a multiple of the matching distance
 constexpr double kCoarseReach = 2.0;
 
 /// The result of a coarse registration only needs to be near the solution.

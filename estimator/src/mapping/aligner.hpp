@@ -16,8 +16,8 @@ struct Scene {
   const VoxelMap& map;
 };
 
-/// Aligner registers a sweep to the map in stages. `trajectory` is the registered motion, or the motion of a failed
-/// attempt.
+/// Aligner registers a sweep to the map in stages, from few points to all points. `trajectory` receives the registered
+/// motion, or the motion of a failed attempt.
 class Aligner {
  public:
   explicit Aligner(const LidarInertialOdometry::Params& params);
@@ -28,7 +28,7 @@ class Aligner {
   /// Registers a sweep with a subset of its points until convergence, then with all points.
   void align_to_convergence(const Registration::Prior& prior, const Scene& scene, SweepTrajectory& trajectory,
                             Registration::Result& found);
-  /// The initial pose may be far from the solution, so the registration starts with a coarse stage.
+  /// Starts with a coarse stage, because the initial pose may be far from the solution.
   void align_coarse_to_fine(const Registration::Prior& start, const Registration::Prior& prior, const Scene& scene,
                             SweepTrajectory& trajectory, Registration::Result& found);
 

@@ -45,7 +45,7 @@ Motion frame_jacobian(const Eigen::Matrix3d& turn, const Eigen::Vector3d& v_WI_m
   return T;
 }
 
-/// Applies a Kalman update with the measured velocity 0. The gain follows from C, and E is the covariance of the actual
+/// Applies a Kalman update with the measured velocity 0; the gain follows from C, and E is the covariance of the actual
 /// errors.
 void bound_speed(double sigma_m_s, MotionState& state, Motion& C, Motion& E) {
   const Eigen::Matrix3d R = sigma_m_s * sigma_m_s * Eigen::Matrix3d::Identity();

@@ -10,7 +10,7 @@ namespace tumble::mapping {
 /// Gravity is exactly vertical in the world frame, so a wrong tilt is an error of the attitude.
 StateEstimate estimate_before_map(const LidarInertialOdometry::Params& params, const MotionState& levelled);
 
-/// The mean force of a moving body differs from gravity, and the velocity is unknown.
+/// The mean force of a moving body differs from gravity, and the velocity of the body is unknown.
 void widen_for_motion(MotionState& levelled);
 
 /// Returns `motion` with the position and heading of `T_WI`, and with unchanged tilt.
@@ -24,13 +24,11 @@ StateEstimate with_tilt(const LidarInertialOdometry::StartTilt& tilt, const Stat
 /// prior on the speed limits the errors of tilt and velocity over minutes of motion.
 StateEstimate reset_origin_and_yaw(const StateEstimate& reckoned, double step_s);
 
-/// Returns the state at the start of the sweep that starts the map. The lidar's pose at the start of the first sweep
-/// defines the map frame, so this pose has no error. The tilt error of dead reckoning therefore becomes an error of
-/// gravity's direction.
+/// The lidar's pose at the start of the first sweep defines the map frame, so this pose has no error. The tilt error of
+/// dead reckoning therefore becomes an error of gravity's direction.
 StateEstimate estimate_at_first_sweep(const LidarInertialOdometry::Params& params, const StateEstimate& reckoned);
 
-/// Returns the covariance of the map relative to the world; the map's vertical is as uncertain as the tilt of
-/// `reckoned`.
+/// The map's vertical is as uncertain as the tilt of `reckoned`.
 WorldCovariance world_at_first_sweep(const LidarInertialOdometry::Params& params, const StateEstimate& reckoned);
 
 }  // namespace tumble::mapping

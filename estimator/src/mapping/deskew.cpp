@@ -47,7 +47,7 @@ void apply_calibration(const SweepCalibration& calibration, double later_s, std:
   }
 }
 
-/// Computes u(t) of each point, the position minus the contributions of start state and gravity: mapping.md (R3).
+/// See mapping.md (R3).
 void compute_lever_arm_vectors(const SweepTrajectory& trajectory, std::span<const SweepPoint> points,
                                std::vector<Eigen::Vector3f>& levers_W_m) {
   levers_W_m.resize(points.size());

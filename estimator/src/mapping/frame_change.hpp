@@ -18,7 +18,7 @@ struct FrameChange {
 
  private:
   void apply(Registration::Estimate& mean) const;
-  /// Rotates a covariance of all unknowns from W to M, and adds the error of T_MW. `mean` is the estimate in frame M.
+  /// Rotates a covariance of all unknowns from frame W to frame M, and adds the error of T_MW.
   void apply(const Registration::Estimate& mean, Registration::Matrix& of_all) const;
   Registration::Matrix rotation() const;
 };

@@ -9,7 +9,7 @@
 
 namespace tumble::mapping {
 
-/// A longer time between two IMU samples is a gap, because the reading does not describe the motion in between.
+/// An IMU reading does not describe the motion in a longer time step, so such a time step is a gap.
 inline constexpr TimeNs kGap_ns = 50'000'000;
 
 struct WindowRate {
@@ -21,8 +21,8 @@ struct WindowRate {
 };
 
 /// Fills the gap from the end of `before` to the start of `after` with linearly interpolated rates: mapping.md (R44).
-/// All axes count as clipped, so that a registration that estimates the saturation deficit also estimates the
-/// interpolation error. Each appended sample is 10 ms long, or longer in gaps beyond 0.64 s.
+/// All axes count as clipped, so that the registration also estimates the interpolation error. Each sample appended in
+/// a gap is 10 ms long, or longer in gaps beyond 0.64 s.
 void bridge_gap(const InertialNoiseParams& params, const WindowRate& before, const WindowRate& after,
                 std::vector<MotionSample>& samples);
 

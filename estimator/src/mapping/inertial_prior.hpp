@@ -10,14 +10,13 @@
 namespace tumble::mapping {
 
 /// Returns the covariance that inertial integration over one sweep adds to the errors of position, attitude and
-/// velocity. Rate errors come mainly from saturation, so they are assumed constant over the sweep. The axes in
+/// velocity. Rate errors come mainly from saturation, so rate errors are assumed constant over the sweep. The axes in
 /// `deficit_axes` (bits) are excluded, because the registration estimates their saturation deficit.
 Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& params,
                                            const SweepTrajectory& trajectory, std::span<const MotionSample> samples,
                                            unsigned deficit_axes);
 
-/// Returns the covariance, in frame W, of the velocity change over a sweep due to accelerometer saturation. The
-/// saturation deficit is assumed constant while the saturation lasts.
+/// Returns the covariance, in frame W, of the velocity change over a sweep due to accelerometer saturation.
 Eigen::Matrix3d clipped_velocity_variance(const LidarInertialOdometry::Params& params,
                                           const SweepTrajectory& trajectory, std::span<const MotionSample> samples);
 
@@ -26,7 +25,6 @@ Eigen::Matrix3d clipped_velocity_variance(const LidarInertialOdometry::Params& p
 /// mean specific force is below 1 m/s^2.
 Status start_at_rest(const LidarInertialOdometry::Params& params, std::span<const MotionSample> samples,
                      MotionState& state);
-/// The state has no time stamp.
 Status level_at_rest(const LidarInertialOdometry::Params& params, const Eigen::Vector3d& force_I_m_s2,
                      MotionState& state);
 

@@ -90,7 +90,6 @@ void InertialTrack::fill_gap(const Params& params, bool in_flight) {
   if (!in_flight || !bridge_flight(params, *before_newest_, *newest_))
     bridge_gap(params.expert.prior, *before_newest_, *newest_, samples_);
   if (pending_rates_rad_s_.empty()) return;
-  // pending_rates_rad_s_ contains the rates of the samples in the incomplete average of the rest detector.
   for (const MotionSample& part : std::span(samples_).subspan(first))
     pending_rates_rad_s_.insert(pending_rates_rad_s_.end() - 1, part.w_WI_I_rad_s);
 }
@@ -138,7 +137,6 @@ void InertialTrack::update_rest(const Params& params, const ImuSample& sample, c
   ImuSample received = sample;
   received.angular_velocity_rad_s = rate.w_WI_I_rad_s;
   const bool clipped = (rate.clipped_axes & kClipGyro) != 0;
-  // During the initial rest, the mean rate is the gyro's bias.
   const Eigen::Vector3d bias = initial_.lasts ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : initial_.gyro_bias_rad_s;
   if (clipped) rest_ = {};
   if (!clipped && rest_detector_.observe(received, rest_, bias)) next.rest_start_ns = rest_.first_ns;
@@ -161,7 +159,6 @@ void InertialTrack::update_rest(const Params& params, const ImuSample& sample, c
   pending_rates_rad_s_.clear();
 }
 
-/// The caller has found that no rest continues through the last averaged reading.
 void InertialTrack::revoke_rest(std::optional<TimeNs> rest_start_ns) {
   const std::size_t count = std::min(pending_rates_rad_s_.size(), samples_.size());
   for (std::size_t back = 1; back <= count; ++back) {

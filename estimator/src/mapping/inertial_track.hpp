@@ -20,7 +20,7 @@ class InertialTrack {
 
   /// Returns `ok` if the sample is later than all earlier samples, and `time_order` otherwise.
   Status check(const ImuSample& sample) const;
-  /// check() must have accepted the sample.
+  /// The method check() must have accepted the sample.
   void take(const Params& params, const ImuSample& sample, const RateState& rate);
 
   /// The last sweep ended within the averaging window of the first stored sample.
@@ -42,7 +42,7 @@ class InertialTrack {
   void prune_until(TimeNs end_ns);
 
  private:
-  /// InitialRest ends with the first motion, but its results remain.
+  /// The initial rest ends with the first motion, but its results remain valid.
   struct InitialRest {
     bool lasts = true;
     std::optional<TimeNs> first_ns;  ///< first sample of the recording

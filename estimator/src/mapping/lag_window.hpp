@@ -24,7 +24,6 @@ struct WindowSweep {
   TimeNs end_ns = 0;
   std::vector<InsertedPoint> inserted;
 
-  /// Computes the smoothed motion of the sweep, with the errors of SweepTrajectory::build.
   Status motion(SweepTrajectory& trajectory) const;
 };
 
@@ -36,7 +35,7 @@ class LagWindow {
 
   /// A full lag window first drops its oldest sweep.
   WindowSweep& enter();
-  /// If the lag window is full, its oldest sweep has its final estimate.
+  /// The oldest sweep of a full lag window has its final estimate.
   bool is_full() const { return sweeps_.size() == length_; }
   /// Smooths all sweeps except the newest: mapping.md (R63).
   void smooth();

@@ -36,9 +36,8 @@ class LocalMap {
   const VoxelMap& voxels() const { return map_; }
   bool empty() const { return map_.size() == 0; }
 
-  /// Adds the points of a sweep to the map and to `inserted`. Cost: O(points of the map). `noise` computes the variance
-  /// of a lidar return. If the pose of the sweep is certain, the function counts the map points that the sweep saw or
-  /// saw through.
+  /// Adds the points of a sweep to the map and to the list `inserted`. Cost: O(points of the map). `noise` computes the
+  /// variance of a lidar return. A sweep with a certain pose counts the map points that it saw or saw through.
   std::size_t insert(const Params& params, const SweepToInsert& sweep, const Registration& noise,
                      std::vector<InsertedPoint>& inserted);
   /// Moves inserted points to their positions on the refined trajectory, with `later_s` added to their times:

@@ -72,7 +72,6 @@ struct LoneReturns::Beside {
   auto end() const { return beam.begin() + count; }
 };
 
-/// `at` and `other` are indices in ring order.
 bool LoneReturns::is_neighbour(std::size_t at, std::size_t other, float reach2) const {
   if (other >= beams_.size() || beams_[other].ring != beams_[at].ring) return false;
   const bool next = other + 1 == at || at + 1 == other;
@@ -82,7 +81,6 @@ bool LoneReturns::is_neighbour(std::size_t at, std::size_t other, float reach2) 
 
 bool LoneReturns::is_confirmed(const RangeNoise& noise, std::size_t at, float reach2) const {
   const Beam& beam = beams_[at];
-  // The previous beam usually confirms a return. An index below 0 wraps around to a number beyond the end of the list.
   const bool has_before = is_neighbour(at, at - 1, reach2);
   if (has_before && is_steep_surface(kMinSurfaceSine, beam, beams_[at - 1])) return true;
   const bool has_after = is_neighbour(at, at + 1, reach2);
@@ -123,7 +121,6 @@ void LoneReturns::sort_by_ring(const std::vector<SweepPoint>& points) {
   }
 }
 
-/// The first beam of each ring gets the value 1.
 void LoneReturns::measure_steps() {
   steps2_.assign(beams_.size(), 1.0f);
   sorted_steps2_.clear();

@@ -17,8 +17,8 @@ struct RangeNoise {
 /// LoneReturns detects returns that no neighbouring beam confirms, for example from dust, rain, snow, grass or birds.
 ///
 /// A neighbouring return on the same ring confirms a return in one of three ways: mapping.md (R13), (R14), (R15). The
-/// returns before and after have an equal range, form a surface with the return, or lie on one line with the return.
-/// LoneReturns keeps all returns of a sweep with no more lone returns than clear air causes.
+/// return has the same range as a neighbour, forms a surface with a neighbour, or lies on the line between two
+/// neighbours. LoneReturns keeps all returns of a sweep that has no more lone returns than clear air causes.
 class LoneReturns {
  public:
   /// Removes the lone returns from `points`, and returns their number. Cost: O(points). The remaining points are

@@ -9,8 +9,7 @@ namespace tumble::mapping {
 namespace {
 
 constexpr double kChanceAgreementMax = 0.8;
-// The fraction of points that agree at the second best (wrong) pose measures agreement by chance. kChanceMargin is a
-// margin for sampling errors.
+// The fraction of points that agree at the second best (wrong) pose measures agreement by chance.
 constexpr double kChanceMargin = 0.3;
 constexpr double kFalseAcceptance = 1e-6;  // maximum probability that a search accepts a wrong pose
 constexpr std::size_t kMinPoints = 100;    // minimum number of surface points for a search
@@ -68,7 +67,6 @@ std::optional<FramePose> MapLocaliser::observe(const VoxelMap& local, const Eige
   return pose;
 }
 
-/// The second best pose is wrong, and therefore measures how many points agree by chance.
 void MapLocaliser::propose(const std::vector<SurfacePoint>& points, const Eigen::Vector3d& p_WI_m) {
   SearchRegion region;
   if (map().T_MI) {  // the stated pose defines the local frame, so the heading of W in M is about zero

@@ -11,7 +11,7 @@ namespace tumble::mapping {
 /// MapLocaliser finds the pose of the local frame W in the frame M of a prior map: mapping.md, "Localisation in a prior
 /// map".
 ///
-/// A pose is accepted after several successive sweeps that pass a statistical test, and rejected after two that fail.
+/// A pose is accepted after several successive sweeps that pass a statistical test, and rejected after two failures.
 class MapLocaliser {
  public:
   MapLocaliser() = default;
@@ -23,7 +23,7 @@ class MapLocaliser {
   /// The search is limited to the neighbourhood of `T_MI`, if given.
   void restart(const std::optional<Eigen::Isometry3d>& T_MI);
 
-  /// Returns the pose of the local frame in the prior map if the sweep completes the acceptance of a pose. Cost: a few
+  /// Returns the pose of the local frame in the prior map if the sweep confirms the proposed pose. Cost: a few
   /// milliseconds, or about a second for every fifth sweep while no pose is proposed.
   std::optional<FramePose> observe(const VoxelMap& local, const Eigen::Vector3d& p_WI_m);
   /// Returns `degenerate` if the run is not localised in its prior map.

@@ -7,7 +7,7 @@
 namespace tumble::mapping {
 
 /// At rest, the mean rate is within `rest.rate_rad_s` of the gyro bias on each axis, and the specific force is within
-/// `rest.force_m_s2` of gravity. The limits of rest detection are heuristic.
+/// `rest.force_m_s2` of gravity.
 RestDetector::Params mapper_rest(const LidarInertialOdometry::Params& params);
 
 }  // namespace tumble::mapping

@@ -59,7 +59,6 @@ struct LidarInertialOdometry::Impl {
   void register_to_map(const mapping::Prediction& prediction, const mapping::MotionWindow& motion,
                        mapping::SweepPoints& points, SweepTrajectory& trajectory, SweepReport& report,
                        mapping::Placed& placed);
-  /// The predicted velocity is zero if the robot is at rest after a tracking failure.
   mapping::StateEstimate update(const mapping::MotionWindow& motion, const mapping::Placed& placed,
                                 mapping::Prediction& prediction) const;
   std::vector<mapping::InsertedPoint> insert(const mapping::UpdatedSweep& sweep, mapping::SweepPoints& points,
@@ -68,7 +67,6 @@ struct LidarInertialOdometry::Impl {
                  std::vector<mapping::InsertedPoint> inserted, SweepReport& report);
   static mapping::WindowSweep& enter_window(const mapping::UpdatedSweep& sweep, const mapping::MotionWindow& motion,
                                             const mapping::SweepBoundary& from, mapping::LagWindow& into);
-  /// Sets the predicted velocity to zero if the robot is at rest after a tracking failure.
   void predict_stationary(const mapping::MotionWindow& motion, const mapping::SweepBoundary& from,
                           mapping::Prediction& prediction) const;
   void propagate_alternative(const mapping::MotionWindow& motion, bool unconfirmed_before);
@@ -80,14 +78,14 @@ struct LidarInertialOdometry::Impl {
   const MotionState* rejected_relocalisation() const;
   void add_map_drift(const mapping::UpdatedSweep& sweep, const SweepReport& report);
   void prune_until(TimeNs end_ns);
-  /// If MapLocaliser accepts a pose, the odometry continues in the frame of the prior map, with its points.
+  /// The odometry continues in the frame of the prior map if MapLocaliser accepts a pose.
   void localise(const SweepReport& report);
   void enter_prior_map(const mapping::FramePose& pose);
   bool extends_map() const { return !localiser.is_localised() || localiser.map().extend; }
 
   PoseState pose_along(const SweepTrajectory& motion, double t_s, const Registration::Matrix& errors) const;
-  /// Returns the poses at the ends of the IMU windows, with the last pose at `end_ns`. `errors` is the covariance of
-  /// the unknowns at the start of the sweep.
+  /// Returns the poses at the ends of the IMU's averaging windows. `errors` is the covariance of the unknowns at the
+  /// start of the sweep.
   std::vector<PoseState> poses_along(const SweepTrajectory& motion, TimeNs end_ns,
                                      const Registration::Matrix& errors) const;
   std::vector<PoseState> poses_of(const mapping::WindowSweep& sweep) const;

@@ -68,7 +68,7 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
     if (!status.ok()) return status;
   }
   const UpdatedSweep sweep{*prediction, *start, trajectory};
-  // A sweep for whose registration the map has too few points is inserted at its predicted pose.
+  // If the map has too few points for a registration, the sweep is inserted at its predicted pose.
   std::vector<InsertedPoint> inserted;
   if (extends_map() && (placed->verdict != SweepVerdict::rejected || placed->map_too_sparse))
     inserted = insert(sweep, points, counts.has_ring_numbers, *placed, report);
@@ -89,8 +89,8 @@ Status LidarInertialOdometry::Impl::check_sweep(TimeNs start_ns, TimeNs end_ns,
   if (samples.back().time_ns < end_ns) {
     return {ErrorCode::too_few, "imu time_ns", double(samples.back().time_ns), double(end_ns)};
   }
-  // If the lidar's clock is wrong, the first sweep may start before the first IMU sample. The robot is then assumed to
-  // be at rest up to the first sample.
+  // If the lidar's clock is wrong, the first sweep may start before the first IMU sample. Before the first IMU sample,
+  // the robot is assumed to be at rest.
   const double early_s = seconds(samples.front().from_ns - start_ns);
   if (!started && early_s > (params.time_offset_s != 0.0 ? SweepTrajectory::kExtrapolation_s : 0.0)) {
     return {ErrorCode::too_few, "start_ns", double(start_ns), double(samples.front().from_ns)};
@@ -213,11 +213,10 @@ void LidarInertialOdometry::Impl::register_to_map(const Prediction& prediction, 
   mapping::judge(params, tracking, scene.points.size(), prior_certain, attempt, placed);
 }
 
-/// At rest after a tracking failure, the function also corrects `prediction`, because the lag window uses it.
+/// At rest after a tracking failure, `prediction` is also corrected, because the lag window uses it.
 StateEstimate LidarInertialOdometry::Impl::update(const MotionWindow& motion, const Placed& placed,
                                                   Prediction& prediction) const {
   if (placed.alignment) return mapping::posterior(prediction, *placed.alignment);
-  // At rest, a velocity of zero prevents drift.
   if (mapping::is_lost(tracking)) predict_stationary(motion, boundary, prediction);
   return mapping::posterior(prediction);
 }
@@ -265,7 +264,7 @@ void LidarInertialOdometry::Impl::propagate(const UpdatedSweep& sweep, const Pla
     window.smooth();
     window.move_inserted(map);
   }
-  // The oldest sweep leaves the lag window with the next sweep, so its pose is final.
+  // The oldest sweep leaves the lag window with the next sweep, so the pose of the oldest sweep is final.
   if (window.is_full()) report.smoothed = poses_of(window.sweeps().front());
   mapping::boundary_after(params, sweep.start, motion, sweep.trajectory, aligned, boundary);
   report.pose = boundary.state_estimate.mean.state.pose();
@@ -277,7 +276,7 @@ void LidarInertialOdometry::Impl::propagate(const UpdatedSweep& sweep, const Pla
   prune_until(motion.end_ns);
 }
 
-/// The inserted points share the pose error of the sweep.
+/// All points inserted from a sweep share the pose error of the sweep.
 void LidarInertialOdometry::Impl::add_map_drift(const UpdatedSweep& sweep, const SweepReport& report) {
   const double inserted_fraction =
       report.points_used == 0 ? 0.0 : double(report.map_points_added) / double(report.points_used);
@@ -293,8 +292,6 @@ void LidarInertialOdometry::Impl::prune_until(TimeNs end_ns) {
   if (map.prune(params, boundary.state_estimate.mean.state.p_WI_m)) window.clear_inserted();
 }
 
-/// While a relocalisation is unconfirmed, the alternative is the pose without the relocalisation. After a
-/// contradiction, the alternative is the relocalised pose.
 void LidarInertialOdometry::Impl::propagate_alternative(const MotionWindow& motion, bool unconfirmed_before) {
   const bool relocalisation_unconfirmed = mapping::is_unconfirmed(tracking);
   if (relocalisation_unconfirmed && !unconfirmed_before) {
@@ -312,8 +309,7 @@ void LidarInertialOdometry::Impl::propagate_alternative(const MotionWindow& moti
   if (!continue_by_inertia(motion, rests, other->boundary, &other->window).ok()) other.reset();
 }
 
-/// Propagates the state to the end of a sweep without using the points of the sweep. If `into` is not null, the sweep
-/// also enters this lag window.
+/// The points of the sweep are not used. If `into` is not null, the sweep also enters this lag window.
 Status LidarInertialOdometry::Impl::continue_by_inertia(const MotionWindow& motion, bool rests,
                                                         mapping::SweepBoundary& at, mapping::LagWindow* into) const {
   const Registration::Estimate& before = at.state_estimate.mean;
@@ -334,8 +330,8 @@ Status LidarInertialOdometry::Impl::continue_by_inertia(const MotionWindow& moti
   return {};
 }
 
-/// Removes the map points inserted since a relocalisation that later sweeps contradict. The relocalised pose remains an
-/// initial pose of the search.
+/// Removes the map points inserted since a relocalisation that later sweeps contradict. After a contradiction, the
+/// relocalised pose remains an initial pose of the search.
 void LidarInertialOdometry::Impl::revert_to_inertia() {
   map.remove_sweeps_since(std::exchange(other->inserted_from, 0));  // 0, because pruning changes sweep numbers
   std::swap(boundary, other->boundary);

@@ -9,8 +9,8 @@
 
 namespace tumble::mapping {
 
-/// The sum equals Eigen's rankUpdate bit for bit. Eigen's rankUpdate keeps its blocks on the stack (86 KiB for 128
-/// columns of 28 numbers), OuterProducts on the heap.
+/// The sum of outer products equals Eigen's rankUpdate bit for bit. Eigen's rankUpdate needs 86 KiB of stack for 128
+/// columns of 28 numbers; OuterProducts uses the heap.
 template <int Rows, int Columns>
 class OuterProducts {
  public:
@@ -22,8 +22,7 @@ class OuterProducts {
 
   Eigen::Matrix<double, Rows, Columns> columns;
 
-  /// Adds the outer products of the first `count` columns, limited to their first `size` numbers, to the lower triangle
-  /// of `sum`.
+  /// Adds v v^T of the first `size` numbers of the first `count` columns v to the lower triangle of `sum`.
   void add_to(int size, int count, Matrix& sum) {
     namespace e = Eigen::internal;
     e::general_matrix_matrix_triangular_product<Eigen::Index, double, Eigen::ColMajor, false, double, Eigen::RowMajor,

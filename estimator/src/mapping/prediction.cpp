@@ -19,7 +19,7 @@ namespace {
 namespace u = unknowns;
 using Params = LidarInertialOdometry::Params;
 
-/// See mapping.md (R48). The saturation deficit at the boundary between two sweeps decays exponentially.
+/// See mapping.md (R48). The saturation deficit at the boundary between two sweeps decays exponentially with time.
 void carry_deficit(const Params& params, const SweepBoundary& boundary, const SweepTrajectory& trajectory,
                    Prediction& next) {
   constexpr int kLast = SweepTrajectory::kKnots - 1;
@@ -39,19 +39,18 @@ void carry_deficit(const Params& params, const SweepBoundary& boundary, const Sw
   }
 }
 
-/// Returns the largest reported standard deviation of the rate among samples with clipped `axis`.
+/// Only samples in which `axis` is clipped count.
 double deficit_sigma(const Params& params, const MotionWindow& window, const SweepTrajectory& trajectory, int axis) {
   double sigma = params.expert.rails.deficit_sigma_min_rad_s;
   for (const MotionSample& sample : window.samples) {
-    // The remaining samples belong to the next sweep.
     if (seconds(sample.from_ns - trajectory.start_ns()) >= trajectory.duration_s()) break;
     if (sample.clipped_axes >> axis & 1) sigma = std::max(sigma, sample.rate_sigma_rad_s[axis]);
   }
   return sigma;
 }
 
-/// The saturation deficit is a first-order Gauss-Markov process: mapping.md (R46), (R47). If the deficit continues from
-/// the last sweep, its covariance follows from mapping.md (R49).
+/// The saturation deficit is a first-order Gauss-Markov process: mapping.md (R46), (R47). If the saturation deficit
+/// continues from the last sweep, its covariance follows from mapping.md (R49).
 void add_deficit_noise(const Params& params, const MotionWindow& window, const SweepTrajectory& trajectory,
                        Prediction& next) {
   if (!params.expert.rails.estimate_deficit) return;
@@ -119,8 +118,8 @@ Prediction predict(const Params& params, const SweepBoundary& boundary, const Mo
   MotionNoise within = inertial_noise(params, trajectory, window.samples, axes);
   const Eigen::Matrix3d clipped_force_m2_s2 = clipped_velocity_variance(params, trajectory, window.samples);
   u::block(next.noise, u::motion) += within;
-  // A force that saturates late in a sweep hardly affects the registration, so its variance is added to the next sweep
-  // as well.
+  // A force that saturates late in a sweep hardly affects the registration of the sweep, but changes the velocity in
+  // the next sweep.
   u::block(next.noise, u::velocity) += boundary.clipped_velocity_m2_s2 + clipped_force_m2_s2;
   u::block(within, u::velocity) += clipped_force_m2_s2;
   add_deficit_noise(params, window, trajectory, next);
@@ -153,7 +152,7 @@ StateEstimate posterior(const Prediction& prediction) {
 
 namespace {
 
-/// See mapping.md (R52). A separate function keeps these matrices out of the stack frame of posterior().
+/// See mapping.md (R52). A separate function keeps large matrices out of the stack frame of posterior().
 [[gnu::noinline]] void prior_error_gain(const Prediction& prediction, const Registration::Result& aligned,
                                         Registration::Matrix& out) {
   // Noise of the surface normals carries no information about the motion.

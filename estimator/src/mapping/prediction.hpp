@@ -12,8 +12,7 @@ struct SweepBoundary {
   StateEstimate state_estimate;
   /// derivative of the unknowns at the boundary with respect to the unknowns at the start of the last sweep
   Registration::Matrix end_start_jacobian = Registration::Matrix::Identity();
-  /// magnitude |s_j| of the saturation deficit's factor at the end of the last sweep, mapping.md (R8); 0 for
-  /// unsaturated axes
+  /// magnitude |s_j| of the saturation deficit's factor at the end of the last sweep: mapping.md (R8)
   Eigen::Vector3d deficit_factor = Eigen::Vector3d::Zero();
   Eigen::Matrix3d clipped_velocity_m2_s2 =
       Eigen::Matrix3d::Zero();  ///< variance of the velocity due to the accelerometer's saturation, in W
@@ -35,7 +34,7 @@ struct Prediction {
   Registration::Matrix noise = Registration::Matrix::Zero();   ///< process noise
   Registration::Matrix errors = Registration::Matrix::Zero();  ///< covariance of the actual errors of the mean
 
-  /// Call compose() after setting all other members.
+  /// compose() requires that all other members are set.
   void compose(const StateEstimate& at_boundary);
   /// Sets the velocity to zero and removes its correlations. Call zero_velocity_update() before compose().
   void zero_velocity_update(double sigma_m_s);
@@ -45,10 +44,9 @@ struct Prediction {
 Prediction predict(const LidarInertialOdometry::Params& params, const SweepBoundary& boundary,
                    const MotionWindow& window, const SweepTrajectory& trajectory, const MotionPrior& known);
 
-/// After a tracking failure, zero motion at rest stops the drift of the velocity.
+/// At rest after a tracking failure, a prediction of zero motion stops the drift of the velocity.
 void predict_rest(const LidarInertialOdometry::Params& params, const SweepBoundary& boundary, Prediction& prediction);
 
-/// Returns whether the prior alone is accurate enough to insert points into the map.
 bool prior_is_certain(const LidarInertialOdometry::Params& params, const SweepBoundary& boundary,
                       const MotionWindow& window, const SweepTrajectory& trajectory);
 
@@ -59,8 +57,8 @@ StateEstimate posterior(const Prediction& prediction, const Registration::Result
 /// Returns the normalised difference between registered and predicted motion: mapping.md (R62).
 double innovation(const Prediction& prediction, const Registration::Estimate& aligned);
 
-/// See mapping.md (R67). The difference from the prediction must be within the predicted covariance and the matching
-/// distance. Beyond the matching distance, any nearby surface may match by chance.
+/// See mapping.md (R67). A registered pose is expected if its difference from the prediction is within the predicted
+/// covariance and the matching distance. Beyond the matching distance, any nearby surface may match by chance.
 bool is_expected(const LidarInertialOdometry::Params& params, const Prediction& prediction,
                  const Registration::Estimate& aligned, double innovation);
 

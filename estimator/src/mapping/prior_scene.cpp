@@ -27,7 +27,6 @@ constexpr std::size_t kCoarsePoints = 240;  // number of surface points for a co
 constexpr std::size_t kKept = 4000, kRefined = 96;
 constexpr float kApart_m = 1.0f;  // minimum distance of two distinct poses
 constexpr double kApart_rad = 0.12;
-// largest difference between the vertical components of the normals of an anchor and of a cell
 constexpr float kNormalZ = 0.3f;
 
 constexpr float kCovered_m = 1.0f;  // maximum distance of a covered point from the prior map
@@ -35,7 +34,7 @@ constexpr float kNearSurface_m = 0.5f, kAgreeDistance_m = 0.12f, kAgreeNormal = 
 constexpr std::size_t kRefinePoints = 400;
 constexpr float kLastKernel_m = 0.15f;
 
-/// Equally many points of each slope class (normal-space sampling) are scored, because trunks and rocks determine the
+/// Each slope class contributes equally many points (normal-space sampling), because trunks and rocks determine the
 /// pose better than the ground.
 int slope_class(const Eigen::Vector3f& normal) {
   const float z = std::abs(normal.z());
@@ -173,7 +172,7 @@ Eigen::Isometry3d PriorScene::pose_of(const Candidate& candidate, const SurfaceP
   return T_MW;
 }
 
-/// Scores every pose that moves the anchor (one surface point) to a surface cell of the prior map, with every heading.
+/// Scores every pose that moves one surface point (the anchor) to a surface cell of the prior map, with every heading.
 std::vector<PriorScene::Candidate> PriorScene::best_candidates(const std::vector<SurfacePoint>& points,
                                                                const SurfacePoint& anchor, const SearchRegion* region,
                                                                std::size_t& tried) const {

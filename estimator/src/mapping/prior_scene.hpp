@@ -11,14 +11,13 @@
 /// See mapping.md, "Localisation in a prior map".
 namespace tumble::mapping {
 
-/// A list of surface points has at most one point per cube of 1 m, so that the errors of the points are nearly
-/// independent.
+/// A list of surface points has at most one point per cube of 1 m, so that point errors are nearly independent.
 struct SurfacePoint {
   Eigen::Vector3f position_W_m;
   Eigen::Vector3f normal_W;
 };
 
-/// The surface points are ordered by the distance of their cubes.
+/// The surface points are ordered by distance from `p_WI_m`.
 std::vector<SurfacePoint> surface_points(const VoxelMap& map, const Eigen::Vector3f& p_WI_m, float radius_m);
 
 struct FramePose {
@@ -77,7 +76,6 @@ class PriorScene {
   PriorMap map_;
   VoxelMap voxels_;
   std::vector<Eigen::Vector3f> normals_;  // by index of voxels_
-  // dense grid of surface cells with a margin of the query's radius, and the list of the occupied cells
   float cell_m_ = 0.0f;
   Eigen::Vector3f low_M_m_ = Eigen::Vector3f::Zero();
   Eigen::Vector3i size_ = Eigen::Vector3i::Zero();

@@ -27,8 +27,6 @@ using MotionJacobian = Eigen::Matrix<double, Values, kMotionSize>;
 constexpr int kIterations = 6;              // two or three iterations are usually enough
 constexpr double kConvergenceLimit = 1e-9;  // convergence limit [m, rad, m/s, rad/s]
 
-/// differences between update and prediction, for the unknowns at the sweep boundary and for the process noise since
-/// then
 struct Offsets {
   Registration::Vector start = Registration::Vector::Zero();
   Eigen::Matrix<double, kMotionSize, 1> noise = Eigen::Matrix<double, kMotionSize, 1>::Zero();
@@ -57,7 +55,8 @@ class Sweep {
     return time_ns >= predicted_.state.time_ns - beyond_ns && time_ns <= window_.end_ns + beyond_ns;
   }
 
-  /// See mapping.md (R34). The standard deviation of the process noise is proportional to the time since the boundary.
+  /// See mapping.md (R34). The standard deviation of the process noise is proportional to the time since the sweep
+  /// boundary.
   MotionInstant at(TimeNs time_ns, const Offsets& offsets) const {
     MotionInstant out;
     const double t_s = seconds(time_ns - predicted_.state.time_ns);
@@ -222,7 +221,7 @@ void fuse_reading(const OdometerReading& reading, const SweepBoundary& boundary,
   const Sweep sweep(prediction.prior.mean, window);
   if (!holds(sweep, reading)) return;
   const auto work = std::make_unique<Work>();
-  // As in the registration, the gains follow from the covariance C: mapping.md, section 6.
+  // The gains follow from the covariance C, as in the registration: mapping.md, section 6.
   propagate_covariance(prediction.jacobian_boundary, boundary.state_estimate.weight, work->at_start);
   Matrix& before = work->before;  // noise at the start: saturation deficit, earlier saturation
   before = prediction.noise;

@@ -96,7 +96,7 @@ void Registration::find_match(const VoxelMap& map, std::size_t point, Neighbours
   if (match.searched) {
     const float moved2 = (positions_[point] - match.search_position_W_m).squaredNorm();
     if (moved2 <= rematch2) return;
-    // The radius includes all neighbours of the previous search, and a small margin for rounding.
+    // The search radius includes all neighbours of the previous search, so the nearest neighbours are found.
     radius_m = std::min(radius_m, kRounding * (match.farthest_neighbour_m + std::sqrt(moved2)));
   }
   match.searched = true;
@@ -213,9 +213,9 @@ void Registration::accumulate(std::span<const SweepPoint> points, const SweepTra
   sum.H = lower.selfadjointView<Eigen::Lower>();
 }
 
-/// NormalNoise is the part of the normal matrix due to noise of the surface normals: mapping.md (R28), (R29).
-/// NormalNoise must cover all free unknowns, because noise would otherwise seem to determine combinations that surfaces
-/// cannot determine.
+/// NormalNoise is the part of the normal matrix due to noise of the surface normals: mapping.md (R28), (R29). All free
+/// unknowns must be covered, because noise would otherwise seem to determine combinations that surfaces cannot
+/// determine.
 struct Registration::NormalNoise {
   const Unknowns& unknowns;
   using Products = mapping::OuterProducts<kUnknowns, 2 * static_cast<int>(kBlock)>;

@@ -16,10 +16,9 @@ struct Registration::Unknowns {
   /// The motion is always free; any other unknown is free if its prior variance is above 0.
   explicit Unknowns(const Matrix& covariance);
 
-  /// Copies the sums over the free unknowns to normal equations H, g for all unknowns; the rows of fixed unknowns are
-  /// 0.
+  /// In the normal equations H, g for all unknowns, the rows of fixed unknowns are 0.
   void expand(const Sums& sum, Matrix& H, Vector& g) const;
-  /// Removes the fixed unknowns from the normal equations, so that the solution is 0 for them.
+  /// Without fixed unknowns in the normal equations, the solution is 0 for them.
   void hold(Matrix& H, Vector& g) const;
   void clear_fixed_blocks(Matrix& M) const;
   void clear_fixed(Matrix& covariance) const;

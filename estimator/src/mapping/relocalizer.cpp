@@ -14,12 +14,11 @@ namespace {
 
 using Params = LidarInertialOdometry::Params;
 
-// Tried saturation deficits, as multiples of deficit_try_rad_s; small deficits are the most frequent.
+// Saturation deficits to try, as multiples of deficit_try_rad_s; small saturation deficits are the most frequent.
 constexpr double kDeficitTries[] = {1.0, 2.0, 3.0, 5.0};
 constexpr double kDeficitSigmas = 5.0;  // largest tried deficit, in standard deviations
 
 constexpr int kStartsPerRound = 12;  // number of initial poses per round: six axes, two directions
-// distance of an initial pose from the prior, in standard deviations; the maximum grows with each round
 constexpr double kStartSigmas = 1.5;
 
 bool converged(const Registration::Result& found) {
@@ -31,13 +30,13 @@ bool fits(const Params& params, const Registration::Result& found) {
   return double(found.inliers) >= params.expert.tracking.confirm_inlier_ratio * double(found.matches);
 }
 
-/// If the registration fails and an axis is clipped, track() tries larger saturation deficits. Saturation within one
+/// If the registration fails and a gyro axis is clipped, larger saturation deficits are tried. Saturation within one
 /// sweep may rotate the initial pose by a radian.
 void track(const Params& params, const Registration::Prior& prior, const Scene& scene, Aligner& aligner,
            SweepTrajectory& trajectory, Registration::Result& found) {
   aligner.align_with_all_points(prior, scene, trajectory, found);
   int iterations = found.iterations, tries = 0;
-  // After an attempt that exceeds the correction limit, further attempts would also exceed this limit.
+  // If one attempt exceeds the correction limit, further attempts would exceed this limit, too.
   const bool out_of_bounds = found.correction_m > params.expert.matching.correction_max_m ||
                              found.correction_rad > params.expert.matching.correction_max_rad;
   if (found.verdict == RegistrationVerdict::diverged && !out_of_bounds) {

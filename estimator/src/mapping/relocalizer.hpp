@@ -22,8 +22,8 @@ struct SearchContext {
   const MotionState* contradicted = nullptr;
 };
 
-/// `trajectory` is the registered motion, or the motion of a failed attempt. `alignment` is empty if no registration
-/// succeeded.
+/// `trajectory` receives the registered motion, or the motion of a failed attempt. `alignment` is empty if no
+/// registration succeeded.
 Attempt attempt(const LidarInertialOdometry::Params& params, const SearchContext& from, const Scene& scene,
                 Aligner& aligner, SweepTrajectory& trajectory, std::optional<Registration::Result>& alignment);
 
@@ -35,8 +35,7 @@ struct Placed {
   std::optional<Registration::Result> alignment;  ///< alignment at the start of the sweep
 };
 
-/// Sets the verdict of `placed`, the result of registering a sweep with `points` points. The verdict is `degenerate` if
-/// the map has too few points, or after enough failed searches.
+/// The verdict is `degenerate` if the map has too few points, or after enough failed searches.
 void judge(const LidarInertialOdometry::Params& params, const TrackingState& before, std::size_t points,
            bool prior_certain, const Attempt& attempt, Placed& placed);
 

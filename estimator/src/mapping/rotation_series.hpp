@@ -3,8 +3,8 @@
 
 #include <utility>
 
-/// Computes cosine and sine of half a small angle by power series. Let x be half the angle, h = x^2, and c = s = 1
-/// initially. Each pair of ratios (a, b) updates c to 1 - h a c and s to 1 - h b s, so that finally c = cos(x) and s =
+/// Computes cosine and sine of half a small angle by power series. Let x be half the angle, h = x^2, and initially c =
+/// s = 1. Each pair of ratios (a, b) updates c to 1 - h a c and s to 1 - h b s, so that finally c = cos(x) and s =
 /// sin(x) / x.
 namespace tumble::rotation_series {
 

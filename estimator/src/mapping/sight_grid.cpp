@@ -9,12 +9,12 @@ namespace tumble::mapping {
 
 namespace {
 
-// Returns are sorted by direction from one position, although the sensor moves during the sweep. For ranges above
-// kMinRangePerMotion times this motion, the direction error is below 0.1 rad, the size of the checked bins.
+// Returns are sorted by direction from one position, although the sensor moves during the sweep. For ranges above ten
+// times the sensor's motion, the direction error is below 0.1 rad, the size of the checked bins.
 constexpr float kMinRangePerMotion = 10.0f;
 constexpr int kEmptyBinsMax = 4;  // maximum number of empty bins out of nine; rings may be further apart than bins
-// The margin covers the relative pose error of two sweeps, the noise of a return, and the slope of the ground within a
-// bin.
+// The margin of the range covers the relative pose error of two sweeps, range noise, and the slope of the ground within
+// a bin.
 constexpr float kBeyond_m = 0.3f, kBeyondRatio = 0.03f;
 constexpr float kDeviations = 3.0f;
 
@@ -26,7 +26,6 @@ void FreeSpaceGrid::start(const Eigen::Vector3f& from_W_m, float moved_m) {
   nearest_m_.assign(std::size_t{6} * kBins * kBins, std::numeric_limits<float>::infinity());
 }
 
-/// Returns nothing for the ray origin itself and for non-finite coordinates.
 std::optional<FreeSpaceGrid::Direction> FreeSpaceGrid::direction(const Eigen::Vector3f& lever_m) {
   Eigen::Index axis = 0;
   const float along = lever_m.cwiseAbs().maxCoeff(&axis);

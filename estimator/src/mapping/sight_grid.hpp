@@ -17,7 +17,7 @@ class FreeSpaceGrid {
 
   enum class Verdict { unknown, seen, seen_through };
   /// Checks whether the sweep saw a map point, or saw through its position. `sigma_m` is the standard deviation of the
-  /// map point. Cost: O(1).
+  /// map point's position. Cost: O(1).
   Verdict verdict(const Eigen::Vector3f& point_W_m, float sigma_m) const;
 
  private:

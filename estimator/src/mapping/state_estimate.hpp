@@ -12,7 +12,7 @@ struct StateEstimate {
   Registration::Estimate mean;  ///< mean; the covariance of its state is the motion block of `weight`
   /// For robustness, `weight` assigns less information to the points than independent points would have.
   Registration::Matrix weight = Registration::Matrix::Zero();
-  /// covariance of the actual errors of the mean; the gains of the updates follow from `weight`
+  /// covariance of the actual errors of the mean
   Registration::Matrix error = Registration::Matrix::Zero();
 };
 
@@ -40,7 +40,6 @@ MotionErrors motion_errors(const Registration::Matrix& F, const Registration::Ma
 /// Returns the covariance of the velocity in IMU axes, R_IW v_WI_W, including the attitude error.
 Eigen::Matrix3d velocity_covariance_I(const MotionState& state, const MotionErrors& errors);
 
-/// `trajectory` is the motion of the mean.
 void at_end(const StateEstimate& at_start, const SweepTrajectory& trajectory,
             const Registration::Matrix& end_start_jacobian, TimeNs end_ns, StateEstimate& end);
 

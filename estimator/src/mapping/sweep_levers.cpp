@@ -16,7 +16,6 @@ constexpr int kLanes = 8;
 constexpr double kNoEnd_s = std::numeric_limits<double>::infinity();
 using Lane = double[kLanes];
 
-/// points within one interval of the trajectory: times since its start [s] and positions in frame I
 struct Lanes {
   int count = 0;
   alignas(16) Lane s{}, x{}, y{}, z{};
@@ -81,7 +80,6 @@ void SweepTrajectory::lever_arm_vectors(std::span<const SweepPoint> points,
       const double s = p.s[l], x = p.x[l], y = p.y[l], z = p.z[l];
       const double half = 0.5 * s * p.sinc[l], bx = half * w.x(), by = half * w.y(), bz = half * w.z();
       const double bw = p.cosine[l];
-      // Quaternion product: attitude at the start of the interval times rotation up to the point's time.
       const double qx = (aw * bx + ay * bz) - (az * by - ax * bw), qy = (aw * by + ay * bw) + (az * bx - ax * bz);
       const double qz = (aw * bz - ay * bx) + (az * bw + ax * by), qw = (aw * bw - ay * by) - (az * bz + ax * bx);
       double tx = qy * z - qz * y, ty = qz * x - qx * z, tz = qx * y - qy * x;

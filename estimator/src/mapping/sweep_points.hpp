@@ -22,7 +22,7 @@ class SweepPoints {
     std::size_t isolated = 0;  ///< number of dropped lone returns
     bool has_ring_numbers = false;
   };
-  /// The sweep starts `start_s` after the start of its trajectory. Returns the errors of check_selection().
+  /// The sweep starts `start_s` seconds after the start of its trajectory. Returns the errors of check_selection().
   Status select(const Params& params, std::span<const LidarPoint> returns, TimeNs span_ns,
                 const SweepCalibration& calibration, double start_s, Counts& counts);
   /// Selects one point per cube of the world for the registration, with the points at their predicted positions.

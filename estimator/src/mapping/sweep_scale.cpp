@@ -41,7 +41,7 @@ class ImuMotion {
   }
 
   /// Returns the mean velocity from `middle_ns` to `to_ns`, minus the mean velocity from `from_ns` to `middle_ns`.
-  /// Returns nothing if a force in this time is saturated or missing.
+  /// Returns nothing if a force between `from_ns` and `to_ns` is saturated or missing.
   std::optional<Eigen::Vector3d> change(TimeNs from_ns, TimeNs middle_ns, TimeNs to_ns) const {
     if (attitudes_.empty()) return std::nullopt;
     const auto later = [](const ImuSample& sample, TimeNs time_ns) { return sample.time_ns <= time_ns; };
@@ -78,7 +78,7 @@ class ImuMotion {
   std::vector<PoseState> attitudes_;
 };
 
-/// Surfaces constrain the pose of such a sweep in at least one direction.
+/// Surfaces constrain the pose of a registered or degenerate sweep in at least one direction.
 bool is_placed(const SweepReport& sweep) {
   return sweep.verdict == SweepVerdict::registered || sweep.verdict == SweepVerdict::degenerate;
 }
@@ -107,7 +107,7 @@ std::optional<Change> change_until(std::size_t last, std::size_t span, const Swe
                     (middle.p_WA_m - from.p_WA_m) / seconds(middle.time_ns - from.time_ns)};
 }
 
-/// Disjoint changes share no sweep with each other.
+/// Changes of velocity are disjoint if they share no sweep.
 template <class Changes>
 int disjoint_changes(const Changes& changes) {
   int count = 0;
@@ -163,7 +163,7 @@ SweepScale fit(const Changes& changes) {
     }
     out.scale = together / squared;
     if (i + 1 < kIterations) continue;
-    // The factor of `disjoint` is the correction for the estimated scale.
+    // The factor disjoint / (disjoint - 1) corrects for the estimated scale.
     const double residual = score_variance(changes, residuals) * disjoint / (disjoint - 1.0);
     out.sigma = std::sqrt(residual + kBias_m_s2 * kBias_m_s2 * by_bias.squaredNorm()) / squared;
   }

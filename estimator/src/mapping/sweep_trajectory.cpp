@@ -12,7 +12,7 @@ namespace tumble {
 
 namespace {
 
-/// The maximum covers the samples up to `end_ns` in which the axis is clipped.
+/// Only samples up to `end_ns` in which the axis is clipped count.
 Eigen::Vector3d max_rate_sigma(std::span<const MotionSample> samples, TimeNs end_ns) {
   Eigen::Vector3d sigma = Eigen::Vector3d::Zero();
   for (const MotionSample& sample : samples) {
@@ -45,7 +45,7 @@ Eigen::Matrix<double, SweepTrajectory::kKnots, 1> knot_weights(double share) {
   return weights;
 }
 
-/// For small angles, the power series is fast and exact to rounding.
+/// The power series is faster than so3::exp, and exact to rounding for small angles.
 Eigen::Quaterniond rotated_by(const Eigen::Vector3d& rate_rad_s, double s) {
   const double angle2 = s * s * rate_rad_s.squaredNorm();
   if (!(angle2 <= rotation_series::kAngle2_rad2)) return so3::exp(rate_rad_s * s);
@@ -83,7 +83,7 @@ Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSa
     return {ErrorCode::too_few, "imu time_ns", samples.empty() ? 0.0 : double(samples.back().time_ns), double(end_ns)};
   }
   if (samples.front().from_ns > start.time_ns) {
-    // All errors with code `gap` report seconds.
+    // All errors with code `gap` contain seconds.
     return {ErrorCode::gap, "imu window start", seconds(samples.front().from_ns - start.time_ns), 0.0};
   }
 

@@ -9,7 +9,7 @@ namespace tumble::mapping {
 
 struct WaitingForStart {};
 
-/// A sweep may remain without registration if its prior is certain, or if the search was abandoned.
+/// While tracking, a sweep may remain without registration if its prior is certain, or if the search was abandoned.
 struct Tracking {
   int failed_searches = 0;  ///< consecutive sweeps with points but without registration
 };

@@ -78,7 +78,7 @@ inline Eigen::Vector3i VoxelMap::Group::of(const Eigen::Vector3i& cell) {
   return {cell.x() >> kBits, cell.y() >> kBits, cell.z() >> kBits};
 }
 
-/// Each group of cells is looked up only once, when a row first needs it.
+/// Each group of cells is looked up only once, when a row of cells first needs the group.
 class VoxelMap::Rows {
  public:
   Rows(const VoxelMap& map, const Eigen::Vector3i& cell, int reach) : map_(map), first_x_(cell.x() - reach) {
@@ -87,7 +87,7 @@ class VoxelMap::Rows {
     groups_.fill(kNotSearched);
   }
 
-  /// Returns the occupied cells of the row at (y, z) as a bit mask, starting with the smallest x.
+  /// The lowest bit of the mask belongs to the cell with the smallest x.
   std::uint32_t occupied(int y, int z) {
     const Eigen::Vector3i away = Group::of({first_x_, y, z}) - low_;
     std::uint32_t bits = 0;
@@ -165,7 +165,7 @@ std::uint32_t VoxelMap::add(const Eigen::Vector3f& position, float sigma_m, std:
 
 std::uint32_t VoxelMap::store_point(const Eigen::Vector3f& position, float sigma_m, std::uint32_t sweep,
                                     std::uint32_t line) {
-  // The newest chunk of a cell comes first, and is the only chunk with unused slots.
+  // The newest chunk (block of points) of a cell comes first, and is the only chunk with unused slots.
   std::uint32_t& first = first_chunk_of(cube_of(position, cells_per_m_));
   if (first == kNone || chunks_[first].count == kPointsPerChunk) new_chunk(first);
   Chunk& chunk = chunks_[first];

@@ -68,7 +68,7 @@ void WorldCovariance::add_drift(double least_constrained_sigma_m,
   drift_covariance_m2_ += (sigma_m * sigma_m) * direction * direction.transpose();
 }
 
-/// See mapping.md (R59), (R60). Mounting errors of the lidar are excluded, because they do not change the map.
+/// See mapping.md (R59), (R60). Mounting errors of the lidar do not change the map.
 void WorldCovariance::add_insertion(double inserted_fraction, const SweepTrajectory& trajectory,
                                     const Registration::Matrix& errors, const Eigen::Vector3d& p_IL_m) {
   const double middle_s = 0.5 * trajectory.duration_s();

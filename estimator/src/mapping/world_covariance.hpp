@@ -6,8 +6,8 @@
 namespace tumble::mapping {
 
 /// WorldCovariance is the covariance of the map relative to the world, whose frame is defined by the first pose of the
-/// IMU. The covariance includes errors of mounting, initial tilt, scale, inserted sweeps, and drift in unconstrained
-/// directions.
+/// IMU. The covariance of the map includes errors of mounting, initial tilt, scale and inserted sweeps, and drift in
+/// unconstrained directions.
 class WorldCovariance {
  public:
   using Pose = Eigen::Matrix<double, 6, 6>;
@@ -26,10 +26,10 @@ class WorldCovariance {
   /// `joint` is the covariance of all unknowns in the map at the time of the pose.
   Pose in_world(const Registration::Matrix& joint, const Eigen::Vector3d& p_WI_m) const;
 
-  /// The position is relative to the nearby part of the map.
+  /// The standard deviation is relative to the nearby part of the map.
   double sigma_in_map_m(const Registration::Matrix& joint, const Eigen::Vector3d& p_WI_m) const;
 
-  /// `least_constrained_direction` is the direction of motion (position, scaled attitude) that the surfaces constrain
+  /// `least_constrained_direction` is the direction of motion (position, scaled attitude) that surfaces constrain
   /// least.
   void add_drift(double least_constrained_sigma_m, const Eigen::Matrix<double, 6, 1>& least_constrained_direction);
   /// `inserted_fraction` is the fraction of the sweep's points that were inserted into the map. `errors` is the

@@ -19,8 +19,9 @@ using Kind = HealthFinding::Kind;
 
 constexpr const char* kImu = "imu";
 constexpr double kSlopeTolerance = 0.02, kSlopeAgreementMin = 0.99;
-// A body counts as hand-held above this fraction of hand-held samples. The fraction was at least 0.91 for hand-held
-// motion. For thrown bodies, the fraction was at most 0.25 with correct axes, and mostly below 0.6 with wrong axes.
+// A body counts as hand-held if at least this fraction of its samples is classified as hand-held. The fraction of
+// hand-held samples was at least 0.91 for hand-held motion. For thrown bodies, the fraction of hand-held samples was at
+// most 0.25 with correct axes, and mostly below 0.6 with wrong axes.
 constexpr double kRepeatedFraction = 0.8;
 
 double rate_max_so_far_rad_s(std::span<const ImuSample> samples) {
@@ -63,7 +64,7 @@ void check_flights(const CheckedImu& imu, std::span<const ImuSample> samples, st
   health.add(Kind::flight_forces, sense.verdict(state), kImu);
 }
 
-/// The rates must rotate gravity correctly from each rest to the next rest.
+/// The estimated rates must rotate gravity correctly from each rest to the next rest.
 void check_rests(const CheckedImu& imu, std::span<const ImuSample> samples, std::span<const RateState> rates,
                  SensorHealth& health) {
   const RestGravity gravity = rest_gravity(imu);

@@ -11,11 +11,10 @@ namespace tumble {
 
 namespace {
 
-// maximum number of additional passes until the calibration has converged
 constexpr int kExtraPassesMax = 3;
 constexpr std::size_t kSweepsPerRejection = 5;
 
-/// Cuts the last sweep at the end of the IMU data, if at least half of the sweep remains. Without the cut, a small
+/// Cuts the last sweep at the end of the IMU data, if at least half of the sweep remains. Without this cut, a small
 /// clock offset between lidar and IMU would make the whole sweep unusable.
 bool shorten(TimeNs end_ns, WaitingSweep& sweep) {
   if (end_ns >= sweep.end_ns) return true;
@@ -60,7 +59,7 @@ class Pass {
     if (out_.status.ok()) add_points(sweep);
   }
 
-  /// While the lidar provides no sweeps, TumblingOdometry adds empty sweeps live as well.
+  /// While the lidar provides no sweeps, TumblingOdometry adds empty sweeps, also during live operation.
   void add_silence(TimeNs to_ns) {
     while (out_.status.ok() && last_end_ns_) {
       const TimeNs silent_ns = *last_end_ns_ + offset_ns_ + static_cast<TimeNs>(1e9 * kLidarSilent_s);

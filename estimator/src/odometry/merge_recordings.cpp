@@ -19,7 +19,7 @@ using Kind = HealthFinding::Kind;
 
 constexpr double kSilentReported_s = 0.5;  // minimum duration without readings that is reported
 // Without an observed saturation plane, a sensing element is assumed to be aligned with its axis. With a standard
-// deviation of 0.03, three clipped IMUs could not determine the rate.
+// deviation of 0.03 for the cross-axis sensitivity, three clipped IMUs could not determine the rate.
 constexpr double kUnknownSlope = 0.0;
 
 struct Units {
@@ -47,7 +47,6 @@ void flag_clipped(const ImuSheet& sheet, std::vector<ImuSample>& samples, Sensin
   accel = found.rails.rows(Triad::accelerometer, kUnknownSlope);
 }
 
-/// Resamples the readings of all IMUs to common times.
 Status align(std::vector<std::vector<ImuSample>>& samples) {
   const UnitAlignment alignment(samples.size());
   UnitAlignment::State state;
@@ -99,12 +98,11 @@ void set_units(const Units& units, ImuMerge::Params& params) {
   std::copy(units.accel_elements.begin(), units.accel_elements.end(), params.accel_elements.begin());
 }
 
-/// Without gaps in the time stamps, the calibration of ImuMerge continues after a gap.
+/// Time stamps without gaps keep the calibration of ImuMerge across a gap.
 class TimeWithoutGaps {
  public:
   explicit TimeWithoutGaps(double gap_max_s) : gap_max_s_(gap_max_s) {}
 
-  /// Returns the time of the next sample without gaps, and whether the sample follows a gap.
   std::pair<TimeNs, bool> next(TimeNs time_ns) {
     const bool after_gap = started_ && seconds(time_ns - last_ns_) > gap_max_s_;
     if (after_gap) {
@@ -186,7 +184,6 @@ struct Interval {
   TimeNs from_ns = 0, to_ns = 0;
 };
 
-/// Returns the first interval without readings that is longer than kSilentReported_s.
 std::optional<Interval> silent_interval(const std::vector<ImuSample>& unit) {
   std::size_t from = unit.size();
   for (std::size_t k = 0; k <= unit.size(); ++k) {
@@ -210,7 +207,7 @@ void report_silent(const Units& units, SensorHealth& faults) {
   }
 }
 
-/// Returns an error if no IMU remains.
+/// Returns an error if all IMUs are frozen.
 Status exclude_frozen(Units& units, SensorHealth& faults) {
   const std::size_t before = faults.findings.size();
   for (std::size_t unit = 0; unit < units.index.size(); ++unit) {

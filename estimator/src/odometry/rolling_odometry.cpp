@@ -213,7 +213,7 @@ std::size_t RollingOdometry::rejected_readings() const {
   return out;
 }
 
-/// Sets the readings of IMUs with frozen axes to NaN. Returns an error if no IMU remains.
+/// Sets the readings of IMUs with frozen axes to NaN. Returns an error if all IMUs have a frozen axis.
 Status RollingOdometry::exclude_frozen(const Frozen& states, std::span<ImuSample> samples) const {
   bool any = false, received = false;
   for (std::size_t k = 0; k < samples.size(); ++k) {
@@ -262,7 +262,6 @@ Status RollingOdometry::finish() {
   return status;
 }
 
-/// Smooths the poses that are still within the lag.
 void RollingOdometry::end_run() {
   for (OutlierFilter::State& unit : outlier_filter_state_) OutlierFilter::finish(unit);
   delayed_samples_.reset();
@@ -277,7 +276,7 @@ void RollingOdometry::reset() {
   recorded_ = {};
 }
 
-/// The readings that UnitAlignment has not completed yet remain.
+/// Readings that UnitAlignment has not completed yet remain.
 void RollingOdometry::start_run() {
   sample_clock_state_ = {};
   imu_merge_state_ = std::make_unique<ImuMerge::State>();

@@ -4,7 +4,6 @@
 #include "saved_bytes.hpp"
 #include "tumble/angular_velocity/clipping_finder.hpp"
 
-/// The saturation limits and planes belong to one IMU.
 namespace tumble::odometry {
 
 void write_rails(const SaturationLevels& rails, SavedWriter& out);

@@ -14,7 +14,7 @@ namespace tumble {
 
 namespace {
 
-/// The map follows in the format of save_map().
+/// In a saved TumblingOdometry, the map follows in the format of save_map().
 struct SavedTumbling {
   Eigen::Vector3d lever_arm_I_m = Eigen::Vector3d::Zero();        ///< stated lever arm
   Eigen::Isometry3d stated_T_IL = Eigen::Isometry3d::Identity();  ///< stated mounting of the lidar
@@ -105,7 +105,7 @@ void set_search(const PoseState& pose, PriorMap& map) {
   map.sigma_rad = std::sqrt(pose.covariance(5, 5));
 }
 
-/// While a run is not localised in its prior map, its start pose relates it to this map.
+/// While a run is not localised in its prior map, the run's start pose relates the run to this map.
 std::optional<PoseState> newest_or_start(const TumblingOdometry& odometry) {
   const LidarInertialOdometry& mapper = odometry.mapper();
   const std::optional<Eigen::Isometry3d>& start = mapper.start();

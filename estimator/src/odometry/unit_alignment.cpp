@@ -17,7 +17,7 @@ ImuSample absent(TimeNs time_ns) {
   return sample;
 }
 
-/// For an IMU without readings, the result is the time of the first reading of any IMU.
+/// Returns the time of the first reading of any IMU for an IMU without readings.
 TimeNs newest_ns(std::size_t unit, const UnitAlignment::State& state) {
   const std::vector<ImuSample>& readings = state.readings[unit];
   return readings.empty() ? *state.first_ns : readings.back().time_ns;

@@ -13,15 +13,14 @@ namespace tumble::rolling {
 
 /// LastPass runs a Kalman filter with known contact modes forward, and a smoother backward.
 ///
-/// The backward pass needs more than 10 KiB per node, so LastPass divides the nodes into segments. Only the filter at
-/// each segment's start and the adjoint at its end are stored; the rest is recomputed bit for bit. A window of one
-/// segment needs one run of the filter, a longer window needs three. A LastPass is too large for the stack (four
+/// The backward pass needs more than 10 KiB per node, so LastPass divides the nodes into segments. LastPass stores only
+/// the filter at each segment's start and the adjoint at its end, and recomputes other data bit for bit. A window of
+/// one segment needs one run of the filter, a longer window needs three. A LastPass is too large for the stack (four
 /// filters of 13 KiB).
 class LastPass {
  public:
   static constexpr std::size_t kSegment = 128;  ///< number of nodes per segment; the backward pass needs 1.6 MiB
 
-  /// Checkpoint is the state of the filter and its position in the samples, between two nodes.
   struct Checkpoint {
     PathFilter filter;
     Readings::Cursor reading;
@@ -37,8 +36,8 @@ class LastPass {
     std::size_t index;
   };
 
-  /// All arguments must outlive the pass. A known `distance` is a measurement after the last sample. `segment` is the
-  /// number of nodes whose records are stored at a time.
+  /// All arguments must outlive the pass. A known `distance` acts as a measurement after the last sample. `segment` is
+  /// the number of nodes whose records are stored at a time.
   LastPass(const RollingParams& params, std::span<const ImuSample> samples, std::span<const PathNode> path,
            std::optional<Distance> distance, std::size_t segment = kSegment);
 

@@ -17,13 +17,12 @@ inline bool heading_lost(const Covariance& P) {
   return P(kAttitude + 2, kAttitude + 2) > squared(kLostHeading_rad);
 }
 
-/// A contact point at rest stays at rest if the whole run is rotated: rolling.md (R35).
+/// If the whole run is rotated, a contact point at rest stays at rest: rolling.md (R35).
 inline void remove_heading_effect(Contact& c) {
   c.H.col(kAttitude + 2) -= Eigen::Vector3d::UnitZ().cross(c.contact_velocity_W_m_s);
 }
 
-/// See rolling.md (R36). The correction `x` of the nominal trajectory changes the effect of a rotation about the
-/// vertical.
+/// See rolling.md (R36).
 inline Vector heading_effect(const Vector& x) {
   const auto turned = [](const auto& v) { return Eigen::Vector2d(-v.y(), v.x()); };
   Vector out = Vector::Zero();
@@ -39,7 +38,7 @@ inline void move_errors(const Vector& turned, Covariance& P) {
   P += (P.col(kAttitude + 2) * turned.transpose()).eval();
 }
 
-/// Transforms one error x from the old to the corrected nominal trajectory.
+/// Transforms one error vector x from the old to the corrected nominal trajectory.
 inline void move_error(const Vector& turned, Vector& x) {
   x += x[kAttitude + 2] * turned;
 }

@@ -9,8 +9,8 @@
 /// a single state. Each call of `take` may change the state `x` and its covariance `P`.
 namespace tumble::rolling {
 
-/// The contact point is at rest, or moves along the floor during slip: rolling.md (R17), (R20). An unknown velocity is
-/// assumed to be small.
+/// The contact point is at rest, or moves along the floor during slip: rolling.md (R17), (R20). An unknown velocity of
+/// the sphere is assumed to be small.
 template <class EstimateCallback>
 void contact_rows(const RollingParams& params, const Contact& c, RollingMode mode, double node_s,
                   const Eigen::Vector3d& v_WI_m_s, const Vector& x, const Covariance& P, EstimateCallback&& take) {
@@ -25,7 +25,7 @@ void contact_rows(const RollingParams& params, const Contact& c, RollingMode mod
   }
 }
 
-/// At rest, the velocity is zero, and the rate is zero unless the sphere spins in place: rolling.md (R28).
+/// See rolling.md (R28).
 template <class EstimateCallback>
 void rest_rows(const RollingParams& params, const RollingIntegrals& sums, const RollingNominal& nominal,
                bool spins_in_place, EstimateCallback&& take) {

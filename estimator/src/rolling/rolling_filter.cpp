@@ -154,7 +154,7 @@ bool RollingFilter::spins_in_place(const State& state) const {
   return (off.square() > kSpinSigmas * kSpinSigmas * variance).any();
 }
 
-/// See rolling.md (R27). `first` is the index of the position or velocity in the state.
+/// See rolling.md (R27).
 Eigen::Matrix3d RollingFilter::spread(const State& state, int first) {
   const Eigen::Vector3d best = state.hypotheses[0].x.segment<3>(first);
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
@@ -204,7 +204,7 @@ void RollingFilter::constrain_position(State& state) const {
   state.position_constrained = stands;
 }
 
-/// The states of all hypotheses are then relative to the best hypothesis.
+/// After the correction, the states of all hypotheses are relative to the best hypothesis.
 void RollingFilter::move_linearisation_point(bool heading_lost, State& state) const {
   const Vector x = state.hypotheses[0].x, turned = rolling::heading_effect(x);
   rolling::move_linearisation_point(x, state.nominal);
@@ -233,7 +233,7 @@ void RollingFilter::report(State& state) const {
   state.contact_velocity_m_s = state.hypotheses[0].contact_velocity_W_m_s;
 }
 
-/// Several hypotheses with a different past may have the same current mode, so their weights are added.
+/// Hypotheses with the same current contact mode but a different past add their weights.
 RollingMode RollingFilter::most_probable_mode(const State& state) {
   const bool event = state.slip_probability >= kEventProbability;
   if (event == may_slip(state.mode)) return state.mode;

@@ -22,19 +22,15 @@ constexpr double kPruneLogWeight = -120.0;  // minimum log weight of a hypothesi
 constexpr double kRestLogLikelihoodMin =
     -60.0;                             // smallest log likelihood at rest; limits the effect of a single bad node
 constexpr double kModeAgeMax_s = 1.0;  // maximum age of a mode; older modes count as equally old
-// The change of the contact velocity during slip is a mixture of three Gaussians, whose smallest standard deviation is
-// that of grip. With a larger value, each phase of constant slip velocity would count as grip.
+// During slip, the change of the contact velocity per node is a mixture of three Gaussians. If the smallest standard
+// deviation exceeded that of grip, each phase of constant slip velocity would count as grip.
 constexpr double kPlateau_m_s = 0.004, kSteady_m_s = 0.01, kJump_m_s = 0.08, kPlateauFraction = 0.4,
                  kSteadyFraction = 0.35;
-constexpr double kRollOverSigma_m_s = 0.03, kHitSigma_m_s = 0.3,
-                 // standard deviations of the vertical change of the contact velocity on a bump [m/s]: rolling over the
-                 // bump, and hitting it
-    kRollOverFraction = 0.7;
+constexpr double kRollOverSigma_m_s = 0.03, kHitSigma_m_s = 0.3, kRollOverFraction = 0.7;
 constexpr std::int64_t kAgesApart = 4;
 // A slip with constant spin looks like grip until its end, when a hundred hypotheses have higher weights than the
 // correct one. Some kept hypotheses therefore do not share the last mode change of the best hypothesis.
 constexpr std::size_t kMinDissentingHypotheses = 6;
-// The penalty of a rough floor on the log likelihood is between the residuals of a slope and of grip on a plane.
 constexpr double kRoughCost = 0.2;
 // The foot of a ramp is a bump, so a slope is more probable after a bump.
 constexpr double kInclineAfterBump = 4.0;
@@ -55,7 +51,7 @@ double log_rise(double change) {
                   1e-300);
 }
 
-/// See m2 of rolling.md (R24). `square` is the squared length of the change.
+/// See m2 of rolling.md (R24).
 double log_change(double square) {
   double density = 0.0;
   for (const auto& [share, sigma] : {std::pair(kPlateauFraction, kPlateau_m_s), std::pair(kSteadyFraction, kSteady_m_s),
@@ -182,8 +178,7 @@ struct Kept {
   std::size_t count = 0;
 };
 
-/// `kMinDissentingHypotheses` places are reserved for candidates that do not share the last mode change of the best
-/// candidate.
+/// Some places are reserved for candidates that do not share the last mode change of the best candidate.
 Kept keep(std::span<const Candidate> candidates, std::int64_t node, double node_s) {
   Kept kept;
   for (const Candidate& candidate : candidates) {
@@ -210,7 +205,7 @@ void rearrange(const Origins& from, std::size_t count, std::span<RollingFilter::
     waits[k] = from[k] != k;
     readers[from[k]] += waits[k] ? 1 : 0;
   }
-  // A slot can be overwritten if no pending copy reads from it.
+  // A hypothesis can be overwritten if no pending copy reads from it.
   for (std::size_t first = 0; first < count; ++first) {
     for (std::size_t k = first; k < count && waits[k] && readers[k] == 0; k = from[k]) {
       all[k] = all[from[k]];
@@ -218,7 +213,7 @@ void rearrange(const Origins& from, std::size_t count, std::span<RollingFilter::
       --readers[from[k]];
     }
   }
-  // The remaining pending copies form cycles of slots.
+  // The remaining pending copies form cycles.
   for (std::size_t first = 0; first < count; ++first) {
     if (!waits[first]) continue;
     const RollingFilter::Hypothesis kept = all[first];
@@ -261,7 +256,7 @@ void RollingFilter::choose_modes(const Eigen::Vector3d& rate_I_rad_s, bool headi
   keep_most_probable(kept.count, state);
 }
 
-/// The unused hypotheses are cleared, so that equal estimates have equal states.
+/// Unused hypotheses are cleared, so that equal estimates have equal states.
 void RollingFilter::keep_most_probable(std::size_t count, State& state) {
   const auto begin = state.hypotheses.begin();
   const auto first = begin + static_cast<std::ptrdiff_t>(count);

@@ -30,15 +30,13 @@ constexpr double kForceTilt_rad = 0.35;                           // direction e
 constexpr double kLostTilt_rad = kForceTilt_rad;  // a tilt with a larger standard deviation is levelled by the force
 constexpr double kUncertainTilt_rad = 0.1;        // limit of the tilt at rest, where the force is gravity
 constexpr double kRestTilt_rad = 5e-3;
-// If the force differs more from gravity, the sphere is pushed or rotates fast.
+// A sphere whose force differs more from gravity is pushed or rotates fast.
 constexpr double kPushForceRatio = 0.15;
 constexpr double kLostSpeed_m_s = 1.0;
 constexpr double kRecoveredTau_s = 0.1;  // correlation time of the error of a recovered rate
 constexpr double kFastRate_rad_s = 6.0;  // at higher rates, the force rotates too far within a node for levelling
 constexpr double kUnsureSpeed_m_s = 0.1, kSpeedWindow_s = 1.0;
 constexpr double kStartTilt_rad = 0.15;  // tilt error of a start in motion, caused by a push of 1.5 m/s^2
-// maximum rate before and after a gap in which the sphere was hardly pushed; smallest sigma of the angular acceleration
-// in a gap
 constexpr double kGapRate_rad_s = 1.0, kGapStill_rad_s2 = 0.5;
 constexpr double kGapVelocityChangeRatio =
     0.5;  // unknown velocity change in a gap, as a fraction of the rolling velocity's change
@@ -250,7 +248,7 @@ void integrate_gap(const RollingParams& params, const ImuAverage& piece, const G
   sums.gap_speed_variance_m2_s2 += uncertainty.speed_variance_m2_s2;
 }
 
-/// See rolling.md (R10), here minus the identity.
+/// See rolling.md (R10).
 Moving transition(const RollingIntegrals& sums) {
   Moving B = Moving::Zero();
   B.block<3, 3>(kAttitude, kGyroBias) = -sums.rotation_integral_s;
@@ -298,8 +296,7 @@ Contact contact(const RollingParams& params, const RollingNominal& nominal, cons
   const Eigen::Vector3d arm_W = R * (params.lever_arm_m + nominal.lever_arm_error_m);
   const Eigen::Vector3d n = normal(nominal.slope);
   const double r = params.radius_m + nominal.radius_error_m;
-  // The contact velocity is u = v + w x (-arm - r n), with the IMU's velocity v and the vector -arm - r n from the IMU
-  // to the contact point.
+  // The contact velocity is u = v + w x (-arm - r n), with the IMU's velocity v and rate w.
   const Eigen::Matrix3d reach = so3::hat(arm_W + r * n);
   Contact out;
   out.contact_velocity_W_m_s = nominal.v_WI_m_s + reach * w_W;

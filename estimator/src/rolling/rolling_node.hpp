@@ -11,7 +11,7 @@
 
 namespace tumble::rolling {
 
-/// first index of each quantity in the error state; attitude, velocity and position of the IMU are in W
+/// first index of each quantity in the error state
 inline constexpr int kAttitude = 0, kVelocity = 3, kPosition = 6, kGyroBias = 9, kAccelBias = 12, kAccelScale = 15,
                      kGyroScale = 24, kDelay = 33, kLeverArm = 34, kSlope = 37, kRadius = 39;
 inline constexpr int kStates = 40;
@@ -50,7 +50,6 @@ RollingNominal start_nominal(const RollingParams& params, const Eigen::Quaternio
                              const Eigen::Vector3d& rate_I_rad_s);
 void set_prior(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s, Covariance& P);
 
-/// In a gap, the specific force is unknown.
 enum class Force { read, unknown };
 
 void integrate(const RollingParams& params, const ImuAverage& reading, RollingNominal& nominal, RollingIntegrals& sums,
@@ -62,7 +61,6 @@ RollingNominal extrapolate_nominal(const RollingParams& params, const ImuAverage
 
 int gap_pieces(const RollingParams& params, double gap_s);
 
-/// In a gap, the rate is interpolated and the force is unknown.
 struct GapUncertainty {
   double rad2 = 0.0, rate_variance_rad2_s = 0.0, speed_variance_m2_s2 = 0.0;
 };
@@ -89,7 +87,6 @@ void update_slope_for_mode(const RollingParams& params, RollingMode from, Rollin
 /// Returns the variance of a pseudo-measurement of zero velocity, or nothing if the velocity is certain enough.
 std::optional<double> lost_velocity_variance(const RollingParams& params, double node_s, const Covariance& P);
 
-/// The contact mode change from `from` to `to` makes the slope of the floor unknown.
 bool resets_slope(RollingMode from, RollingMode to);
 
 /// Aligns an uncertain tilt with the mean specific force of the node, and resets the velocity. Returns false if the
@@ -97,7 +94,7 @@ bool resets_slope(RollingMode from, RollingMode to);
 bool reset_tilt(const RollingParams& params, const RollingIntegrals& sums, bool at_rest, RollingNominal& nominal,
                 Covariance& P);
 
-/// Applies a Kalman update with the scalar measurement: measured = row x + noise.
+/// Applies a Kalman update with the scalar measurement `measured` = row x + noise.
 void update(const Row& row, double measured, double variance, Vector& x, Covariance& P);
 
 void update(int index, double measured, double variance, Vector& x, Covariance& P);

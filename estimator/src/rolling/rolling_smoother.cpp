@@ -13,7 +13,7 @@ namespace tumble {
 
 namespace {
 
-// With a longer lag, the memory grows during the run.
+// With a longer lag of the smoother, the memory grows during the run.
 constexpr std::size_t kPreallocatedMax = 1'000'000;
 
 RollingParams scale_noise(RollingParams params, double share) {

@@ -38,7 +38,7 @@ Reported reported(const Vector& x) {
   return out;
 }
 
-/// See rolling.md (R36): the results are T^T lambda and T^T Lambda T.
+/// See rolling.md (R36).
 void transform_adjoint(const Vector& turned, Adjoint& adjoint) {
   constexpr int kHeading = kAttitude + 2;
   adjoint.lambda[kHeading] += turned.dot(adjoint.lambda);

@@ -52,11 +52,11 @@ struct Reading {
   TimeNs end_ns = 0;
 };
 
-/// Readings iterates over stored samples, and returns the inputs that the live filter received. Each step costs O(1)
-/// without allocation.
+/// Readings iterates over stored samples, and returns the inputs that the live filter received. Each step of the
+/// iteration costs O(1) without allocation.
 class Readings {
  public:
-  /// Cursor is the position of an iteration, before the next reading.
+  /// Cursor is the position of an iteration over stored samples, before the next reading.
   struct Cursor {
     TimeNs time_ns = 0;  ///< end of the last reading
     Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero();
@@ -102,7 +102,6 @@ Eigen::Matrix<double, kReported, kReported> reported_covariance(const Eigen::Mat
 Eigen::Matrix3d velocity_covariance_I(const RollingNominal& nominal, const Eigen::Vector3d& w_WI_I_rad_s,
                                       const Eigen::Matrix<double, kReported, kReported>& reported);
 
-/// `record` must have its initial values.
 void complete_node(const RollingParams& params, const RollingIntegrals& sums, const Eigen::Vector3d& rate_I_rad_s,
                    const PathNode& path, PathFilter& filter, NodeRecord& record);
 
@@ -120,7 +119,7 @@ struct Adjoint {
   Covariance Lambda = Covariance::Zero();
 };
 
-/// Computes `smoothed` and `smoothed_P` by the modified Bryson-Fraser smoother. The adjoint refers to the time after
+/// Smooths the states of consecutive nodes by the modified Bryson-Fraser smoother. `adjoint` refers to the time after
 /// the last node on entry, and before the first node on return.
 void backward_pass(Adjoint& adjoint, std::span<NodeRecord> nodes);
 
