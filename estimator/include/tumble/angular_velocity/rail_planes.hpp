@@ -29,7 +29,6 @@ namespace tumble {
 /// a higher prior probability. Sensing elements without a saturation plane count as unsaturated.
 ///
 /// RailPlaneFinder assumes that saturation limits are constant and that each sensing element has one limit per sign.
-/// RailPlaneFinder does not detect readings that overflow and change sign.
 class RailPlaneFinder {
  public:
   struct Params {
@@ -84,8 +83,7 @@ class RailPlaneFinder {
     }
   };
 
-  /// Workspace contains the buffers of a search. The search for planes allocates no memory if the buffers have room for
-  /// all readings.
+  /// With buffers for all readings, a search allocates no memory.
   struct Workspace {
     std::vector<Eigen::Vector3d> rates;
     std::vector<double> values;
@@ -100,8 +98,8 @@ class RailPlaneFinder {
   /// in time order. Cost: O(N), plus a search of some hundred cross-axis sensitivities over the samples near the
   /// extremes.
   RailPlanes find(std::span<const ImuSample> samples, Triad triad = Triad::gyro) const;
-  /// Finds the saturation planes in readings without time stamps [rad/s]. The argument `before` contains the saturation
-  /// planes that were found in a subset of the readings.
+  /// Finds the saturation planes in readings without time stamps [rad/s]. `before` contains the saturation planes that
+  /// were found in a subset of the readings.
   RailPlanes find(std::span<const Eigen::Vector3d> readings_rad_s, const RailPlanes& before,
                   Workspace& workspace) const;
 
@@ -112,10 +110,9 @@ class RailPlaneFinder {
   Params params_;
 };
 
-/// Returns which sensing elements are clipped in an IMU sample. Cost: O(1).
+/// Cost: O(1).
 ElementClipping classify(const ImuSample& sample, const RailPlanes& planes);
-/// Determines the clipped sensing elements in each sample of a recording. The output `out` must have the size of
-/// `samples`.
+/// `out` must have the size of `samples`.
 void classify(std::span<const ImuSample> samples, const RailPlanes& planes, std::span<ElementClipping> out);
 
 }  // namespace tumble

@@ -27,13 +27,10 @@ struct RigConstants {
   /// clips.
   Eigen::Matrix<double, 6, 1> elements = Eigen::Matrix<double, 6, 1>::Zero();
 
-  /// Returns the row m_j, which is the sensing direction of sensing element j.
   Eigen::Vector3d sensing_direction(int j) const;
-  /// Returns the normalised inertia matrix J, with trace 3.
   Eigen::Matrix3d inertia_matrix() const;
   /// Returns the coordinates `inertia` of a symmetric inertia matrix of any positive scale.
   static Eigen::Matrix<double, 5, 1> inertia_coordinates(const Eigen::Matrix3d& inertia);
-  /// Returns the matrix S_i of the inertia basis, with i in 0..4.
   static const Eigen::Matrix3d& inertia_basis(int i);
 
   Vector vector() const;

@@ -36,8 +36,8 @@ class Strapdown {
 
   explicit Strapdown(const Params& params);
 
-  /// Processes one sample and updates the attitude. Cost: O(1), no allocation. The first sample sets the attitude from
-  /// its specific force, with yaw 0. On error, the state is unchanged.
+  /// Cost: O(1), no allocation. The first sample sets the attitude from its specific force, with yaw 0. On error, the
+  /// state is unchanged.
   Status step(const ImuSample& sample, State& state) const;
 
  private:
