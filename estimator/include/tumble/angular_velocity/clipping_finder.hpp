@@ -58,7 +58,6 @@ class ClippingFinder {
     /// If `tilted` is false, ClippingFinder uses only clip flags and equal readings, like the published methods.
     bool tilted = true;
 
-    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("rails_", p.axis_aligned_rails);

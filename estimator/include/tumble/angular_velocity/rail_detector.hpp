@@ -79,7 +79,6 @@ struct RailDetectorParams {
   using Expert = RailDetectorExpertParams;
   Expert expert = {};  ///< rarely changed parameters
 
-  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.clip_enter_ratio,

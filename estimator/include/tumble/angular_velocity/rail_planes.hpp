@@ -29,6 +29,7 @@ namespace tumble {
 /// a higher prior probability. Sensing elements without a saturation plane count as unsaturated.
 ///
 /// RailPlaneFinder assumes that saturation limits are constant and that each sensing element has one limit per sign.
+/// RailPlaneFinder does not detect readings that overflow and change sign.
 class RailPlaneFinder {
  public:
   struct Params {
@@ -60,7 +61,6 @@ class RailPlaneFinder {
     /// between runs. A new plane near a known plane has a higher prior probability.
     RailPlanes known = {};
 
-    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.slope_sigma, {"slope_sigma", "1", 1e-4, 0.2,

@@ -51,7 +51,6 @@ struct RateModelParams {
   using Expert = RateModelExpertParams;
   Expert expert = {};  ///< rarely changed parameters
 
-  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.lever_arm_sigma_m,

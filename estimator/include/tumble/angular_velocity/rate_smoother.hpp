@@ -37,7 +37,6 @@ struct RateSmootherParams {
   using Expert = RateSmootherExpertParams;
   Expert expert = {};  ///< rarely changed parameters
 
-  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit.group("", p.model);

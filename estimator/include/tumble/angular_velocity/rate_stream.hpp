@@ -57,8 +57,8 @@ class RateStream {
   Status push(const ImuSample& sample, State& state, std::optional<RateState>& out) const {
     return push(sample, {}, state, out);
   }
-  /// `auxiliary_imus` must be empty or contain one reading per entry of RateModelParams::auxiliary_imus; otherwise
-  /// push() returns `too_few`.
+  /// The readings of additional IMUs refer to the time of the sample. `auxiliary_imus` must be empty or contain one
+  /// reading per entry of RateModelParams::auxiliary_imus; otherwise push() returns `too_few`.
   Status push(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus, State& state,
               std::optional<RateState>& out) const;
 

@@ -29,7 +29,6 @@ class RestDetector {
     double reading_s = 0.01;          ///< averaging time of a reading; 0: each sample
     double memory_s = 600.0;          ///< time constant of the mean, which follows a drifting bias
 
-    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.rate_max_rad_s,

@@ -28,6 +28,7 @@ struct RigConstants {
   Eigen::Matrix<double, 6, 1> elements = Eigen::Matrix<double, 6, 1>::Zero();
 
   Eigen::Vector3d sensing_direction(int j) const;
+  /// The inertia matrix is normalised to trace 3.
   Eigen::Matrix3d inertia_matrix() const;
   /// Returns the coordinates `inertia` of a symmetric inertia matrix of any positive scale.
   static Eigen::Matrix<double, 5, 1> inertia_coordinates(const Eigen::Matrix3d& inertia);

@@ -50,7 +50,6 @@ class Saave {
     /// maximum time between two samples [s]
     double gap_max_s = 1.0;
 
-    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.lever_arm_m, {"lever_arm_m", "m", -10.0, 10.0,

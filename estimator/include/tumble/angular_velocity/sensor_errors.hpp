@@ -59,7 +59,6 @@ struct SensorErrorPriors {
   /// standard deviation.
   double delay_s = 1e-4, delay_uncalibrated_s = 5e-3;
 
-  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.gyro, {"gyro", "1", 0.0, 0.1,

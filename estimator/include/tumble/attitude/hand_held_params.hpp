@@ -126,7 +126,6 @@ struct HandHeldParams {
   using Expert = HandHeldExpertParams;
   Expert expert = {};  ///< rarely changed parameters
 
-  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-300, 100.0, "strength of gravity"});

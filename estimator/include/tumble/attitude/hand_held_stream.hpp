@@ -37,7 +37,6 @@ class HandHeldStream {
     double lag_s = 0.2;
     double window_s = 0.6;
 
-    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("", p.body);

@@ -38,7 +38,6 @@ struct ImuMergeParams {
   using Expert = ImuMergeExpertParams;
   Expert expert = {};  ///< rarely changed parameters
 
-  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.count, {"count", "1", 1, kImus, "number of IMUs in use"});

@@ -30,7 +30,6 @@ class RegimeSmoother {
         0.02;                        ///< minimum probability of hand-held motion for which HandHeldSmoother runs
     double segment_gap_max_s = 0.1;  ///< clipped samples closer together than this form one segment
 
-    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("", p.rate);

@@ -45,7 +45,6 @@ class RegimeEvidence {
     double contacts_hz = 5.0;      ///< mean number of changes between flight and contact per second
     double throws_hz = 0.02;       ///< mean number of throws and catches per second
 
-    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-300, 100.0, "strength of gravity"});

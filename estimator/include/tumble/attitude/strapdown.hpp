@@ -18,7 +18,6 @@ class Strapdown {
   struct Params {
     double gap_max_s = 1.0;  ///< maximum time between samples; a longer gap is an error
 
-    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.gap_max_s,

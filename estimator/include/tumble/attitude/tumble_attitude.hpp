@@ -28,7 +28,6 @@ struct TumbleAttitudeParams {
   using Expert = TumbleAttitudeExpertParams;
   Expert expert = {};  ///< rarely changed parameters
 
-  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-12, 100.0, "strength of gravity"});

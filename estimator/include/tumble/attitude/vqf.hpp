@@ -47,7 +47,6 @@ struct VqfParams {
   using Expert = VqfExpertParams;
   Expert expert = {};  ///< rarely changed parameters
 
-  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.tau_s,

@@ -38,7 +38,6 @@ class SampleClock {
     double jitter_min = 0.005;  ///< minimum jitter of corrected time stamps, in sample periods
     double jitter_max = 0.15;
 
-    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.memory_s,

@@ -74,7 +74,6 @@ struct OdometryParams {
   using Expert = OdometryExpertParams;
   Expert expert;  ///< rarely changed parameters
 
-  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.time_offset_s,

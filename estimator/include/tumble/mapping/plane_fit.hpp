@@ -32,7 +32,6 @@ struct PlaneBounds {
   /// plane of a lidar ring instead of the surface, for example at a pillar or a room's corner.
   int off_line_neighbours_min = 2;
 
-  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.neighbours_min, {"neighbours_min", "1", 3, 32, "minimum number of map points for a plane"});

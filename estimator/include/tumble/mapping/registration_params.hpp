@@ -64,7 +64,6 @@ struct RegistrationParams {
   using Expert = RegistrationExpertParams;
   Expert expert = {};  ///< rarely changed parameters
 
-  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.neighbours, {"neighbours", "1", 3, 32, "number of map points used for each plane fit", FieldRank::basic});

@@ -35,7 +35,6 @@ class VoxelMap {
     double voxel_m = 0.5;    ///< edge of a cell; the search is fastest at a few times spacing_m
     double spacing_m = 0.1;  ///< edge of a cube that keeps at most one point; 0 keeps all points
 
-    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.voxel_m, {"voxel_m", "m", 0.01, 100.0,

@@ -40,7 +40,6 @@ class FlightSignCheck {
     Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();
     double gyro_range_rad_s = 0.0;  ///< range from the data sheet; 0: unknown
 
-    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.lever_arm_m,

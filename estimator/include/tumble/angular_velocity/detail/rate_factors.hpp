@@ -7,6 +7,7 @@
 
 namespace tumble {
 
+/// angular rate and angular acceleration of the body, in IMU axes
 struct RateKnot {
   Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();
   Eigen::Vector3d acceleration_rad_s2 = Eigen::Vector3d::Zero();

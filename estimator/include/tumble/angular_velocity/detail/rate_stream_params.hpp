@@ -36,7 +36,6 @@ struct RateStreamParams {
   /// maximum length of a window: the duration of 4096 samples, but at most 10 s
   double lag_max_s() const { return std::min(10.0, 4096.0 * period_s); }
 
-  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit.group("", p.model);

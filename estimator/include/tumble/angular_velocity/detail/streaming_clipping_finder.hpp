@@ -25,13 +25,13 @@ class StreamingClippingFinder {
     ClippingFinder::Params clipping;
     int readings_max = 1024;
 
-    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("", p.clipping);
       visit(p.readings_max, {"readings_max", "1", 64, 65536, "maximum number of distinct readings stored per triad"});
     }
   };
+  /// unit of the readings: rad/s for the gyro, m/s^2 for the accelerometer
   struct Memory {
     std::vector<Eigen::Vector3d> readings;           ///< distinct readings, in time order
     Eigen::Vector3d peak = Eigen::Vector3d::Zero();  ///< largest magnitude of each axis

@@ -31,6 +31,7 @@ struct CoarseAlignment {
     start_tilt_variance_rad2 = tilt_variance_rad2;
   }
 
+  /// `more_W_m_s` is the integral of the specific force over the time `length_s`.
   void add(const Eigen::Vector3d& more_W_m_s, double length_s) {
     force_W_m_s += more_W_m_s;
     time_s += length_s;

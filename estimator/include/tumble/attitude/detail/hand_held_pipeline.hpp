@@ -22,7 +22,6 @@ class HandHeldPipeline {
     HandHeldStream::Params stream;
     StreamingClippingFinder::Params rails;
 
-    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("", p.stream);

@@ -33,7 +33,6 @@ class ImuPlausibility {
     double gravity_m_s2 = 9.80665;
     double gyro_range_rad_s = 1e6;  ///< windows with a faster rate on an axis are ignored
 
-    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-12, 100.0, "strength of gravity"});

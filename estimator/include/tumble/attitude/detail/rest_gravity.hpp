@@ -29,7 +29,6 @@ class RestGravity {
     double gravity_m_s2 = 9.80665;
     double accel_range_m_s2 = 0.0;  ///< range from the data sheet; 0: unknown
 
-    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-12, 100.0, "strength of gravity"});

@@ -14,6 +14,7 @@ class SpatialHash {
   static constexpr std::uint32_t kAbsent = 0xffffffffu;
   static constexpr int kLimit = 1 << 20;  ///< coordinates must be in [-kLimit, kLimit)
 
+  /// The coordinates must be in [-kLimit, kLimit).
   static std::uint64_t key(const Eigen::Vector3i& cube) {
     const auto part = [](int v) { return static_cast<std::uint64_t>(v + kLimit) & 0x1fffffu; };
     return part(cube.x()) | (part(cube.y()) << 21) | (part(cube.z()) << 42);
