@@ -42,8 +42,8 @@ void collect(const DistinctReadings& readings, double from, Side& side, Workspac
   }
 }
 
-// Fits the saturation plane to the readings on it, by least squares with a prior on the cross-axis sensitivities:
-// rails.md (R58). Cauchy weights reduce the effect of partly saturated readings, which are below the plane.
+// Fits the saturation plane by least squares, with a prior on the cross-axis sensitivities: rails.md (R58). Cauchy
+// weights reduce the effect of partly saturated readings, which are below the plane.
 void fit(const DistinctReadings& readings, const FacetPrior& prior, double deviation, RailFacet& facet,
          Workspace& workspace) {
   const int axis = facet.axis;

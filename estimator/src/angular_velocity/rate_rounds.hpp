@@ -17,8 +17,8 @@ struct RateFit {
 };
 
 /// Optimises repeatedly, each time with readings corrected by the last estimated sensor errors. A calibration that
-/// changes by more than its standard deviations indicates that contact was classified as flight. In this case, the
-/// optimisation restarts with another accelerometer delay, and finally fixes the calibration.
+/// changes by more than its standard deviations indicates that contact was classified as flight. If contact was
+/// classified as flight, the optimisation restarts with another accelerometer delay, and finally fixes the calibration.
 Status fit_rounds(const RateSmoother::Params& params, const RateModelParams& known, std::span<const ImuSample> samples,
                   std::span<const Clipping> clippings, std::span<RateObservation> observations, RateFit& fit,
                   RateReport& health);

@@ -26,9 +26,9 @@ struct RepeatedReadings {
   double reading_age_s(std::size_t sample) const { return age_s[sample] + window_lag_s; }
 };
 
-/// Detects repeated readings with the regular clock that best predicts them. Cost: O(N), plus tests of about 5000
-/// clocks on at most 1000 samples. Returns nothing if fewer than 30 samples exceed 0.3 rad/s, or if less than a
-/// twentieth of them are repetitions. Ages are zero if the best clock predicts more than 10 % of the samples wrongly.
+/// Detects repeated readings by fitting a regular clock of the sensor. Cost: O(N), plus tests of about 5000 clocks on
+/// at most 1000 samples. Returns nothing if fewer than 30 samples exceed 0.3 rad/s, or if less than a twentieth of
+/// these samples are repetitions. Ages are zero if the best clock predicts more than 10 % of the samples wrongly.
 std::optional<RepeatedReadings> find_repeated(std::span<const ImuSample> samples, Triad triad);
 
 struct Neighbours {

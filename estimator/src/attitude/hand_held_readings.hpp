@@ -8,7 +8,7 @@
 
 namespace tumble::hand_held {
 
-/// Below this determinant, the sensing directions do not span three dimensions.
+/// If the determinant of the sensing directions is below kRowsMin, they do not span three dimensions.
 inline constexpr double kRowsMin = 0.1;
 /// standard deviation of a repeated reading's time, in samples: 1/sqrt(12) for a uniform distribution
 inline constexpr double kAge_samples = 0.29;

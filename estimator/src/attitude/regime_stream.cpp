@@ -16,7 +16,7 @@ HandHeldStream::Params joined(const RegimeStream::Params& params) {
   out.period_s = params.rate.period_s;
   out.lag_s = params.rate.lag_s;
   out.window_s = std::max(out.window_s, out.lag_s + 4.0 * out.body.expert.node_s);
-  // HandHeldStream must report samples before they leave its window.
+  // HandHeldStream must report samples before the samples leave the window.
   out.body.expert.gap_max_s = std::min(out.body.expert.gap_max_s, out.window_s - out.lag_s);
   return out;
 }
@@ -25,7 +25,7 @@ bool clips(const RateStream::Knot& knot) {
   return (knot.observation.unmeasured_axes() | knot.observation.partly_saturated_axes()) != 0;
 }
 
-// Suspect readings count as clipped, because they are also lower bounds of the rate.
+// Suspect readings count as clipped, because suspect readings are also lower bounds of the rate.
 ClipSigns signs_of(const RateObservation& observation) {
   Clipping clipping = observation.clipping;
   clipping.gyro = static_cast<std::uint8_t>(clipping.gyro | observation.partly_saturated_axes());

@@ -23,7 +23,7 @@ double log_gaussian(double squared_norm, double variance) {
 }
 
 // Returns the log density of a measured force of norm n, if the true force has norm g and any direction: carried.md
-// (C35). For variance v and x = n g / v, this density is N(n; 0) exp(-g^2 / 2v) sinh(x) / x.
+// (C35). For variance v and x = n g / v, the density of the measured force is N(n; 0) exp(-g^2 / 2v) sinh(x) / x.
 double log_about_gravity(double n, double g, double variance) {
   const double x = n * g / variance;
   const double log_sinh_x = x < 1e-3 ? 0.0 : x - std::log(2.0 * x) + std::log1p(-std::exp(-2.0 * x));

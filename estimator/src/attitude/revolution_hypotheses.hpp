@@ -5,7 +5,7 @@
 
 namespace tumble::hand_held {
 
-/// A clipped segment is tested if the standard deviation of its angle reaches this fraction of pi.
+/// A clipped segment is tested if the standard deviation of its rotation angle reaches the fraction kAngleShare of pi.
 inline constexpr double kAngleShare = 1.0 / 3.0;
 inline constexpr double kLogOdds = 6.9;  ///< alternatives with odds below 1 to 1000 are ignored
 

@@ -3,9 +3,9 @@
 
 #include <Eigen/Core>
 
-/// Fixed-size Eigen decompositions would double the compile time, so these functions accept matrices of all sizes. The
-/// factorisations equal Eigen's bit for bit; the eigenvalues are equal up to rounding. Each decomposition allocates
-/// memory.
+/// Decompositions of fixed-size Eigen matrices would double the compile time, so the functions accept matrices of all
+/// sizes. The factorisations equal Eigen's bit for bit; the eigenvalues are equal up to rounding. Each decomposition
+/// allocates memory.
 namespace tumble::dense {
 
 using Symmetric = Eigen::Ref<const Eigen::MatrixXd>;  ///< only the lower triangle is read

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// CMakeLists.txt adds this header to each source to reduce the compile time (docs/figures.md).
+// CMakeLists.txt adds precompiled.hpp to each source to reduce the compile time (docs/figures.md).
 #pragma once
 
 #include <Eigen/Cholesky>

@@ -24,7 +24,7 @@ StateEstimate with_tilt(const LidarInertialOdometry::StartTilt& tilt, const Stat
 /// prior on the speed limits the errors of tilt and velocity over minutes of motion.
 StateEstimate reset_origin_and_yaw(const StateEstimate& reckoned, double step_s);
 
-/// The lidar's pose at the start of the first sweep defines the map frame, so this pose has no error. The tilt error of
+/// The lidar's pose at the start of the first sweep defines the map frame, and is therefore exact. The tilt error of
 /// dead reckoning therefore becomes an error of gravity's direction.
 StateEstimate estimate_at_first_sweep(const LidarInertialOdometry::Params& params, const StateEstimate& reckoned);
 

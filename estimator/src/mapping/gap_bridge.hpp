@@ -9,7 +9,7 @@
 
 namespace tumble::mapping {
 
-/// An IMU reading does not describe the motion in a longer time step, so such a time step is a gap.
+/// A time step above 50 ms between IMU samples is a gap, because a reading does not describe the motion in between.
 inline constexpr TimeNs kGap_ns = 50'000'000;
 
 struct WindowRate {

@@ -29,8 +29,8 @@ class InertialTrack {
   std::optional<TimeNs> border_ns() const { return boundary_ns_; }
   /// Returns the mean specific force of the current rest, if the rest lasted at least `lasted_s` up to `time_ns`.
   std::optional<Eigen::Vector3d> resting_force(TimeNs time_ns, double lasted_s) const;
-  /// Returns whether the robot was at rest during the first `lasted_s` seconds, or during all samples if they are
-  /// fewer.
+  /// Returns whether the robot was at rest during the first `lasted_s` seconds, or during all samples of a shorter
+  /// recording.
   bool starts_at_rest(double lasted_s) const;
   bool has_not_moved() const { return initial_.lasts; }
   /// Returns the time of the newest sample, or the end of the last sweep if there are no samples.

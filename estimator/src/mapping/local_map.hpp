@@ -26,7 +26,8 @@ struct SweepToInsert {
   bool pose_certain;  ///< certain pose: the sweep's free space may contradict map points
 };
 
-/// LocalMap contains the points around the sensor, their scan lines, and the sensor positions that observed them.
+/// LocalMap contains the points around the sensor, their scan lines, and the sensor positions from which the points
+/// were seen.
 class LocalMap {
  public:
   using Params = LidarInertialOdometry::Params;
@@ -37,7 +38,8 @@ class LocalMap {
   bool empty() const { return map_.size() == 0; }
 
   /// Adds the points of a sweep to the map and to the list `inserted`. Cost: O(points of the map). `noise` computes the
-  /// variance of a lidar return. A sweep with a certain pose counts the map points that it saw or saw through.
+  /// variance of a lidar return. If the pose of a sweep is certain, the map points that the sweep saw or saw through
+  /// are counted.
   std::size_t insert(const Params& params, const SweepToInsert& sweep, const Registration& noise,
                      std::vector<InsertedPoint>& inserted);
   /// Moves inserted points to their positions on the refined trajectory, with `later_s` added to their times:

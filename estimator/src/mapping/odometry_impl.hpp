@@ -74,7 +74,7 @@ struct LidarInertialOdometry::Impl {
                              mapping::LagWindow* into) const;
   void revert_to_inertia();
   /// Returns the state according to a relocalisation that later sweeps contradicted, or null. The search after a
-  /// tracking failure uses this state as an initial pose.
+  /// tracking failure uses the state of the contradicted relocalisation as an initial pose.
   const MotionState* rejected_relocalisation() const;
   void add_map_drift(const mapping::UpdatedSweep& sweep, const SweepReport& report);
   void prune_until(TimeNs end_ns);

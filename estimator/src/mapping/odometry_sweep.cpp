@@ -213,7 +213,8 @@ void LidarInertialOdometry::Impl::register_to_map(const Prediction& prediction, 
   mapping::judge(params, tracking, scene.points.size(), prior_certain, attempt, placed);
 }
 
-/// At rest after a tracking failure, `prediction` is also corrected, because the lag window uses it.
+/// At rest after a tracking failure, the function also corrects `prediction`, because the lag window uses the
+/// prediction.
 StateEstimate LidarInertialOdometry::Impl::update(const MotionWindow& motion, const Placed& placed,
                                                   Prediction& prediction) const {
   if (placed.alignment) return mapping::posterior(prediction, *placed.alignment);
@@ -309,7 +310,7 @@ void LidarInertialOdometry::Impl::propagate_alternative(const MotionWindow& moti
   if (!continue_by_inertia(motion, rests, other->boundary, &other->window).ok()) other.reset();
 }
 
-/// The points of the sweep are not used. If `into` is not null, the sweep also enters this lag window.
+/// The points of the sweep are not used. If `into` is not null, the sweep also enters the lag window `into`.
 Status LidarInertialOdometry::Impl::continue_by_inertia(const MotionWindow& motion, bool rests,
                                                         mapping::SweepBoundary& at, mapping::LagWindow* into) const {
   const Registration::Estimate& before = at.state_estimate.mean;

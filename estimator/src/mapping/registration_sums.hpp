@@ -18,7 +18,7 @@ struct Registration::Unknowns {
 
   /// In the normal equations H, g for all unknowns, the rows of fixed unknowns are 0.
   void expand(const Sums& sum, Matrix& H, Vector& g) const;
-  /// Without fixed unknowns in the normal equations, the solution is 0 for them.
+  /// The normal equations are changed such that the solution is 0 for the fixed unknowns.
   void hold(Matrix& H, Vector& g) const;
   void clear_fixed_blocks(Matrix& M) const;
   void clear_fixed(Matrix& covariance) const;

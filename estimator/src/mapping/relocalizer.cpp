@@ -36,7 +36,7 @@ void track(const Params& params, const Registration::Prior& prior, const Scene& 
            SweepTrajectory& trajectory, Registration::Result& found) {
   aligner.align_with_all_points(prior, scene, trajectory, found);
   int iterations = found.iterations, tries = 0;
-  // If one attempt exceeds the correction limit, further attempts would exceed this limit, too.
+  // If one attempt exceeds the correction limit, further attempts would also exceed the limit.
   const bool out_of_bounds = found.correction_m > params.expert.matching.correction_max_m ||
                              found.correction_rad > params.expert.matching.correction_max_rad;
   if (found.verdict == RegistrationVerdict::diverged && !out_of_bounds) {

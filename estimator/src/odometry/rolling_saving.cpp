@@ -9,7 +9,7 @@ namespace tumble {
 
 namespace {
 
-/// In a saved RollingOdometry, the saturation limits of each IMU follow after these members.
+/// In a saved RollingOdometry, the saturation limits of each IMU follow after the members of SavedRolling.
 struct SavedRolling {
   double radius_m = 0.0;                                  ///< stated radius
   Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();  ///< stated position of the merged IMU

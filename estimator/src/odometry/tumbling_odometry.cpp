@@ -232,8 +232,8 @@ bool TumblingOdometry::is_due(TimeNs end_ns) const {
 void TumblingOdometry::register_covered_sweeps() {
   while (!waiting_.empty()) {
     const TimeNs end_ns = waiting_.front().end_ns;
-    // The sample that covers the end of a sweep may be up to one period later than the end. The rate of this covering
-    // sample is reported one period before the lag is full.
+    // The sample that covers the end of a sweep may be up to one period later than the end. The rate of the sample that
+    // covers the end of a sweep is therefore reported one period before the lag is full.
     if (!pass_.covers(end_ns) && is_due(end_ns)) pass_.flush_until(pass_.oldest_needed_ns(end_ns));
     if (!pass_.covers(end_ns)) break;
     WaitingSweep sweep = std::move(waiting_.front());

@@ -21,8 +21,8 @@ struct SaturationLevels {
   bool accel_clips_after_compensation = false;  ///< the accelerometer clips after misalignment compensation
 
   /// Returns the saturation planes that classify readings as clipped. If a device clips its output after misalignment
-  /// compensation, equal readings identify clipped samples exactly. For such a device, only sensing elements without a
-  /// known saturation limit have planes.
+  /// compensation, equal readings identify clipped samples exactly. If the device clips after compensation, planes are
+  /// returned only for sensing elements without a known saturation limit.
   RailPlanes planes_in_use(Triad triad = Triad::gyro) const;
   /// `unknown_sigma` is the standard deviation of a cross-axis sensitivity that no saturation plane determines.
   SensingDirections rows(Triad triad, double unknown_sigma) const;

@@ -73,7 +73,7 @@ struct RailDetectorParams {
   double range_contradiction_ratio = 0.02;  ///< minimum relative difference that contradicts the stated range
 
   /// Saturation limits of an earlier run of the device, in the order of RailDetector::State::channels; 0: none.
-  /// RailDetector uses known limits from the start of a run until readings exceed them.
+  /// RailDetector uses known limits from the start of a run until readings exceed the limits.
   std::array<double, 6> known = {};
 
   using Expert = RailDetectorExpertParams;
@@ -101,7 +101,7 @@ struct RailDetectorParams {
 ///
 /// A plateau is a run of readings of one sign that are closer together than sensor noise allows. The readings of a
 /// plateau have the largest magnitude so far on their axis. A plateau at a low rate must be longer, and must start or
-/// end with a jump of many resolution steps. RailDetector uses the stated range until it finds a plateau or a reading
+/// end with a jump of many resolution steps. RailDetector uses the stated range until a plateau is found or a reading
 /// exceeds the range. RailDetector always uses the clip flags of the device. The classification has hysteresis, so that
 /// slightly lower readings at the edge of a plateau also count as clipped. RailDetector assumes constant saturation
 /// limits that are equal for both signs of an axis.

@@ -16,8 +16,8 @@ namespace tumble {
 /// Finds the tilted saturation planes of a gyro or accelerometer in a whole recording. RailPlaneFinder needs neither
 /// clip flags nor the stated range of the sensor.
 ///
-/// A saturation plane is nearly axis-aligned, limits the readings, and has many samples in a thin slab below it. Two
-/// kinds of motion look like saturation: the rounded maximum of a motion, and a constant rate (torque-free spin,
+/// A saturation plane is nearly axis-aligned, limits the readings, and has many samples in a thin slab below the plane.
+/// Two kinds of motion look like saturation: the rounded maximum of a motion, and a constant rate (torque-free spin,
 /// turntable). The readings near a rounded maximum follow a parabola, but the readings after saturation start with a
 /// kink. A constant rate has full sensor noise, has a different value each time, and starts with an impact on all axes.
 /// RailPlaneFinder sums the log likelihood ratio of saturation against rounded maxima and constant rates over all

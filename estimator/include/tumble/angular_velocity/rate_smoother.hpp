@@ -89,20 +89,19 @@ struct RateReport {
 /// recording.
 ///
 /// RateSmoother estimates the rate and angular acceleration of each sample, and the rig constants of the run
-/// (RigConstants). A Gauss-Newton solver estimates all unknowns from the following measurements and constraints.
-/// Unclipped gyro readings measure the rate, and clipped readings give a lower bound on the rate, for any number of
-/// axes. In flight, the accelerometer measures only the effect of rotation at the lever arm, and Euler's equation holds
-/// without torque. During contact, the force equation and Euler's equation have lower weights. Between samples, the
-/// angular jerk is white noise, whose density increases with the contact force. An impact therefore decouples the rates
-/// before the impact from the rates after the impact. At rest (RestDetector), the rate is zero, so the gyro measures
-/// its bias.
+/// (RigConstants). A Gauss-Newton solver minimises the residuals of several measurements and constraints. Unclipped
+/// gyro readings measure the rate, and clipped readings give a lower bound on the rate, for any number of axes. In
+/// flight, the accelerometer measures only the effect of rotation at the lever arm, and Euler's equation holds without
+/// torque. During contact, the force equation and Euler's equation have lower weights. Between samples, the angular
+/// jerk is white noise, whose density increases with the contact force. An impact therefore decouples the rates before
+/// the impact from the rates after the impact. At rest (RestDetector), the rate is zero, so the gyro measures its bias.
 ///
 /// The normal equations have an arrow matrix, so an iteration costs O(N), including the covariance. The initial values
 /// come from the published method (Saave), extended by the lower bounds of clipped readings.
 ///
-/// During contact, Euler's equation still holds about the direction of the contact force, because a force through one
-/// point has no torque about its own direction. RateSmoother does not estimate the contact point, because several bars
-/// of a cage touch the ground within 10 ms. The equations of RateSmoother are in docs/maths/rate_smoother.md.
+/// A force through one point has no torque about the direction of the force, so Euler's equation about this direction
+/// also holds during contact. RateSmoother does not estimate the contact point, because several bars of a cage touch
+/// the ground within 10 ms. The equations of RateSmoother are in docs/maths/rate_smoother.md.
 ///
 /// RateSmoother also estimates SensorErrors: scale, misalignment, g-sensitivity, and the accelerometer's delay and
 /// window. The optimisation is repeated with readings corrected by the estimated sensor errors. The function
@@ -133,8 +132,8 @@ class RateSmoother {
     return estimate(samples, {}, out, report);
   }
   /// Estimates the rates with additional IMUs on the body. `auxiliary_imus` contains one list of readings per entry of
-  /// RateModelParams::auxiliary_imus. The function align() computes such a list, with one reading per sample. Returns
-  /// `too_few` if the number of lists or of readings is wrong.
+  /// RateModelParams::auxiliary_imus. The function align() computes the list of readings of an additional IMU, with one
+  /// reading per sample. Returns `too_few` if the number of lists or of readings is wrong.
   Status estimate(std::span<const ImuSample> samples, std::span<const std::vector<AuxiliaryReading>> auxiliary_imus,
                   std::vector<RateState>& out, RateReport& report) const;
 

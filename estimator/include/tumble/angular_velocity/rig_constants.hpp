@@ -39,8 +39,8 @@ struct RigConstants {
   bool operator==(const RigConstants&) const = default;
 };
 
-/// RigCalibration contains the rig constants that one run estimated, with their covariance. A later run can use them as
-/// prior.
+/// RigCalibration contains the rig constants that one run estimated, with their covariance. A later run can use the
+/// calibration as prior.
 struct RigCalibration {
   RigConstants constants;
   RigConstants::Matrix covariance = RigConstants::Matrix::Identity();

@@ -97,8 +97,8 @@ struct SensorErrorEvidence {
 
 /// Multiplies the information about unobservable sensor errors by `share`; see rate_smoother.md (R39). Free motion of a
 /// body does not determine a scale common to all axes of a sensor, and a common rotation of gyro and accelerometer. For
-/// these errors, residuals of the motion model wrongly appear as information. The wrong information grows with the
-/// number of samples, because smaller motions have smaller residuals.
+/// unobservable errors, residuals of the motion model wrongly appear as information. The wrong information grows with
+/// the number of samples, because smaller motions have smaller residuals.
 void discount_unobservable(double share, SensorErrorEvidence& evidence);
 
 struct SensorErrorFit {

@@ -21,12 +21,13 @@ struct RegimeProbabilities {
 /// Estimates the kind of motion (flight, contact or hand-held) of each sample of a recording from the specific force.
 ///
 /// The residual force is e = f - a x r - w x (w x r), the specific force without the effect of rotation at the lever
-/// arm. Here, f is the specific force, w the rate, a the angular acceleration and r the lever arm. In flight, the
-/// residual force is zero; in hand-held motion, gravity plus the acceleration of a hand in any direction. In contact,
-/// the residual force can have any magnitude; the logarithm of the magnitude has a uniform prior. A Markov chain
-/// connects the samples: flight and contact alternate several times per second, but a body is rarely thrown or caught.
-/// The Markov chain prevents that an impact or a quiet moment of rolling counts as hand-held motion. Readings within
-/// `memory_s` are correlated and count as one reading. Readings without rotation do not change the probabilities.
+/// arm. The symbols are the specific force f, the rate w, the angular acceleration a and the lever arm r. In flight,
+/// the residual force is zero; in hand-held motion, gravity plus the acceleration of a hand in any direction. In
+/// contact, the residual force can have any magnitude; the logarithm of the magnitude has a uniform prior. A Markov
+/// chain connects the samples: flight and contact alternate several times per second, but a body is rarely thrown or
+/// caught. The Markov chain prevents that an impact or a quiet moment of rolling counts as hand-held motion. Readings
+/// within `memory_s` are correlated and count as one reading. Readings without rotation do not change the
+/// probabilities.
 ///
 /// RegimeEvidence does not use the attitude, so its probabilities are available before HandHeldSmoother runs.
 /// RegimeEvidence assumes that no rope, no buoyancy and no aerodynamic force above `flight_force_sigma_m_s2` acts on

@@ -67,8 +67,8 @@ struct TumbleAttitudeParams {
 /// at rest, its velocity and rate are zero up to noise. At rest, TumbleAttitude measures the gyro bias and keeps the
 /// attitude constant, so that noise changes neither tilt nor heading.
 ///
-/// A large velocity or displacement counts as real motion if the tilt variance cannot explain it. Real motion increases
-/// the assumed standard deviation of velocity or displacement for `motion_tau_s`.
+/// A large velocity or displacement counts as real motion if the tilt variance cannot explain its size. Real motion
+/// increases the assumed standard deviation of velocity or displacement for `motion_tau_s`.
 ///
 /// The centre of a rolling sphere of radius r has the velocity r w x n, with the rate w and the floor's normal n. The
 /// IMU's velocity differs from the centre's velocity by w x (R rho), with the attitude R and the lever arm rho. The

@@ -10,7 +10,7 @@
 
 namespace tumble {
 
-/// For these VQF parameters, the authors use one value for all devices.
+/// The authors of VQF use one value of the expert parameters for all devices.
 struct VqfExpertParams {
   double bias_sigma_motion_rad_s = 1.7453e-3;  ///< standard deviation of the bias in motion: 0.1 deg/s
   double bias_sigma_rest_rad_s = 5.2360e-4;    ///< standard deviation of the bias at rest: 0.03 deg/s
@@ -79,8 +79,8 @@ struct VqfParams {
 /// "VQF", Information Fusion 91, 2023.
 ///
 /// Vqf integrates the gyro, which rotates the specific force into a nearly inertial frame N. A low-pass filter in frame
-/// N averages out the acceleration of a bounded motion. The averaged force defines the vertical of N; the smallest
-/// rotation of N that aligns this vertical with the world W levels the attitude. A Kalman filter of three states
+/// N averages out the acceleration of a bounded motion. The averaged force defines the vertical of N, and the smallest
+/// rotation that aligns the vertical of N with the world W levels the attitude. A Kalman filter of three states
 /// estimates the gyro bias. At rest, the low-passed gyro measures the bias; in motion, the rate of the vertical
 /// correction measures the bias. Vqf estimates neither the heading nor, in motion, the bias about the vertical.
 class Vqf {

@@ -69,8 +69,8 @@ class LidarInertialOdometry {
     double sigma_rad = 0.0;                                        ///< standard deviation of the corrected tilt
   };
   /// Returns the tilt at the start, computed from the direction of gravity in the map. A second run over the same data
-  /// can use this tilt. The result is empty after a start at rest, or if the motion does not determine gravity more
-  /// accurately than the start.
+  /// can use the tilt that start_tilt() returns. The result is empty after a start at rest, or if the motion does not
+  /// determine gravity more accurately than the start.
   std::optional<StartTilt> start_tilt() const;
   /// Sets the tilt of a start in motion. Call set_start_tilt() before the first sweep.
   void set_start_tilt(const StartTilt& tilt);
@@ -97,9 +97,9 @@ class LidarInertialOdometry {
   Status add_imu(const ImuSample& sample, const RateState& rate);
 
   /// Sets an odometer's velocity at the start of the next sweep, which is the end of the last sweep. The velocity is in
-  /// IMU axes, with one standard deviation for all axes. This velocity replaces the estimated velocity only in the
-  /// prediction of the next sweep. Returns `non_finite` if a number is not finite, or `out_of_range` if the standard
-  /// deviation is not above 0. On error, the state is unchanged.
+  /// IMU axes, with one standard deviation for all axes. The odometer's velocity replaces the estimated velocity only
+  /// in the prediction of the next sweep. Returns `non_finite` if a number is not finite, or `out_of_range` if the
+  /// standard deviation is not above 0. On error, the state is unchanged.
   Status add_velocity(const Eigen::Vector3d& v_WI_I_m_s, double sigma_m_s);
   /// Sets an odometer's reading for the next sweep. The reading must be between the end of the last sweep and the end
   /// of the next sweep, with a margin of 20 ms. The reading is fused with the inertial prediction, weighted by their

@@ -23,7 +23,7 @@ class OuterProducts;
 ///
 /// The unknowns are position p, attitude (left perturbation phi in W) and velocity v of the IMU at the start of the
 /// trajectory. The saturation deficit (the true rate minus the clipped reading) and the calibration are additional
-/// unknowns if their prior is uncertain. A point in the world is X = p + v t + g t^2/2 + Exp(phi) u. Here, g is
+/// unknowns if their prior is uncertain. A point in the world is X = p + v t + g t^2/2 + Exp(phi) u. The symbol g is
 /// gravity, and u is the lever arm vector of SweepTrajectory. Each iteration deskews the points with the current
 /// estimate. The cost is the sum of robustly weighted squared distances to planes through the k nearest map points, and
 /// the squared Mahalanobis distance from the prior. The Gauss-Newton solver uses a normal matrix of at most 28x28. The
@@ -106,7 +106,7 @@ class Registration {
   Weight compute_weight(const SweepPoint& point, const Match& match, double distance_m, double kernel_m) const;
 
   Params params_;
-  // Results do not depend on the contents of these buffers.
+  // Results do not depend on the contents of the buffers.
   std::vector<Eigen::Vector3f> lever_arm_vectors_, positions_;
   std::vector<SweepPoint> moved_;
   std::vector<Match> matches_;

@@ -20,7 +20,7 @@ struct RegistrationExpertParams {
   double cluster_m = 1.0;        ///< edge of a cube whose points have correlated errors
   double match_ratio_min = 0.1;  ///< minimum ratio of matches to points
   /// Minimum number of matches for accepting a registration that agrees with the prior but violates `matches_min` or
-  /// `match_ratio_min`. The large default disables this exception for agreeing registrations.
+  /// `match_ratio_min`. The large default of agreeing_matches_needed disables the exception for agreeing registrations.
   std::size_t agreeing_matches_needed = 1'000'000'000;
   /// Minimum fraction of matches within three standard deviations for accepting a registration.
   double inlier_ratio_min = 0.6;

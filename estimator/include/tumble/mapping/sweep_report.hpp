@@ -32,8 +32,8 @@ struct SweepReport {
   std::vector<PoseState> smoothed;
   double inlier_ratio = 0.0;      ///< fraction of the registered points that are inliers
   double eigenvalue_ratio = 0.0;  ///< smallest divided by largest eigenvalue of the scaled normal matrix
-  /// Standard deviation of the pose in the least constrained direction, from the surfaces of this sweep alone; 0: not
-  /// aligned.
+  /// Standard deviation of the pose in the least constrained direction, from the surfaces of the reported sweep alone;
+  /// 0: not aligned.
   double least_constrained_sigma_m = 0.0;
   /// Normalised innovation: correction of pose and velocity in standard deviations of the inertial prediction, divided
   /// by sqrt(9). The mean innovation is at most 1 if the covariances of prediction and surfaces are correct. The value
@@ -45,7 +45,7 @@ struct SweepReport {
   int iterations = 0;
   int consecutive_rejected_sweeps = 0;  ///< consecutive rejected sweeps, including the current sweep
   /// True if the sweep relocalised the robot at an unpredicted pose, and later sweeps have not confirmed the pose. Two
-  /// further sweeps must confirm a relocalisation; a contradicting sweep reverts it.
+  /// further sweeps must confirm a relocalisation; a contradicting sweep reverts the relocalisation.
   bool relocalisation_unconfirmed = false;
   /// Direction in world axes in which the surfaces constrain the pose least, as a unit vector of position and attitude.
   /// The attitude is scaled to metres by the root-mean-square lever arm.

@@ -48,19 +48,20 @@ struct MotionState {
 /// evaluated at any time of the segment.
 ///
 /// The attitude is R(t) = R_k Exp(w_k (t - t_k)) with the rate w_k of sample k. The attitude is exact if the rate is
-/// constant in body axes over each sample. The position is p(t) = p_0 + v_0 t + g t^2 / 2 + S(t). Here, p_0 and v_0 are
-/// position and velocity at the start, g is gravity, and S is the double integral of the specific force. The mean force
-/// over a sample of length dt is R_k J_l(w_k dt) f_k, with attitude R_k, rate w_k, measured force f_k and left Jacobian
-/// J_l. This mean force is exact if the force is constant in body axes, like the centripetal force of a spin.
+/// constant in body axes over each sample. The position is p(t) = p_0 + v_0 t + g t^2 / 2 + S(t). The vectors p_0 and
+/// v_0 are position and velocity at the start, g is gravity, and S is the double integral of the specific force. The
+/// mean force over a sample of length dt is R_k J_l(w_k dt) f_k, with attitude R_k, rate w_k, measured force f_k and
+/// left Jacobian J_l. The mean force is exact if the force is constant in body axes, like the centripetal force of a
+/// spin.
 ///
 /// The saturation deficit e is the true rate minus the clipped reading, and corrects the clipped axes. The saturation
 /// deficit is linear in time between kKnots knots, at equal steps from the start to the end of the segment. If axis j
 /// is clipped, the corrected rate is w_j + s_j e_j(t), with the measured rate w_j, a factor s_j and the saturation
 /// deficit e_j. The factor s_j has the sign of w_j, and magnitude sigma_j divided by the largest sigma_j of the
-/// segment's clipped samples. Here, sigma_j is the standard deviation of the rate; if all sigma_j are 0, the magnitude
-/// of s_j is 1. The saturation deficit corrects rates with a small standard deviation only a little. Within a sample,
-/// the saturation deficit is constant and has the value at the middle of the sample. Sculling within a sample and the
-/// earth's rotation are neglected.
+/// segment's clipped samples. The symbol sigma_j is the standard deviation of the rate; if all sigma_j are 0, the
+/// magnitude of s_j is 1. The saturation deficit corrects rates with a small standard deviation only a little. Within a
+/// sample, the saturation deficit is constant and has the value at the middle of the sample. Sculling within a sample
+/// and the earth's rotation are neglected.
 class SweepTrajectory {
  public:
   static constexpr int kKnots = 3;

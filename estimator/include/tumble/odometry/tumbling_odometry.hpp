@@ -36,9 +36,9 @@ struct RecordingEstimate;
 /// integration from the last registered sweep. take() returns a sweep registered to the map (`report.pose`), at most
 /// `lag_s` after the sweep's end. The report of the following sweep contains the final pose (`report.smoothed`), at
 /// most 0.3 s after the sweep's end at ten sweeps per second. Time stamps of poses are in the IMU's clock. The earliest
-/// sweep with enough points starts the map, and poses are reported only afterwards. Start with at least half a second
-/// at rest, which determines the tilt. If the gyro's zero offset at rest exceeds 0.05 rad/s, the offset is subtracted
-/// and the run restarts, which needs a second at rest.
+/// sweep with enough points starts the map, and poses are reported only after the map has started. Start with at least
+/// half a second at rest, which determines the tilt. If the gyro's zero offset at rest exceeds 0.05 rad/s, the offset
+/// is subtracted and the run restarts, which needs a second at rest.
 ///
 /// Some seconds after motion starts, SecondPass processes the first seconds of motion again with the calibration
 /// estimated so far. The run then continues with the map and pose of SecondPass; poses that were already reported are
@@ -53,8 +53,8 @@ struct RecordingEstimate;
 ///
 /// An IMU sample costs one step of RegimeStream, and sometimes the registration of a sweep. After start-up, add_imu()
 /// allocates memory only if the sample completes a sweep. While SecondPass runs, a sweep costs up to four
-/// registrations. When SecondPass ends, it costs five additional registrations. The memory is bounded: it depends on
-/// the lag, the map radius, `sweeps_max` and the buffer of SecondPass. In addition, the map stores 12 bytes per sweep
+/// registrations. The end of SecondPass costs five additional registrations. The memory is bounded: it depends on the
+/// lag, the map radius, `sweeps_max` and the buffer of SecondPass. In addition, the map stores 12 bytes per sweep
 /// within ten metres. A call needs at most 64 KiB of stack.
 ///
 /// TumblingOdometry starts no threads, uses no files and prints nothing. A copy of a TumblingOdometry contains the
@@ -100,10 +100,10 @@ class TumblingOdometry {
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points);
   /// Processes a sweep of one of several lidars: 0 is the first lidar, k is `further_lidars[k - 1]`. The points of a
   /// further lidar are registered together with the simultaneous sweep of the first lidar. The points of a further
-  /// lidar must arrive before the registration of this sweep, `lag_s` after its end. A lag of two sweep periods is long
-  /// enough. The lidars need no synchronisation. Limitation: the ranges and the own-body box of the first lidar also
-  /// apply to the points of further lidars, in axes of the first lidar. Returns `ok`, an error of add_sweep() for the
-  /// first lidar, or `out_of_range` for an unknown lidar.
+  /// lidar must arrive before the simultaneous sweep of the first lidar is registered, `lag_s` after the end of the
+  /// sweep. A lag of two sweep periods is long enough. The lidars need no synchronisation. Limitation: the ranges and
+  /// the own-body box of the first lidar also apply to the points of further lidars, in axes of the first lidar.
+  /// Returns `ok`, an error of add_sweep() for the first lidar, or `out_of_range` for an unknown lidar.
   Status add_sweep(std::size_t lidar, TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points);
   /// Processes an odometer reading (detail/odometer_reading.hpp). An odometer reading must arrive before the
   /// registration of its sweep, which is `lag_s` after the end of the sweep. If a sweep has several odometer readings,

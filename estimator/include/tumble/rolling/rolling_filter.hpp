@@ -24,8 +24,8 @@ namespace tumble {
 /// the slip or bump. RollingSmoother revises earlier poses with later data.
 ///
 /// While the sphere is at rest, the reported position is constant. Measurements at rest may correct the path before the
-/// rest; these corrections are applied when motion resumes. If another hypothesis becomes the most probable at rest,
-/// the position is corrected immediately.
+/// rest; the corrections are applied when motion resumes. If another hypothesis becomes the most probable at rest, the
+/// position is corrected immediately.
 ///
 /// The readings of a fast IMU are averaged over RollingExpertParams::reading_s, and the estimate is extrapolated
 /// between averages. Over a gap of up to gap_max_s, the rate is interpolated and the force unknown, with an increased
@@ -110,7 +110,7 @@ class RollingFilter {
   /// The covariance contains only the position block; all other entries are zero.
   static RollingEstimate estimate(const State& state);
 
-  /// The constants are those at the last node, after the first sample.
+  /// The constants of sensors and sphere refer to the last node.
   static RollingCalibration calibration(const State& state);
 
  private:

@@ -17,7 +17,7 @@ namespace tumble {
 
 /// Smooths the poses of RollingFilter with later data, with a fixed lag or over the whole run.
 ///
-/// The contact modes are those of the most probable hypothesis of RollingFilter at the time of smoothing. With the
+/// The smoother uses the contact modes of RollingFilter's most probable hypothesis at the time of smoothing. With the
 /// contact modes fixed, one Kalman filter runs forward over the stored samples. The modified Bryson-Fraser smoother
 /// then runs backward (Bierman, Factorization Methods for Discrete Sequential Estimation, 1977). The Bryson-Fraser
 /// smoother needs no matrix inverse, only the gains of the Kalman filter. The errors of a sample are interpolated from

@@ -16,10 +16,10 @@ namespace tumble {
 /// flipped, or one axis flipped), because mirrored gravity has the correct magnitude and rotation.
 ///
 /// In free flight, the force at the lever arm t from the centre of mass is a x t + w x (w x t), with rate w and angular
-/// acceleration a. FlightSignCheck compares the measured force with this force, for the true sensor and for each
-/// alternative. If an alternative agrees within a quarter for 0.02 s, the flight time of the alternative increases. The
-/// force along the lever arm is -|w x t|^2 for any angular acceleration, and determines the rate of one saturated gyro
-/// axis.
+/// acceleration a. FlightSignCheck compares the measured force with the force of free flight, for the true sensor and
+/// for each alternative. If an alternative agrees within a quarter for 0.02 s, the flight time of the alternative
+/// increases. The force along the lever arm is -|w x t|^2 for any angular acceleration, and determines the rate of one
+/// saturated gyro axis.
 ///
 /// A person who swings a body can produce the forces of a flight with a different lever arm. For a body that may be
 /// hand-held, FlightSignCheck therefore reports only three inverted axes, from unsaturated rates. FlightSignCheck

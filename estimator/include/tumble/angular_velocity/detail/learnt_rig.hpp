@@ -37,9 +37,9 @@ struct CalibratedRig {
 /// If RateReport::calibration_at_prior is set, the returned calibration is the prior.
 CalibratedRig learnt(const RateReport& report);
 
-/// Updates `before` by the certain saturation limits of a run that could not estimate the rig constants. Old limits are
-/// replaced if the run found better limits, and removed if readings contradict them. Returns empty if no saturation
-/// plane is certain.
+/// Updates `before` by the certain saturation limits of a run that could not estimate the rig constants. Old saturation
+/// limits are replaced if the run found better limits, and removed if readings contradict the old limits. Returns empty
+/// if no saturation plane is certain.
 std::optional<CalibratedRig> calibration_with_rails(const CalibratedRig& before, const SaturationLevels& rails);
 
 /// Applies a calibration to the next run. The lowest saturation limit of a sensor becomes the sensor's range. The

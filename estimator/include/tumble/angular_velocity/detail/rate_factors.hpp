@@ -47,7 +47,7 @@ RateFactor delayed_flight_jacobian_calibration(const RateKnot& knot, const RigCo
                                                const Eigen::Vector3d& reading_m_s2, double delay_s);
 
 /// Returns the second time derivative of the specific force at the lever arm in free flight [m/s^4]. Averaging changes
-/// a reading by half of this derivative, times the variance of the time within the averaging window.
+/// a reading by half of the force's second derivative, times the variance of the time within the averaging window.
 Eigen::Vector3d flight_curvature(const RateKnot& knot, const RigConstants& rig);
 
 /// Residual of Euler's equation without torque, with the inertia scaled to trace 3 [rad/s^2]: J alpha + w x J w.

@@ -86,8 +86,8 @@ struct RateContactParams {
 };
 
 struct RateModelExpertParams {
-  /// Duration for which the model error of a force, a torque or a rate is constant. Averaging samples within this time
-  /// reduces their noise, but not their model error.
+  /// Duration for which the model error of a force, a torque or a rate is constant. Averaging samples within
+  /// `model_error_s` reduces the noise, but not the model error.
   double model_error_s = 0.01;
   /// Standard deviation of the rate about zero at rest, independent for each sample. The value covers vibration and
   /// false detections of rest.

@@ -18,7 +18,7 @@ namespace tumble {
 /// the extremes have priority. The search for saturation planes repeats whenever the number of readings near the
 /// extremes has grown by an eighth. A run of n readings at the extreme therefore needs only O(log n) searches. A
 /// saturation plane remains valid after its readings were dropped, until readings contradict the plane. Saturation is
-/// detected some samples after it first occurs, so users must classify earlier samples again.
+/// detected some samples after its first occurrence, so users must classify earlier samples again.
 class StreamingClippingFinder {
  public:
   struct Params {

@@ -12,9 +12,9 @@ namespace tumble {
 ///
 /// In fast rotation, large opposite forces cancel in the mean of all IMUs, but their scale and misalignment errors do
 /// not. For each IMU k, a Kalman filter estimates bias b_k, scale and misalignment M_k, and position error dp_k. The
-/// measurement model is f_k = c + A p_k + b_k + M_k f_k + A dp_k, with A = [a]x + [w]x[w]x. Here, c is the common
-/// force, p_k the position of the IMU, w the rate and a the angular acceleration. The measurement is the difference of
-/// each IMU's force from the mean of all IMUs, averaged over kSpan_s. Averaging neglects the rotation of the body
+/// measurement model is f_k = c + A p_k + b_k + M_k f_k + A dp_k, with A = [a]x + [w]x[w]x. The symbols are the common
+/// force c, the position p_k of the IMU, the rate w and the angular acceleration a. The measurement is the difference
+/// of each IMU's force from the mean of all IMUs, averaged over kSpan_s. Averaging neglects the rotation of the body
 /// within kSpan_s. Errors that all IMUs share are not observable, and their estimates remain close to zero.
 class ForceErrors {
  public:

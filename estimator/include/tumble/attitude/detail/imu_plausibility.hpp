@@ -13,9 +13,9 @@ namespace tumble {
 /// Detects a gyro whose scale or sign contradicts gravity, and frozen sensors.
 ///
 /// If the magnitude of the force is close to gravity and constant for a fifth of a second, the force is probably
-/// gravity. The direction of gravity in sensor axes must rotate as the gyro measures: u(t + T) = R^T u(t). Here, u is
-/// the direction of the force, and R the rotation from t to t + T. Directions are compared only if the gyro is
-/// unsaturated.
+/// gravity. The direction of gravity in sensor axes must rotate as the gyro measures: u(t + T) = R^T u(t). The vector u
+/// is the direction of the force, and R is the rotation of the sensor from t to t + T. Directions are compared only if
+/// the gyro is unsaturated.
 ///
 /// A regression line relates the rotation of the force to the rotation of the gyro. The slope of the regression is 1
 /// for a correct IMU, 2 for a half-scale gyro, and -1 for an inverted gyro. Pushes, and a force along a rod, scatter

@@ -13,9 +13,9 @@ namespace tumble {
 /// Checks whether rates are plausible for a body that never rests but is held by a hand, a hinge, or the ground. During
 /// one or two seconds, a held body rotates about one of its points (the pivot), which hardly moves. The forces, rotated
 /// by the rates, integrate to gravity times the duration plus the effect of rotation about the pivot. PivotCheck
-/// compares this integral for the actual rates, for relabelled or inverted gyro axes, and for half or twice the rate.
-/// The rates are wrong if only one of the alternatives fits the integral, in many segments. If the pivot is near the
-/// sensor, as in hand-held motion, PivotCheck determines the gyro's scale to a per cent.
+/// compares the integrated force for the actual rates, for relabelled or inverted gyro axes, and for half or twice the
+/// rate. The rates are wrong if only one of the alternatives fits the integral, in many segments. If the pivot is near
+/// the sensor, as in hand-held motion, PivotCheck determines the gyro's scale to a per cent.
 ///
 /// The equations of PivotCheck are imu_merge.md (I27), (I28), (I29), (I30). PivotCheck uses only unsaturated rates: a
 /// segment ends where the gyro saturates. If a body flies or rolls, no alternative explains its motion. If a body
@@ -30,7 +30,7 @@ struct PivotCheck {
   double scale_sigma = std::numeric_limits<double>::infinity();
   std::size_t scale_segments = 0, explained_segments = 0;  ///< segments that determine the scale; explained segments
 
-  /// The ranges are those of the data sheet; 0: unknown. Cost: O(samples), about 1 ms per second of data at 100 Hz.
+  /// The ranges are from the data sheet; 0: unknown. Cost: O(samples), about 1 ms per second of data at 100 Hz.
   static PivotCheck of(std::span<const ImuSample> samples, double gravity_m_s2, double gyro_range_rad_s,
                        double accel_range_m_s2);
 

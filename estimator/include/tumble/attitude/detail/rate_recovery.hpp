@@ -27,8 +27,8 @@ class RateRecovery {
  public:
   static constexpr int kUnits = 4;
   static constexpr int kStates = 9 + 3 * kUnits;
-  /// The parameters in ReadingNoise hold for a reading of this duration. Readings of a shorter duration d have noise
-  /// that is larger by the factor sqrt(kReading_s / d), so a higher sample rate adds no information.
+  /// The parameters in ReadingNoise hold for a reading of the duration kReading_s. Readings of a shorter duration d
+  /// have noise that is larger by the factor sqrt(kReading_s / d), so a higher sample rate adds no information.
   static constexpr double kReading_s = 4e-3;
   static constexpr double kActiveRangeRatio = 0.5;  ///< fraction of the gyro's range above which the filter runs
   using Vector = Eigen::Matrix<double, kStates, 1>;

@@ -16,7 +16,8 @@ namespace tumble {
 /// wrong magnitude reveals another unit of the accelerometer, for example g.
 ///
 /// Between two rests, the force rotated by the estimated rates integrates to gravity times the duration, because the
-/// velocity at both rests is zero. A gyro with wrong sign, scale or axis labels violates this relation.
+/// velocity at both rests is zero. A gyro with wrong sign, scale or axis labels violates the relation between
+/// integrated force and gravity.
 ///
 /// The equations of RestGravity are imu_merge.md (I23), (I24), (I25), (I26). RestGravity does not detect wrong rates if
 /// the body returns to its initial attitude (a pendulum), rotates about the vertical, or rests less than twice.

@@ -20,9 +20,9 @@ namespace tumble {
 /// outliers.md (O1) to (O6).
 ///
 /// The filter delays an unexplained jump by one sample, until the next reading confirms or refutes the jump. All other
-/// readings pass without delay, unchanged. Readings beyond kRateMax_rad_s or kForceMax_m_s2 never pass. An outlier as
-/// first reading passes, but the next two readings refute it (first_is_outlier()). Cost: O(1) per reading, no
-/// allocation. OutlierFilter does not detect two outliers in a row, or an outlier during a hard impact.
+/// readings pass without delay, unchanged. Readings beyond kRateMax_rad_s or kForceMax_m_s2 never pass. If the first
+/// reading is an outlier, the reading passes, but the next two readings refute it (first_is_outlier()). Cost: O(1) per
+/// reading, no allocation. OutlierFilter does not detect two outliers in a row, or an outlier during a hard impact.
 class OutlierFilter {
  public:
   /// No gyro measures rates above kRateMax_rad_s (57 000 deg/s), and no robot's accelerometer measures forces above
@@ -59,8 +59,8 @@ class OutlierFilter {
     return state.count == 1 && state.delayed && jumps(*state.delayed, state) && confirms(next, state);
   }
 
-  /// Returns true if a finite sample must not be used now, because it is delayed or exceeds all plausible readings.
-  /// Call filter_sample() before must_delay().
+  /// Returns true if a finite sample must not be used now, because the sample is delayed or implausibly large. Call
+  /// filter_sample() before must_delay().
   bool must_delay(const ImuSample& sample, State& state) const;
 
   /// Call pass() for each sample that filter_sample() returned or for which must_delay() returned false.

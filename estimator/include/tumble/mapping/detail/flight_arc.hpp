@@ -24,11 +24,11 @@ Eigen::Vector3d flight_force(const FlyingBody& body, const Eigen::Vector3d& w_WI
                              const Eigen::Vector3d& angular_acceleration_I_rad_s2);
 
 /// Predicts the motion over a segment of flight without IMU readings, as a ballistic arc. Appends samples over
-/// (from_ns, to_ns] to `samples`, each at most `step_ns` long. SweepTrajectory integrates these samples to a parabola
-/// of the centre of mass. The body rotates without torque, starting from the initial rate. Returns `time_order` (empty
-/// time interval or no step), `non_finite`, or `degenerate` (invalid inertia). On error, `samples` is unchanged. A
-/// Runge-Kutta method of fourth order integrates Euler's equation. The rotation over a step is exact to third order of
-/// the step. Drag is neglected.
+/// (from_ns, to_ns] to `samples`, each at most `step_ns` long. SweepTrajectory integrates the appended samples to a
+/// parabola of the centre of mass. The body rotates without torque, starting from the initial rate. Returns
+/// `time_order` (empty time interval or no step), `non_finite`, or `degenerate` (invalid inertia). On error, `samples`
+/// is unchanged. A Runge-Kutta method of fourth order integrates Euler's equation. The rotation over a step is exact to
+/// third order of the step. Drag is neglected.
 Status flight_arc(const FlyingBody& body, const Eigen::Vector3d& w_WI_I_rad_s, TimeNs from_ns, TimeNs to_ns,
                   TimeNs step_ns, std::vector<MotionSample>& samples);
 

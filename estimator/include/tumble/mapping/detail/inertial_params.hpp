@@ -9,8 +9,8 @@
 namespace tumble {
 
 /// Standard deviations of the errors of inertial integration over kSpan_s, in addition to the uncertainty in RateState.
-/// These errors grow in proportion to time. Choose larger standard deviations if unsure. Smaller standard deviations
-/// constrain the pose more strongly in a world with few features.
+/// The errors of inertial integration grow in proportion to time. Choose larger standard deviations if unsure. Smaller
+/// standard deviations constrain the pose more strongly in a world with few features.
 struct InertialNoiseParams {
   static constexpr double kSpan_s = 0.1;  ///< time between two sweeps of most lidars
   double sigma_m = 0.003;

@@ -19,8 +19,8 @@ struct MatchingParams {
   double correction_max_rad = 1.1;  ///< a larger correction of the prior is rejected
   /// Growth rate of a point's standard deviation since the start of the sweep. Late points therefore have less weight.
   double skew_sigma_m_s = 0.25;
-  /// A sweep is `degenerate` if the standard deviation of the pose from its surfaces alone exceeds this value in some
-  /// direction. Attitude is converted to displacement by the root-mean-square lever arm.
+  /// A sweep is `degenerate` if the standard deviation of the pose from the sweep's surfaces alone exceeds
+  /// degenerate_sigma_m in some direction. Attitude is converted to displacement by the root-mean-square lever arm.
   double degenerate_sigma_m = 0.15;
 
   template <class Self, class Visitor>
@@ -93,8 +93,8 @@ struct TrackingParams {
   /// uncertain attitude.
   double extend_sigma_max_m = 0.1;
   double extend_sigma_max_rad = 0.1;
-  /// Maximum number of consecutive sweeps with points but without registration. After lost_sweeps_max such sweeps,
-  /// inertial prediction continues with the verdict `degenerate`.
+  /// Maximum number of consecutive sweeps with points but without registration. After lost_sweeps_max consecutive
+  /// sweeps without registration, inertial prediction continues with the verdict `degenerate`.
   int lost_sweeps_max = 30;
   /// Minimum fraction of a sweep's matches within three standard deviations that confirms a relocalisation. The
   /// expected fraction for normal errors is 0.997. A smaller fraction contradicts the relocalisation.

@@ -14,8 +14,8 @@ namespace tumble::mapping {
 Status check_offsets(TimeNs span_ns, std::span<const LidarPoint> points);
 
 /// Returns `empty` (no points), `non_finite` (no finite point), `too_few` (no point in range) or `degenerate`.
-/// `degenerate` means that all points have one time stamp, although the sweep has a duration. In this case, the driver
-/// has probably lost the time stamps, which deskewing needs.
+/// `degenerate` means that all points have one time stamp, although the sweep has a duration. If all points have one
+/// time stamp, the driver has probably lost the time stamps, which deskewing needs.
 Status check_selection(TimeNs span_ns, std::span<const LidarPoint> points, const PointCounts& counts);
 
 }  // namespace tumble::mapping

@@ -13,7 +13,8 @@
 
 namespace tumble {
 
-/// The mounting relative to the first lidar and the clock offset must be exact, because they are not estimated.
+/// The mounting of a further lidar relative to the first lidar and the clock offset are not estimated, so both must be
+/// exact.
 struct FurtherLidar {
   Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< pose of the lidar in IMU axes
   LidarSheet sheet;

@@ -19,7 +19,7 @@ namespace tumble {
 /// The first pass maps the start of a tumble while lever arm, mounting and time offset are still uncertain. Samples and
 /// sweeps are therefore buffered from the end of the initial rest. After `after_s` of motion, the buffer is processed
 /// with the current calibration, and with rates smoothed with a lag of `lag_s`. The second pass processes `sweeps`
-/// buffered sweeps per new sweep. At its end, map and pose of the second pass replace those of the first pass. The
+/// buffered sweeps per new sweep. When the second pass ends, its map and pose replace those of the first pass. The
 /// result is discarded if tracking failed in the second pass, or if the second pass rejected clearly more sweeps.
 ///
 /// If tracking of the first pass has failed for `lost_s`, the whole buffer is processed immediately, once. The regular
