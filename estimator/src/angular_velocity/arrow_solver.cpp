@@ -28,15 +28,14 @@ Marginal marginal(const Conditional& conditional, const BorderMatrix& border_cov
   return System::marginal(conditional, border_covariance);
 }
 
-// Eliminates one block from the equations for the derivatives with respect to the sensor errors: rate_smoother.md
-// (R27).
+// See rate_smoother.md (R27).
 void eliminate_errors(const Block& block, ErrorMatrix& errors, ErrorMatrix* next, BorderErrors& border) {
   errors = (block.diagonal.lazyProduct(errors)).eval();
   border.noalias() -= block.border.transpose().lazyProduct(errors);
   if (next != nullptr) next->noalias() -= block.coupling.transpose().lazyProduct(errors);
 }
 
-// Computes the derivatives of one block's unknowns with respect to the sensor errors: rate_smoother.md (R37).
+// See rate_smoother.md (R37).
 ErrorMatrix back_substitute_errors(const Block& block, const ErrorMatrix& errors, const ErrorMatrix* next_moved,
                                    const BorderErrors& border_moved) {
   ErrorMatrix right = errors - block.border.lazyProduct(border_moved);
@@ -44,7 +43,7 @@ ErrorMatrix back_substitute_errors(const Block& block, const ErrorMatrix& errors
   return block.diagonal.transpose().lazyProduct(right);
 }
 
-// Computes the 3x3 covariance of the angular velocity at one sample: rate_smoother.md (R35).
+// See rate_smoother.md (R35).
 Eigen::Matrix3d rate_covariance(const Conditional& conditional, const BorderMatrix& border_covariance) {
   const Eigen::Matrix<double, 3, kBorderSize> rows = conditional.jacobian_border.topRows<3>();
   const Eigen::Matrix<double, 3, kBorderSize> cross = rows.lazyProduct(border_covariance);

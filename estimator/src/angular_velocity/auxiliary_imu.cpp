@@ -38,7 +38,6 @@ AuxiliaryReading::AuxiliaryReading()
 
 Status align(const AuxiliaryImu& auxiliary_imu, std::span<const ImuSample> samples, std::span<const Clipping> clippings,
              std::span<const ImuSample> primary, double gap_max_s, std::vector<AuxiliaryReading>& out) {
-  // During a gap of an auxiliary IMU, its readings are empty.
   const Status status = check_samples(samples, std::numeric_limits<double>::infinity());
   if (!status.ok()) return status;
   if (clippings.size() != samples.size()) {
@@ -61,7 +60,6 @@ Status align(const AuxiliaryImu& auxiliary_imu, std::span<const ImuSample> sampl
         between(here.specific_force_m_s2, b.specific_force_m_s2 - a.specific_force_m_s2, near,
                 auxiliary_imu.accel_noise_density * root_rate, auxiliary_imu.accel_error_m_s2, auxiliary_imu);
     const Clipping &c = clippings[near.before], &d = clippings[near.after];
-    // A reading with zero weight does not enter the interpolation.
     const bool left = near.share<1.0, right = near.share> 0.0;
     const unsigned gyro = (left ? c.gyro | c.unusable_gyro : 0u) | (right ? d.gyro | d.unusable_gyro : 0u);
     const unsigned accel = (left ? c.accel : 0u) | (right ? d.accel : 0u);

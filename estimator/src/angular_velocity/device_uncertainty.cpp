@@ -13,14 +13,9 @@ namespace {
 using Matrix = SensorErrors::Matrix;
 using Vector = SensorErrors::Vector;
 
-// DeviceUncertainty tests whether a device is calibrated, and multiplies the information of the readings by
-// kOddsEvidenceWeight in this test. kOddsEvidenceWeight is ten times kEvidenceWeight, the weight for estimates of
-// sensor errors. With a weight of 1, half of the calibrated devices would count as uncalibrated if the rig's
-// calibration is uncertain.
 constexpr double kOddsEvidenceWeight = 0.3;
 
-// Computes I + share U L U. L is the symmetrised information matrix of the sensor errors; U contains their standard
-// deviations.
+// Computes I + share U L U, with the information matrix L of the sensor errors and their standard deviations U.
 void set_system(const SensorErrorEvidence& evidence, const Vector& deviation, double share, Matrix& system) {
   for (int j = 0; j < SensorErrors::kSize; ++j) {
     for (int i = 0; i < SensorErrors::kSize; ++i) {
@@ -30,8 +25,7 @@ void set_system(const SensorErrorEvidence& evidence, const Vector& deviation, do
   }
 }
 
-// Computes the log odds that a device matches its data sheet: rate_stream.md (R102). Returns NaN if the information
-// matrix is indefinite.
+// See rate_stream.md (R102). Returns NaN if the information matrix is indefinite.
 double log_odds(const SensorErrorEvidence& evidence, const Vector& deviation, Matrix& system) {
   set_system(evidence, deviation, kOddsEvidenceWeight, system);
   const Eigen::LLT<Eigen::Ref<Matrix>> factor(system);
@@ -41,13 +35,12 @@ double log_odds(const SensorErrorEvidence& evidence, const Vector& deviation, Ma
 }
 
 // Computes the second moment (covariance plus squared mean) of one device's sensor errors: rate_stream.md (R102).
-// Returns false if the information matrix is indefinite.
 bool corrected_covariance(const SensorErrorEvidence& evidence, const Vector& deviation, DeviceUncertainty::Work& work) {
   constexpr int kRest = SensorErrors::kSize - SensorErrors::kGSensitivity;
   constexpr double kEvidenceWeight = DeviceUncertainty::kEvidenceWeight;
   set_system(evidence, deviation, kEvidenceWeight, work.system);
-  // The estimated scale and misalignment errors stay zero, because errors of the flight model look like scale and
-  // misalignment errors.
+  // Errors of the flight model look like errors of scale and misalignment, so estimates of scale and misalignment stay
+  // zero.
   Vector mean = Vector::Zero();
   const Eigen::Matrix<double, kRest, kRest> rest = work.system.bottomRightCorner<kRest, kRest>();
   mean.tail<kRest>() = rest.llt().solve(kEvidenceWeight * deviation.cwiseProduct(evidence.gradient).tail<kRest>());

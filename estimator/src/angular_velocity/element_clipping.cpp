@@ -11,34 +11,25 @@ namespace tumble {
 
 namespace {
 
-// A cross-axis sensitivity counts as determined if its standard deviation is below kDeterminedSlopeSigma. A cross-axis
-// sensitivity below kNegligibleSlope counts as zero.
 constexpr double kDeterminedSlopeSigma = 2e-3, kNegligibleSlope = 3e-3;
-// For a device that clips its digital output, the relative difference of positive and negative saturation levels is at
-// most kUnequalLevelsRatio.
 constexpr double kUnequalLevelsRatio = 1e-4;
-// `kUprightSigma` is the standard deviation of a saturation plane's tilt for a device that clips its digital output.
-// `kSlopeSigmaMin` is the minimum standard deviation of a cross-axis sensitivity, due to residual misalignment.
 constexpr double kUprightSigma = 1e-5, kSlopeSigmaMin = 3e-4;
 // A reading next to a saturated reading is partly saturated if |level - reading| < kEdgeStepRatio |reading - other
 // neighbour|.
 constexpr double kEdgeStepRatio = 0.5;
 
-// Returns the sign of element j's reading, which is also the sign of the saturation level if the reading is clipped.
 int side(const ImuSample& sample, Triad triad, std::size_t j) {
   return reading_of(sample, triad)[static_cast<Eigen::Index>(j)] < 0.0 ? -1 : 1;
 }
 
-// Returns whether sensing element j of a sample is saturated. An element is saturated if its reading is on the
-// saturation plane, rails.md (R55), or if the device flags the sample.
+// Saturated readings are on the saturation plane, rails.md (R55), or have the device's saturation flag.
 bool at_rail(const ImuSample& sample, Triad triad, const RailPlane& rail, std::size_t j) {
   const Eigen::Vector3d& reading = reading_of(sample, triad);
   return (sample.device_clip_flags >> (first_channel(triad) + j) & 1u) != 0 || rail.holds(reading, -1) ||
          rail.holds(reading, 1);
 }
 
-// Returns whether `now`, a sample next to a clipped sample, was saturated for a part of its averaging window. The test
-// compares the distances of `now` and its other neighbour `outside` from the saturation level: rails.md (R54).
+// A sample next to a clipped sample may be saturated for a part of its averaging window: rails.md (R54).
 bool meets(const RailPlane& rail, Triad triad, const ImuSample& now, const ImuSample* outside, int sign) {
   const double depth = rail.margin_rad_s(reading_of(now, triad), sign);
   if (depth > kNearRailRatio * rail.distance_rad_s) return false;
@@ -47,16 +38,13 @@ bool meets(const RailPlane& rail, Triad triad, const ImuSample& now, const ImuSa
   return depth < kEdgeStepRatio * (before - depth);
 }
 
-// Returns whether the saturation levels of positive and negative readings differ. The levels of both signs differ if
-// the device subtracts the element's offset after clipping.
+// The positive and negative saturation levels differ if the device subtracts the offset after clipping.
 bool has_unequal_levels(const RailPlane& rail) {
   return rail.seen(-1) && rail.seen(1) &&
          std::abs(rail.offset_rad_s) >
              kUnequalLevelsRatio * rail.distance_rad_s + 4.0 * std::sqrt(rail.covariance(3, 3));
 }
 
-// Returns two finders of saturation planes, with and without a range. The range is that of the data sheet. If the data
-// sheet states none, the saturation levels that were detected for single axes replace the range.
 std::array<RailPlaneFinder, 2> finders_with_and_without_range(RailPlaneFinder::Params params,
                                                               const std::optional<double>& stated) {
   RailPlaneFinder::Params unstated = params;
@@ -162,7 +150,7 @@ void mark_subsample_saturation(const RailPlanes& planes, const RailDetector& rai
   }
 }
 
-// Computes the cross-axis sensitivities and their covariance from the saturation planes: rails.md (R59).
+// See rails.md (R59).
 std::optional<EstimatedSlopes> estimated_slopes(const RailPlanes& planes, bool upright, int element,
                                                 const Eigen::Matrix2d& before) {
   if (upright) {

@@ -18,13 +18,10 @@ constexpr double kForceMin_m_s2 = 2.5;     // a smaller force of the rotation is
 constexpr double kTolerance = 0.25;        // tolerance of the agreement, as a fraction of the force of free flight
 constexpr double kRun_s = 0.02;            // minimum duration of agreement, which excludes chance on the ground
 constexpr double kFlightGapMax_s = 0.1;    // a longer gap resets the current run
-// Minimum flight time of an alternative sensor. Minimum ratio to the flight time of the true sensor, for a body that
-// may be hand-held and for a thrown body.
 constexpr double kAlternativeMin_s = 0.1, kAlternativeRatioMin = 4.0, kThrownRatioMin = 2.0;
 constexpr double kAcross = 0.05;    // minimum squared component of the lever arm across a saturated axis, as a fraction
 constexpr double kBelowRail = 0.1;  // fraction of the saturation level by which a recovered rate may be below the level
 
-/// Alternative is a possible fault of the accelerometer, with the signs that correct its readings.
 struct Alternative {
   std::array<double, 3> sign;
   const char* name;
@@ -42,8 +39,7 @@ constexpr std::array<Alternative, FlightSignCheck::kAlternatives> kAlternativeSe
     {{1, 1, -1}, "flight time in s that agrees with an inverted accelerometer axis z"},
 }};
 
-/// Corrects a reading for a hypothetical sign of the accelerometer: imu_merge.md (I32). `known` is true
-/// if the centripetal force gives a rate of the saturated axis above the saturation level.
+/// See imu_merge.md (I32).
 FlightSignCheck::Reading convert_reading(const FlightSignCheck::Reading& reading, const Alternative& sense,
                                          const Eigen::Vector3d& t) {
   FlightSignCheck::Reading out = reading;
@@ -65,8 +61,7 @@ FlightSignCheck::Reading convert_reading(const FlightSignCheck::Reading& reading
   return out;
 }
 
-/// Returns whether the middle one of three readings agrees with flight, after correction of the hypothetical fault:
-/// imu_merge.md (I31).
+/// See imu_merge.md (I31).
 bool agrees_with_flight(const Alternative& sense, const std::array<FlightSignCheck::Reading, 3>& readings,
                         const FlightSignCheck::Params& params) {
   const Eigen::Vector3d& t = params.lever_arm_m;
@@ -81,8 +76,7 @@ bool agrees_with_flight(const Alternative& sense, const std::array<FlightSignChe
   return size >= kForceMin_m_s2 && (middle.force_m_s2 - expected).norm() <= kTolerance * size;
 }
 
-/// Returns whether the check tests an alternative sensor. For a body that may be hand-held, the check tests only the
-/// accelerometer with three inverted axes.
+/// If a body may be hand-held, the check tests only an accelerometer with three inverted axes.
 bool is_tested(std::size_t sense, FlightSignCheck::Body body) {
   return body == FlightSignCheck::Body::thrown || sense <= 1;
 }
@@ -125,8 +119,6 @@ FlightSignCheck::Reading FlightSignCheck::reading_of(const ImuSample& mean, doub
   return out;
 }
 
-/// Classifies the previous reading as flight or not. The angular acceleration of the previous reading follows from the
-/// readings before and after it.
 void FlightSignCheck::process_reading(const Reading& now, State& state) const {
   const auto [first, middle] = state.before;
   state.before = {middle, now};

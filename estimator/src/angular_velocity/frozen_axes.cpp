@@ -20,7 +20,6 @@ constexpr double kAxisFrozen_s = 0.5;  // longest repetition of a working axis w
 constexpr double kMinRepetitionRatio = 10.0;
 constexpr double kPossibleRailRatio = 0.9;  // fraction of the stated range above which a reading may be saturated
 constexpr double kExtremeRatio = 0.5;       // the same fraction for the extreme reading of an axis
-// minimum change of another axis, in quantisation steps; 2 % cross-axis sensitivity causes one step
 constexpr double kMotionQuanta = 50.0;
 constexpr double kRotating_rad_s = 0.3;    // change of another gyro axis that indicates motion
 constexpr double kMotionForce_m_s2 = 1.0;  // change of another accelerometer axis that indicates motion
@@ -30,7 +29,6 @@ constexpr bool is_gyro(std::size_t channel) {
   return channel < 3;
 }
 
-/// Returns the k-th of the two channels that belong to the same triad as `channel`.
 constexpr std::size_t other(std::size_t channel, std::size_t k) {
   return channel / 3 * 3 + (channel + 1 + k) % 3;
 }
@@ -109,14 +107,11 @@ bool FrozenAxes::at_rail(std::size_t channel, const Axis& axis) const {
   const double stated = is_gyro(channel) ? params_.gyro_range_rad_s : params_.accel_range_m_s2;
   const double size = std::abs(axis.reading);
   if (stated > 0.0 && size >= kPossibleRailRatio * stated) return true;
-  // A saturation flag shows that the device saturated during the repetition, but the repeated reading may be below the
-  // saturation level.
+  // If the device's saturation flag is set, the repeated reading may still be below the saturation level.
   if (axis.device_flagged && size >= kExtremeRatio * stated) return true;
   return size >= kExtremeRatio * stated && (axis.reading == axis.min_reading || axis.reading == axis.max_reading);
 }
 
-/// Returns whether the other axes of the triad change by far more than one quantisation step of the tested axis. The
-/// other axes must change in at least the fraction kChanging of the samples.
 bool FrozenAxes::others_move(std::size_t channel, const Axis& axis) {
   const double least =
       std::max(is_gyro(channel) ? kRotating_rad_s : kMotionForce_m_s2, kMotionQuanta * axis.smallest_change);
@@ -165,7 +160,6 @@ Eigen::Vector3d FrozenAxes::rate_variance_rad2_s2(TimeNs time_ns, const State& s
 
 namespace {
 
-/// Adds an interval to `out` for each axis that is frozen at `time_ns`, or extends the axis' last interval.
 void extend(const FrozenAxes::State& state, TimeNs time_ns, std::vector<FrozenAxis>& out) {
   for (const Triad triad : {Triad::gyro, Triad::accelerometer}) {
     for (int axis = 0; axis < 3; ++axis) {

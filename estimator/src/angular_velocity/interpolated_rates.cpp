@@ -12,12 +12,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-// kReadingTimeSigma_samples is the standard deviation of a reading's time, in sample periods. In a stream, a reading is
-// equally likely at any time within the preceding sample period (standard deviation 1/sqrt(12)). In a recording, the
-// sensor's clock is estimated, so the smaller kClockedReadingSigma_samples applies.
+// In a stream, the time of a reading is uniformly distributed over a sample period (standard deviation 1/sqrt(12)). In
+// a recording, the estimated sensor clock reduces the uncertainty of a reading's time.
 constexpr double kReadingTimeSigma_samples = 0.29, kClockedReadingSigma_samples = 0.1;
 
-// TimedReading is a gyro reading with the time of the middle of its averaging window.
 struct TimedReading {
   double time_s = 0.0;
   Vector3d rate_rad_s = Vector3d::Zero();
@@ -28,8 +26,6 @@ Vector3d slope(const TimedReading& a, const TimedReading& b) {
   return (b.rate_rad_s - a.rate_rad_s) / (b.time_s - a.time_s);
 }
 
-// Interpolates the angular rate between the readings a and b by a cubic. The slope at a uses the earlier reading z, and
-// the slope at b uses the later reading c, if z and c are usable.
 std::optional<InterpolatedRate> between(const TimedReading& z, const TimedReading& a, const TimedReading& b,
                                         const TimedReading& c, double time_s, double moment_s) {
   const double span_s = b.time_s - a.time_s, u = (time_s - a.time_s) / span_s, v = 1.0 - u;
@@ -40,15 +36,12 @@ std::optional<InterpolatedRate> between(const TimedReading& z, const TimedReadin
   InterpolatedRate out;
   out.rate_rad_s = v * v * (1.0 + 2.0 * u) * a.rate_rad_s + u * u * (3.0 - 2.0 * u) * b.rate_rad_s +
                    span_s * u * v * (v * slope_a - u * slope_b);
-  // The variance of an interpolated rate has two causes: uncertain times of the readings, and the averaging window. The
-  // averaging window flattens the curve of the rate.
+  // The averaging window of a gyro reading flattens the curve of the rate.
   const Vector3d moment = moment_s * chord, bend = span_s / 24.0 * (slope_b - slope_a);
   out.variance_rad2_s2 = moment.cwiseAbs2() + bend.cwiseAbs2();
   return out;
 }
 
-// Returns the index of the first new (not repeated) reading at or after index i. Returns the window's size if all later
-// samples repeat a reading.
 std::size_t new_reading(std::span<const RateStreamKnot> window, std::size_t i) {
   while (i < window.size() && window[i].repeats) ++i;
   return i;

@@ -16,15 +16,12 @@ namespace tumble {
 namespace {
 
 constexpr double kNextRunInflation = 4.0;
-// kElementDrift is the standard deviation of the change of a gyro's cross-axis sensitivity between runs. In six runs of
-// one hand-held device, one cross-axis sensitivity ranged from 0.017 to 0.021.
+// In six runs of one hand-held device, a gyro's cross-axis sensitivity ranged from 0.017 to 0.021.
 constexpr double kElementDrift = 2e-3;
-// kSlopeDrift is the standard deviation of the change of an accelerometer's cross-axis sensitivity between runs.
 constexpr double kSlopeDrift = 2e-3;
-// Saturation planes with lower log odds are not saved, because the readings at a maximum of the motion can resemble a
-// plane.
+// At a maximum of the motion, readings can resemble a saturation plane.
 constexpr double kCertainLogOdds = 10.0;
-// kSlopeSigmaMin is the smallest standard deviation of a cross-axis sensitivity: rails.md (R59).
+// smallest standard deviation of a cross-axis sensitivity: rails.md (R59)
 constexpr double kSlopeSigmaMin = 3e-4;
 
 std::optional<double> lowest_rail(const CalibratedRig& rig, std::size_t first) {
@@ -35,13 +32,11 @@ std::optional<double> lowest_rail(const CalibratedRig& rig, std::size_t first) {
   return out;
 }
 
-// A reading counts as saturated if |reading - level| <= kLevelToleranceRatio * level. Saturation levels are stable to
-// 0.05 %, but the sensor's bias shifts the readings.
+// Saturation levels are stable to 0.05 %, but the sensor's bias shifts saturated readings.
 constexpr double kLevelToleranceRatio = 2e-3;
 
-// Returns whether the saturation level is known precisely enough for the next run: two standard deviations must be
-// within the tolerance. If two sensing elements only clip together, the readings determine neither their cross-axis
-// sensitivity nor the saturation level.
+// If two sensing elements only clip together, the readings determine neither their cross-axis sensitivity nor their
+// saturation level.
 bool is_level_known(const RailPlane& plane, int sign) {
   const Eigen::Vector4d cut(0.0, 0.0, sign, 1.0);
   const double variance = cut.dot(plane.covariance * cut), most = 0.5 * kLevelToleranceRatio * plane.distance_rad_s;
@@ -63,7 +58,6 @@ void CalibratedRig::keep(const RailPlanes& planes, Triad triad) {
   for (std::size_t j = 0; j < 3; ++j) {
     const std::optional<RailPlane>& plane = planes.element[j];
     if (plane && plane->log_odds < kCertainLogOdds) {
-      // The next run also starts with a larger covariance of this element's cross-axis sensitivities.
       const double sigma = RateModelParams{}.element_sigma;
       const Eigen::Index at = RigConstants::kElements + 2 * static_cast<Eigen::Index>(j);
       if (triad == Triad::gyro) calibration.covariance.diagonal().segment<2>(at).array() += sigma * sigma;
@@ -84,8 +78,6 @@ void CalibratedRig::keep(const RailPlanes& planes, Triad triad) {
 
 namespace {
 
-// Stores in `rig` the cross-axis sensitivities and saturation level of a sensing element whose saturation plane is
-// certain.
 void store_element(const RailPlane& plane, Triad triad, std::size_t j, CalibratedRig& rig) {
   const auto first = static_cast<Eigen::Index>(2 * j), at = RigConstants::kElements + first;
   const Eigen::Vector2d slopes(plane.row[static_cast<Eigen::Index>((j + 1) % 3)],
@@ -177,7 +169,7 @@ void start_from(const CalibratedRig& rig, double trust, RateSmoother::Params& pa
 void apply_saved_calibration(const CalibratedRig& rig, RateSmoother::Params& params) {
   const RigConstants::Matrix prior = RateModel(params.model, 0.01).prior_covariance();
   start_from(rig, kNextRunInflation, params);
-  // Biases change at every switch-on, so the default prior replaces the saved covariance of the biases.
+  // Biases change at every switch-on.
   constexpr int kBias = 3, kBiases = 6;
   RigConstants& constants = params.model.calibration->constants;
   constants.gyro_bias_rad_s = params.model.nominal.gyro_bias_rad_s;
@@ -186,7 +178,6 @@ void apply_saved_calibration(const CalibratedRig& rig, RateSmoother::Params& par
   covariance.diagonal().tail<RigConstants::kSize - RigConstants::kElements>().array() += kElementDrift * kElementDrift;
   covariance.middleRows<kBiases>(kBias).setZero();
   covariance.middleCols<kBiases>(kBias).setZero();
-  // Limits the covariance of the calibration to the default prior.
   const RigConstants::Matrix floor = (1.0 - 1.0 / kNextRunInflation) * prior.inverse();
   RigConstants::Matrix filled = covariance;
   filled.block<kBiases, kBiases>(kBias, kBias).setIdentity();

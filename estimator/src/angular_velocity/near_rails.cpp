@@ -10,14 +10,10 @@ namespace tumble {
 
 namespace {
 
-// A reading close to a saturation level is compared with `kReach` neighbours on each side. "Close" means within the
-// fraction `kRoundedPeakRatio` of the level. A gyro's filter may lower the first and last saturated readings by up to
-// `kRoundedPeakRatio` of the level. One hand-held wand reported readings up to 2 % below the saturation level while the
-// rate exceeded the level.
+// A gyro's filter may lower the first and last saturated readings: one hand-held device read up to 2 % below its level.
 constexpr std::size_t kReach = 2;
 constexpr double kRoundedPeakRatio = 0.03;
 
-// gyro readings in time order, without repeated readings
 using Rates = std::span<const Eigen::Vector3d>;
 
 double largest_step(Rates readings, std::size_t at, std::size_t reach, Eigen::Index axis) {
@@ -28,7 +24,7 @@ double largest_step(Rates readings, std::size_t at, std::size_t reach, Eigen::In
   return out;
 }
 
-// Returns a bit mask of the axes that may have been saturated for a part of the averaging window: rails.md (R76).
+// See rails.md (R76).
 std::uint8_t axes_near_rails(Rates readings, std::size_t at, const RailPlanes& planes) {
   const Eigen::Vector3d& reading = readings[at];
   std::uint8_t out = 0;

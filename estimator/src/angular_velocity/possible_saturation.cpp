@@ -10,18 +10,11 @@ namespace tumble {
 
 namespace {
 
-// `kMaxPlaneTilt` is the maximum tilt between the saturation planes of two sensing elements. If few samples are
-// saturated, the standard deviation of the saturation deficit is `kDeficitStepRatio` times the larger step to a
-// neighbouring reading.
+// maximum tilt between the saturation planes of two sensing elements
 constexpr double kMaxPlaneTilt = 0.06, kDeficitStepRatio = 0.5;
 
-// A reading belongs to a flat maximum if it is within the fraction `kTopRatio` of the segment's largest reading.
-// Example: on a plane tilted by kMaxPlaneTilt, saturated readings vary by `kTopRatio` if the rate about the other axes
-// is a sixth of the level. The saturation levels of two sensing elements differ by at most `kMaxElementSigmas` standard
-// deviations.
 constexpr double kTopRatio = 0.01, kMaxElementSigmas = 3.0;
 
-// Returns the lowest known saturation level, or 0 if no level is known.
 double lowest_rail(const RailPlanes& planes) {
   double rail = 0.0;
   for (const auto& element : planes.element) {
@@ -30,23 +23,21 @@ double lowest_rail(const RailPlanes& planes) {
   return rail;
 }
 
-// Returns how far the rate may exceed a flat maximum of `count` equal readings: rails.md (R74). The rate is
-// extrapolated by straight lines from both sides of the maximum; their intersection is the highest possible rate.
+// Returns how far the rate may exceed a flat maximum of `count` equal readings: rails.md (R74).
 double rise_above_plateau(double count, double entered, double left) {
   const double both = std::max(0.0, entered) + std::max(0.0, left);
   return both > 0.0 ? count * std::max(0.0, entered) * std::max(0.0, left) / both : 0.0;
 }
 
-// Returns the magnitude of the angular rate about the axes other than `axis`. On a tilted saturation plane, the
-// saturated reading changes by the tilt times the change of the rate about the other axes.
+// On a tilted saturation plane, a saturated reading changes by the tilt times the change of the rate about the other
+// axes.
 double other_axes_rate(const Eigen::Vector3d& rate_rad_s, Eigen::Index axis) {
   return std::hypot(rate_rad_s[(axis + 1) % 3], rate_rad_s[(axis + 2) % 3]);
 }
 
 }  // namespace
 
-// Raises the lower bounds of the saturation levels, because every reading is below its saturation level: rails.md
-// (R75).
+// Every reading is a lower bound of its saturation level: rails.md (R75).
 void MinSaturationLevels::add(const Eigen::Vector3d& rate_rad_s) {
   for (Eigen::Index j = 0; j < 3; ++j) {
     double& least = min_levels_rad_s_[rate_rad_s[j] < 0.0 ? 0 : 1][j];

@@ -46,11 +46,9 @@ void RailDetector::observe(const ImuSample& sample, State& state) const {
     const bool continues = channel.run_length > 0 && std::abs(value - channel.run_first) <= spread;
     if (channel.run_length > 0 && !continues) {
       if (channel.digit == 0.0 || change < channel.digit) channel.digit = change;
-      // A smaller reading ends a run of equal saturated readings.
       if (magnitude < channel.peak && plateau(c, channel, change)) channel.rail = std::abs(channel.run_first);
     }
     channel.peak = std::max(channel.peak, magnitude);
-    // A larger reading shows that the equal readings are below the saturation level.
     if (channel.rail > 0.0 && channel.peak > channel.rail * (1.0 + params_.range_contradiction_ratio))
       channel.rail = 0.0;
     if (!continues) {

@@ -16,36 +16,22 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// A long segment of equal readings may be a constant rate (spin, turntable) instead of saturation.
-// kConstantRateFraction is the prior probability of a constant rate.
+// prior probability that a long segment of equal readings is a constant rate (spin, turntable) instead of saturation
 constexpr double kConstantRateFraction = 0.05;
-// A segment counts as flat only if SegmentShape::bend >= kBendRatioMin * SegmentShape::flat.
 constexpr double kBendRatioMin = 3.0;
-// Constant rates are assumed to vary over kLevelRangeFraction times the saturation level.
 constexpr double kLevelRangeFraction = 0.2;
-// Each window of kNoiseWindow readings yields an estimate of the gyro's noise. The quantile `kNoiseQuantile` of the
-// estimates of all windows is the noise of the gyro.
 constexpr std::size_t kNoiseWindow = 9;
 constexpr double kNoiseQuantile = 0.2;
-// A kink is an end of a segment at which the clipped axis bends and the other axes move smoothly. One kink contributes
-// at most kMaxKinkLogLikelihood to the log odds of saturation.
+// A kink is an end of a segment at which the clipped axis bends and the other axes move smoothly.
 constexpr double kMaxKinkLogLikelihood = 2.5;
-// A kink counts only if the other axes change there by at least kMotionSigmasMin standard deviations of the noise.
 constexpr double kMotionSigmasMin = 10.0;
-// A segment without a flat maximum counts only if thin_log_likelihood() is at least kThinLogLikelihoodMin, that is, if
-// its readings scatter far less than noise.
 constexpr double kThinLogLikelihoodMin = 8.0;
-// The scatter of a segment of n readings has n - kThinLostFreedom degrees of freedom. The fitted line and the partly
-// saturated ends of the segment each cost two degrees of freedom.
+// The fitted line and the partly saturated ends of a segment each cost two degrees of freedom.
 constexpr std::size_t kThinLostFreedom = 4;
-// A reading is at the saturation level if its distance from the saturation plane is at most kAtRailSigmas standard
-// deviations of the noise. The distance is also limited to kAtRailRatioMax times the level.
 constexpr double kAtRailSigmas = 4.0, kAtRailRatioMax = 0.006;
-// Each reading beyond a saturation plane decreases the log odds of the plane by `kBeyondPenalty`. The fraction
-// `kOutlierFraction` of the readings may be beyond the plane without penalty.
 constexpr double kBeyondPenalty = 5.0, kOutlierFraction = 0.02;
 
-// Returns the noise of one axis' readings, from the root mean square of their third differences: rails.md (R56).
+// See rails.md (R56).
 double window_noise(std::span<const Vector3d> window, int axis) {
   double squares = 0.0;
   const std::size_t count = window.size() - 3;
@@ -62,17 +48,14 @@ struct Segment {
   std::size_t size() const { return last - first + 1; }
 };
 
-// Returns the next segment of consecutive inliers, starting at index `at`. Then sets `at` to the first inlier after the
-// segment.
 Segment next_segment(std::span<const std::size_t> inliers, std::size_t& at) {
   Segment out{inliers[at], inliers[at]};
   for (++at; at < inliers.size() && inliers[at] == out.last + 1; ++at) ++out.last;
   return out;
 }
 
-// Returns the log-likelihood ratio of two explanations for the scatter of a segment about a straight line: saturation
-// and gyro noise, rails.md (R65). Unsaturated readings contain gyro noise; saturated readings contain none if the
-// device adds the noise before it clips. The log-likelihood ratio is zero if quantisation hides the noise.
+// Returns the log-likelihood ratio of saturation to gyro noise for a segment's scatter about a line: rails.md (R65).
+// Saturated readings contain no noise if the device adds the noise before it clips.
 double thin_log_likelihood(const DistinctReadings& readings, const RailFacet& facet, const Segment& s) {
   if (s.size() <= kThinLostFreedom) return 0.0;
   const std::size_t first = s.first + 1, count = s.size() - 2;
@@ -94,24 +77,17 @@ double thin_log_likelihood(const DistinctReadings& readings, const RailFacet& fa
   const double least = std::max(digit, kEqualReadingsRatio * facet.level);
   const double noise = std::hypot(readings.noise[facet.axis], digit);
   const double scatter = std::max(least, std::sqrt(squares / free));
-  // log ratio of two Gaussian likelihoods, with the standard deviations of scatter and noise
   return scatter < noise ? free * (std::log(noise / scatter) - 0.5 * (1.0 - std::pow(scatter / noise, 2))) : 0.0;
 }
 
-// SegmentShape describes a segment of readings close to a possible saturation level. `bend` is the height of a rounded
-// maximum (parabola) that is as long as the segment. `flat` is the difference between the largest and the smallest
-// reading.
 struct SegmentShape {
   double bend = 0.0, flat = 0.0;
   bool bends() const { return bend >= kBendRatioMin * flat; }
 };
 
-// Computes the shape of a segment of consecutive readings. Returns nothing for a single reading, and for a segment
-// close to an end of the recording.
 std::optional<SegmentShape> shape_of(const DistinctReadings& readings, const RailFacet& facet, const Segment& s) {
   const std::vector<Vector3d>& rates = readings.rates;
   const auto value = [&](std::size_t k) { return facet.sign * facet.row.dot(rates[k]); };
-  // `depth` is the saturation level minus the readings next to the segment
   double depth = std::numeric_limits<double>::max();
   if (s.first >= 2) depth = std::min(depth, facet.level - value(s.first - 2));
   if (s.last + 2 < rates.size()) depth = std::min(depth, facet.level - value(s.last + 2));
@@ -121,14 +97,13 @@ std::optional<SegmentShape> shape_of(const DistinctReadings& readings, const Rai
     low = std::min(low, value(k));
     high = std::max(high, value(k));
   }
-  // height of a parabola within the segment, extrapolated from the readings around the segment: rails.md (R61)
+  // See rails.md (R61).
   const double n = static_cast<double>(s.size()), inside = (n - 1.0) / (n + 3.0);
   return SegmentShape{depth * inside * inside, std::max(high - low, 2.0 * facet.deviation)};
 }
 
-// Returns the log-likelihood that saturation causes a kink at one end of a segment: rails.md (R64). The test compares
-// the second difference of the clipped axis with the second differences of all other axes. An impact causes a kink on
-// all axes; saturation causes a kink on one axis.
+// Returns the log-likelihood that saturation causes a kink at one end of a segment: rails.md (R64). An impact causes a
+// kink on all axes; saturation causes a kink on one axis.
 double kink_evidence(const DistinctReadings& readings, const RailFacet& facet, const Segment& s, bool after) {
   const std::vector<Vector3d>& rates = readings.rates;
   if (s.size() < 3 || (after ? s.last + 3 >= rates.size() : s.first < 3)) return 0.0;
@@ -198,31 +173,25 @@ double segment_evidence(const DistinctReadings& readings, const Eigen::Matrix2d&
     const Segment s = next_segment(inliers, at);
     const std::optional<SegmentShape> shape = shape_of(readings, facet, s);
     if (!shape) continue;
-    // Unsaturated readings scatter at least by the gyro's noise.
     const double thin = thin_log_likelihood(readings, facet, s);
     if (!shape->bends() && thin < kThinLogLikelihoodMin) continue;
     ++facet.segments;
     odds += std::max(0.0, thin);
     if (!shape->bends()) continue;
-    // Two properties increase the log odds of saturation: the flatness of a segment, rails.md (R62), and the number of
-    // segments with similar mean reading, (R63).
+    // flatness: rails.md (R62); segments with similar mean reading: (R63)
     const double flatness = static_cast<double>(s.size() - 1) * std::log(shape->bend / shape->flat);
     odds += std::min(flatness, -std::log(kConstantRateFraction)) + of_level;
     for (const bool after : {false, true}) odds += kink_evidence(readings, facet, s, after);
     H += information_of(readings, facet, s);
   }
-  // Readings beyond a saturation level contradict the level.
   const auto beyond = std::count_if(inliers.begin(), inliers.end(), [&](std::size_t k) {
     return facet.sign * facet.row.dot(readings.rates[k]) > facet.level + facet.tolerance;
   });
   odds -= kBeyondPenalty *
           std::max(0.0, static_cast<double>(beyond) - kOutlierFraction * static_cast<double>(inliers.size()));
   if (facet.segments == 0) return -std::numeric_limits<double>::infinity();
-  // A reading counts as saturated if its distance from the saturation plane is within the noise or the error of the
-  // plane.
   facet.tolerance = std::max(facet.tolerance, std::min(kAtRailSigmas * noise, kAtRailRatioMax * facet.level));
-  // The Occam factor is the ratio of posterior to prior parameter volume: rails.md (R66). The Occam factor penalises
-  // the fitted saturation level and cross-axis sensitivities.
+  // The Occam factor is the ratio of posterior to prior parameter volume: rails.md (R66).
   const Eigen::Matrix3d posterior_covariance = H.inverse();
   const double of_slopes =
       0.5 * std::log(std::max(1.0, 1.0 / (posterior_covariance.topLeftCorner<2, 2>().determinant() *

@@ -7,20 +7,16 @@
 
 namespace tumble {
 
-/// DistinctReadings contains the readings of a gyro without repeated readings, and the gyro's noise and quantisation.
 struct DistinctReadings {
   std::vector<Eigen::Vector3d>& rates;
   Eigen::Vector3d noise = Eigen::Vector3d::Zero();  ///< lower quantile of the noise of all windows [rad/s]
   Eigen::Vector3d digit = Eigen::Vector3d::Zero();  ///< smallest change between two readings [rad/s]
   Eigen::Vector3d peak = Eigen::Vector3d::Zero();   ///< largest magnitude of each axis [rad/s]
 };
-/// Computes noise and quantisation of a gyro from its readings in time order. The function stores the readings without
-/// repetitions in `rates`. `noises` is a work buffer.
 DistinctReadings distinct_readings(std::span<const Eigen::Vector3d> readings, std::vector<Eigen::Vector3d>& rates,
                                    std::vector<double>& noises);
 
-/// RailFacet is a possible saturation plane with the readings close to it. A reading y is on the plane if sign * row .
-/// y = level.
+/// RailFacet is a possible saturation plane: a reading y is on the plane if sign * row . y = level.
 struct RailFacet {
   int axis = 0, sign = 1;
   Eigen::Vector3d row = Eigen::Vector3d::Zero();
@@ -30,9 +26,7 @@ struct RailFacet {
 };
 
 /// Returns the log-likelihood ratio between saturation and natural causes (maxima of the motion, constant rates) for
-/// the readings on `facet`. The function also counts the segments of consecutive readings on the plane. `inliers`
-/// contains the ascending indices of the readings on the plane, in DistinctReadings::rates. `slope_information` is the
-/// prior information about the cross-axis sensitivities.
+/// the readings on `facet`. `slope_information` is the prior information about the cross-axis sensitivities.
 double segment_evidence(const DistinctReadings& readings, const Eigen::Matrix2d& slope_information,
                         std::span<const std::size_t> inliers, RailFacet& facet);
 

@@ -16,13 +16,10 @@ using Workspace = RailPlaneFinder::Workspace;
 
 constexpr double kGridStep = 0.01;  // step of the search grid over cross-axis sensitivities
 constexpr int kRefinements = 10;
-// A reading is on a saturation plane if its distance from the plane is at most `kSlabDeviations` standard deviations of
-// the distances of all such readings. The maximum distance is limited to the range from kSlabRatioMin to kSlabRatioMax
-// times the saturation level.
 constexpr double kSlabDeviations = 4.0, kSlabRatioMin = 2e-4, kSlabRatioMax = 0.006;
 
 // Collects readings that may be within `slab` of the largest reading along a sensing direction, for any cross-axis
-// sensitivities up to `steepest`. Returns the lower limit of the collected readings.
+// sensitivities up to `steepest`.
 double candidates(const DistinctReadings& readings, int axis, int sign, double steepest, double slab,
                   std::vector<std::size_t>& out) {
   double sure = -std::numeric_limits<double>::max();
@@ -45,9 +42,8 @@ void collect(const DistinctReadings& readings, double from, Side& side, Workspac
   }
 }
 
-// Fits the saturation level and cross-axis sensitivities to the inliers, by least squares with a prior on the
-// sensitivities: rails.md (R58). Cauchy weights reduce the effect of partly saturated readings, which are below the
-// plane. The function also computes the standard deviation of the distances from the plane.
+// Fits the saturation plane by least squares, with a prior on the cross-axis sensitivities: rails.md (R58). Cauchy
+// weights reduce the effect of partly saturated readings, which are below the plane.
 void fit(const DistinctReadings& readings, const FacetPrior& prior, double deviation, RailFacet& facet,
          Workspace& workspace) {
   const int axis = facet.axis;

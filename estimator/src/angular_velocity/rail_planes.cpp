@@ -27,24 +27,16 @@ using rails::Gate;
 using rails::others;
 using rails::Side;
 
-// kInitialSigmaRatios contains two initial standard deviations for the robust fit of a plane to a layer of readings, as
-// fractions of the layer's thickness. The small standard deviation suits a thin layer with a few partly saturated
-// readings below it. The large standard deviation suits a thick layer.
+// The robust plane fit starts from two standard deviations, as fractions of the thickness of the layer of readings. The
+// small initial standard deviation suits a thin layer of saturated readings with a few partly saturated readings below
+// it.
 constexpr double kInitialSigmaRatios[] = {0.5, 0.02};
-// The saturation levels of one device's sensing elements usually differ by less than the fraction kElementLevelRatio.
-// If another axis reads above a level by more than kElementLevelRatio, the log odds of the level decrease.
 constexpr double kElementLevelRatio = 0.04;
-// The log odds of a saturation level increase by `kNearElementLogOdds` near the level of another sensing element. The
-// log odds increase by `kOppositeSignLogOdds` near the level of the opposite sign, and by `kNearStatedLogOdds` near the
-// data sheet's range. An impossible level has the log odds `kImpossibleLogOdds`.
 constexpr double kNearElementLogOdds = 5.0, kNearStatedLogOdds = 3.0, kOppositeSignLogOdds = 5.0,
                  kImpossibleLogOdds = -100.0;
-// The log odds of a saturation level increase by `kNearKnownLogOdds` near the same element's level in an earlier run.
-// `kKnownLevelSigmaRatio` is the relative standard deviation between the levels of two runs. The log odds of a level
-// far from the earlier level decrease by no more than |`kFarFromKnownLogOdds`|, since the device may have been
-// replaced.
+// A saturation level far from the level of an earlier run loses few log odds, since the device may have been replaced.
 constexpr double kNearKnownLogOdds = 6.0, kKnownLevelSigmaRatio = 0.003, kFarFromKnownLogOdds = -3.0;
-// kKnownSlopeSigma is the standard deviation of the change of a cross-axis sensitivity between two runs.
+// standard deviation of the change of a cross-axis sensitivity between two runs
 constexpr double kKnownSlopeSigma = 2e-3;
 
 double log_normal_ratio(double value, double sigma) {
@@ -52,7 +44,7 @@ double log_normal_ratio(double value, double sigma) {
   return std::max(kImpossibleLogOdds, -0.5 * z * z);
 }
 
-// Returns the prior log odds of a saturation level, without the evidence of the readings on it: rails.md (R67).
+// See rails.md (R67).
 double level_log_odds(const RailPlaneFinder::Params& params, const DistinctReadings& readings, const RailPlanes& known,
                       const Side& side) {
   const double level = side.facet.level;
@@ -81,8 +73,7 @@ double level_log_odds(const RailPlaneFinder::Params& params, const DistinctReadi
   return odds;
 }
 
-// Combines the positive and the negative saturation plane of one sensing element: rails.md (R53). One of the two planes
-// may be missing.
+// See rails.md (R53).
 RailPlane joined(const RailPlaneFinder::Params& params, const DistinctReadings& readings, const Side* minus,
                  const Side* plus) {
   Eigen::Matrix4d H = Eigen::Matrix4d::Zero();
@@ -114,8 +105,7 @@ RailPlane joined(const RailPlaneFinder::Params& params, const DistinctReadings& 
     out.tolerance_rad_s = std::max(out.tolerance_rad_s, side->facet.tolerance);
     out.log_odds = std::max(out.log_odds, side->log_odds);
   }
-  // If two sensing elements always clip together, the readings do not determine their cross-axis sensitivity. The
-  // normal equations are then badly conditioned.
+  // If two sensing elements always clip together, their cross-axis sensitivity is undetermined.
   const Eigen::LDLT<Eigen::Matrix4d> factor(H);
   out.covariance = factor.solve(Eigen::Matrix4d::Identity());
   const Eigen::Vector4d x = factor.solve(g);
@@ -139,8 +129,7 @@ struct SideSearch {
   const DistinctReadings& readings;
   RailPlaneFinder::Workspace& workspace;
 
-  // Searches near the known cross-axis sensitivities, and returns the saturation plane with the highest log odds:
-  // rails.md (R60).
+  // See rails.md (R60).
   Side about(int axis, int sign, const RailPlanes& known, const FacetPrior& prior, double range) const {
     Side side{axis, sign, {}, {}};
     const auto extreme = rails::find_extreme(params, readings, axis, sign, prior, range, workspace);
@@ -158,9 +147,6 @@ struct SideSearch {
     return side;
   }
 
-  // Searches the saturation plane of one sign of a sensing element. The search starts near the element's known sensing
-  // direction. If the direction is unknown, the search starts near zero cross-axis sensitivities, or near those of an
-  // earlier run.
   Side search_side(int axis, int sign, const RailPlanes& known) const {
     const auto element = static_cast<std::size_t>(axis);
     if (const auto& rail = known.element[element]) {
@@ -173,7 +159,6 @@ struct SideSearch {
     const Side side = about(axis, sign, known, {Vector2d::Zero(), unknown}, params.slope_max);
     const auto& earlier = params.known.element[element];
     if (!earlier) return side;
-    // The device may be that of the earlier run or another device.
     const Matrix2d changed =
         earlier->covariance.topLeftCorner<2, 2>() + kKnownSlopeSigma * kKnownSlopeSigma * Matrix2d::Identity();
     const double range = std::min(params.slope_max, 3.0 * std::sqrt(changed.trace()));
@@ -181,9 +166,6 @@ struct SideSearch {
     return same.log_odds > side.log_odds ? same : side;
   }
 
-  // Searches the saturation plane of sign `i` of a sensing element, given the planes in `found`, and stores an accepted
-  // plane in `pair`. `kept` states whether the previous search accepted the plane. Returns whether `pair` contains a
-  // plane of sign `i`.
   bool add(int axis, std::size_t i, bool kept, const RailPlanes& found, Pair& pair) const {
     const int sign = i == 0 ? -1 : 1;
     const Side side = search_side(axis, sign, found);
@@ -237,8 +219,7 @@ RailPlanes RailPlaneFinder::find(std::span<const Vector3d> readings_rad_s, const
     return merge_with_known_planes(found, readings.rates);
   const SideSearch search{params_, readings, workspace};
   std::array<Pair, 3> sides;
-  // Each accepted saturation plane changes the log odds of further planes. The search therefore repeats until a round
-  // finds no new plane.
+  // Each accepted saturation plane changes the log odds of further planes.
   for (bool added = true; added;) {
     added = false;
     for (int axis = 0; axis < 3; ++axis) {

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// rail_planes_known.cpp classifies readings by known saturation planes, and uses planes of an earlier run.
 #include <cmath>
 
 #include "tumble/angular_velocity/rail_planes.hpp"
@@ -10,16 +9,13 @@ namespace {
 
 using Eigen::Vector3d;
 
-// A reading contradicts a saturation plane if it is beyond the plane by more than kBeyondTolerance times the plane's
-// tolerance.
 constexpr double kBeyondTolerance = 4.0;
 constexpr int kMinContradictions = 2;
-// Saturation levels of one device in two runs differ by at most the fraction kSameShare.
+// maximum relative difference between the saturation levels of one device in two runs
 constexpr double kSameShare = 0.003;
 
 }  // namespace
 
-// Adds the saturation planes of an earlier run for those elements and signs where the current readings show no plane.
 RailPlanes RailPlaneFinder::merge_with_known_planes(const RailPlanes& found,
                                                     std::span<const Vector3d> readings_rad_s) const {
   RailPlanes out = found;
@@ -29,7 +25,6 @@ RailPlanes RailPlaneFinder::merge_with_known_planes(const RailPlanes& found,
     if (!earlier) continue;
     if (!rail && !earlier->contradicted_by(readings_rad_s)) rail = earlier;
     for (const int sign : {-1, 1}) {
-      // Both runs used the same device if their saturation levels are equal within kSameShare.
       if (!rail || rail->seen(sign) || !earlier->seen(sign)) continue;
       const double apart = std::abs(rail->distance_rad_s - earlier->distance_rad_s);
       const std::size_t i = sign > 0 ? 1 : 0;
@@ -60,7 +55,7 @@ SensingDirections sensing_directions(const RailPlanes& planes, double unknown_si
   return out;
 }
 
-// Classifies which sensing elements of a sample are saturated: rails.md (R54), (R55).
+// See rails.md (R54), (R55).
 ElementClipping classify(const ImuSample& sample, const RailPlanes& planes) {
   ElementClipping out;
   for (std::size_t j = 0; j < 3; ++j) {

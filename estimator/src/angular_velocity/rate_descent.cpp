@@ -12,17 +12,15 @@ namespace tumble {
 
 namespace {
 
-// If less than the fraction kFlightShareExpected of the clipped samples is in flight, the optimisation restarts with
-// other contact thresholds. The thresholds are multiplied by kRestartThresholds.
+// If few clipped samples are in flight, other contact thresholds may fit better.
 constexpr double kRestartThresholds[] = {16.0, 0.25};
 constexpr double kFlightShareExpected = 0.5;
 
-// The iteration has converged if each linear combination of unknowns changes by at most kStepDeviations of its standard
-// deviation: rate_smoother.md (R30). A rate that the readings hardly determine may still change by several rad/s at
-// convergence.
+// The iteration converges if each linear combination of unknowns changes by at most kStepDeviations of its standard
+// deviation: rate_smoother.md (R30).
 constexpr double kStepDeviations = 0.1;
 
-// Computes the weight of the flight model and the contact force of each sample: rate_smoother.md (R16) to (R19).
+// See rate_smoother.md (R16) to (R19).
 void compute_flight_weights(const RateModel& model, std::span<const RateObservation> observations,
                             const RigConstants& rig, const RigConstants::Matrix& rig_covariance,
                             double threshold_factor, std::span<RateEstimate> estimates) {
@@ -41,8 +39,6 @@ void compute_flight_weights(const RateModel& model, std::span<const RateObservat
   }
 }
 
-// Runs the Gauss-Newton optimisation of rates and calibration from first_guess() and the prior calibration. Returns
-// false if the normal equations are not positive definite.
 bool run_gauss_newton(const RateSmoother::Params& params, const RateModel& model,
                       std::span<const RateObservation> observations, double threshold_factor, RateSolution& solution,
                       RateReport& health) {
@@ -86,8 +82,8 @@ bool run_gauss_newton(const RateSmoother::Params& params, const RateModel& model
   return true;
 }
 
-// Returns how well free flight explains the samples: rate_smoother.md (R31). The best local minimum of the optimisation
-// has the largest result. `share` receives the fraction of flight samples among the samples with a clipped axis.
+// Returns how well free flight explains the samples: rate_smoother.md (R31). `share` receives the fraction of flight
+// samples among the samples with a clipped axis.
 double explained(std::span<const RateObservation> observations, std::span<const RateEstimate> estimates,
                  double& share) {
   double sum = 0.0, unmeasured_axes = 0.0, flight = 0.0;
@@ -103,7 +99,7 @@ double explained(std::span<const RateObservation> observations, std::span<const 
 
 }  // namespace
 
-// Eliminates the unknowns of the samples from the normal equations, in time order: rate_smoother.md (R26).
+// See rate_smoother.md (R26).
 bool RateIteration::factorise(const RateModel& model, std::span<const RateEstimate> estimates,
                               const RigConstants& rig) {
   corner_ = {};
@@ -122,8 +118,7 @@ bool RateIteration::factorise(const RateModel& model, std::span<const RateEstima
   return arrow::solve_corner(corner_, rig_step_, rig_covariance_);
 }
 
-// Computes the predicted decrease of the cost by the next step, block by block: rate_smoother.md (R30). The gradients
-// of the eliminated blocks are L^-1 g.
+// See rate_smoother.md (R30).
 double RateIteration::newton_decrement() const {
   double sum = rig_step_.dot(corner_.gradient);
   for (const arrow::Block& block : blocks_) sum += block.gradient.squaredNorm();
@@ -148,8 +143,7 @@ double RateIteration::apply(const RateModel& model, double step_max, std::span<R
   return largest;
 }
 
-// Computes the derivatives of the estimated rates with respect to the sensor errors, and the information about the
-// sensor errors. See rate_smoother.md (R37), (R38), (R39).
+// See rate_smoother.md (R37), (R38), (R39).
 RateIteration::SensorErrorDerivatives RateIteration::error_derivatives(const RateModel& model,
                                                                        std::span<const RateEstimate> estimates,
                                                                        const RigConstants& rig) const {
@@ -161,7 +155,6 @@ RateIteration::SensorErrorDerivatives RateIteration::error_derivatives(const Rat
     model.add_errors(observations_[k], estimates[k], rig, errors, border, out.evidence);
     const bool last = k + 1 == blocks_.size();
     arrow::eliminate_errors(blocks_[k], errors, last ? nullptr : &out.of_sample[k + 1], border);
-    // Subtracts the part of the information that the unknowns of the sample can explain.
     out.evidence.information.noalias() -= errors.transpose() * errors;
     out.evidence.gradient.noalias() += errors.transpose() * blocks_[k].gradient;
   }

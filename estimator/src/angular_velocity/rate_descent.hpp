@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// RateIteration is the Gauss-Newton optimisation of RateSmoother over a recording.
 #pragma once
 
 #include <span>
@@ -17,12 +16,12 @@ class RateIteration {
 
   /// Returns false if the normal equations are not positive definite.
   bool factorise(const RateModel& model, std::span<const RateEstimate> estimates, const RigConstants& rig);
-  /// Adds the step of the last factorisation to the estimates. No angular rate changes by more than step_max. Returns
-  /// the largest change of an angular rate before the limitation to step_max.
+  /// Adds the last step, scaled so that no angular rate changes by more than step_max. Returns the largest change of an
+  /// angular rate before scaling.
   double apply(const RateModel& model, double step_max, std::span<RateEstimate> estimates, RigConstants& rig) const;
 
-  /// Calls use(k, conditional) for each sample k, from the last to the first. `conditional` is the conditional
-  /// distribution of the unknowns of sample k.
+  /// Calls use(k, conditional) for each sample k from last to first, with the conditional distribution of the sample's
+  /// unknowns.
   template <typename Use>
   void for_each_conditional(Use use) const {
     arrow::Conditional conditional;
@@ -32,9 +31,7 @@ class RateIteration {
     }
   }
 
-  /// SensorErrorDerivatives contains the derivatives of all unknowns with respect to the sensor errors. `evidence` is
-  /// the information about the sensor errors after elimination of all other unknowns. Derivatives and evidence belong
-  /// to the last factorisation, with its `estimates` and `rig`, before apply().
+  /// `evidence` is the information about the sensor errors after elimination of all other unknowns.
   struct SensorErrorDerivatives {
     std::vector<arrow::ErrorMatrix> of_sample;
     arrow::BorderErrors calibration_by_errors;
@@ -44,8 +41,8 @@ class RateIteration {
                                            const RigConstants& rig) const;
 
   const RigConstants::Matrix& rig_covariance() const { return rig_covariance_; }
-  /// Returns twice the decrease of the cost that the last factorisation predicts. The Newton decrement is also the
-  /// largest squared change of a linear combination of unknowns, divided by the variance of the combination.
+  /// Returns twice the predicted decrease of the cost: the largest squared change of a linear combination of unknowns,
+  /// divided by its variance.
   double newton_decrement() const;
 
  private:
@@ -63,10 +60,9 @@ struct RateSolution {
   RateIteration iteration;
 };
 
-/// Optimises all rates and the calibration. A wrong initial lever arm may lead to a local minimum in which no sample is
-/// in flight. If most clipped samples are classified as contact, solve() therefore repeats the optimisation with other
-/// contact thresholds. Returns false if the normal equations are not positive definite. `health` receives iterations,
-/// restarts, convergence and the Mahalanobis distance of the calibration.
+/// Returns false if the normal equations are not positive definite. If most clipped samples are classified as contact,
+/// solve() repeats the optimisation with other contact thresholds, because a wrong initial lever arm may lead to a
+/// local minimum.
 bool solve(const RateSmoother::Params& params, const RateModel& model, std::span<const RateObservation> observations,
            RateSolution& solution, RateReport& health);
 

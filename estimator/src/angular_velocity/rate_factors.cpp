@@ -14,8 +14,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-// Returns the products S_i v as columns, for the matrices S_i of RigConstants::inertia_basis. The products are written
-// out for speed, because this function runs for each sample.
+// Returns the products S_i v as columns, for the matrices S_i of RigConstants::inertia_basis.
 Eigen::Matrix<double, 3, 5> inertia_basis_times(const Vector3d& v) {
   constexpr double kHalf = 0.5 * std::numbers::sqrt2, kSixth = std::numbers::inv_sqrt3 * kHalf;
   Eigen::Matrix<double, 3, 5> out;
@@ -30,8 +29,7 @@ struct Jerk {
   Vector3d Jw, Ja, value;
 };
 
-// Computes the angular jerk of torque-free rotation from the time derivative of Euler's equation, rate_smoother.md
-// (R11): J j = -(alpha x J w + w x J alpha).
+// See rate_smoother.md (R11): J j = -(alpha x J w + w x J alpha).
 Jerk jerk_of(const RateKnot& knot, const RigConstants& rig) {
   const Vector3d &w = knot.rate_rad_s, &alpha = knot.acceleration_rad_s2;
   Jerk out;
@@ -43,8 +41,6 @@ Jerk jerk_of(const RateKnot& knot, const RigConstants& rig) {
   return out;
 }
 
-// JerkDerivatives contains the derivatives of the angular jerk with respect to rate, angular acceleration and inertia.
-// The struct is separate from Jerk, because most calls need only the jerk.
 struct JerkDerivatives {
   Matrix3d by_rate, jacobian_acceleration;
   Eigen::Matrix<double, 3, 5> jacobian_inertia;
@@ -72,8 +68,7 @@ RateKnot knot_before(double delay_s, const RateKnot& knot, const Jerk& jerk) {
 
 }  // namespace
 
-// Computes the residual of the gyro: rate_smoother.md (R6). The caller propagates `knot` to the time of the gyro
-// reading: rate_smoother.md (R7).
+// See rate_smoother.md (R6). The caller propagates `knot` to the time of the gyro reading: rate_smoother.md (R7).
 RateFactor gyro_factor(const RateKnot& knot, const RigConstants& rig, const Vector3d& reading_rad_s) {
   RateFactor f;
   f.residual = knot.rate_rad_s + rig.gyro_bias_rad_s - reading_rad_s;
@@ -83,7 +78,7 @@ RateFactor gyro_factor(const RateKnot& knot, const RigConstants& rig, const Vect
   return f;
 }
 
-// Computes the residual of each gyro element along its sensing direction: rate_smoother.md (R8), rails.md (R52).
+// See rate_smoother.md (R8), rails.md (R52).
 RateFactor element_factor(const RateKnot& knot, const RigConstants& rig, const Vector3d& reading_rad_s) {
   const Vector3d off = knot.rate_rad_s + rig.gyro_bias_rad_s - reading_rad_s;
   RateFactor f;
@@ -100,12 +95,12 @@ RateFactor element_factor(const RateKnot& knot, const RigConstants& rig, const V
   return f;
 }
 
-// Computes the residual of the specific force in flight: rate_smoother.md (R10).
+// See rate_smoother.md (R10).
 RateFactor flight_factor(const RateKnot& knot, const RigConstants& rig, const Vector3d& reading_m_s2) {
   const Vector3d &w = knot.rate_rad_s, &alpha = knot.acceleration_rad_s2, &t = rig.lever_arm_m;
   RateFactor f;
   f.residual = alpha.cross(t) + w.cross(w.cross(t)) + rig.accel_bias_m_s2 - reading_m_s2;
-  // Derivative of w x (w x t) = w (w.t) - t (w.w) with respect to the rate: rate_smoother.md (R10).
+  // derivative of w x (w x t) = w (w.t) - t (w.w) with respect to the rate w
   f.jacobian_knot << w * t.transpose() + w.dot(t) * Matrix3d::Identity() - 2.0 * t * w.transpose(), -so3::hat(t);
   f.jacobian_calibration.setZero();
   f.jacobian_calibration.middleCols<3>(0) =
@@ -114,7 +109,7 @@ RateFactor flight_factor(const RateKnot& knot, const RigConstants& rig, const Ve
   return f;
 }
 
-// Computes the residual of the specific force in flight if the accelerometer is delayed: rate_smoother.md (R12).
+// See rate_smoother.md (R12).
 RateFactor delayed_flight_factor(const RateKnot& knot, const RigConstants& rig, const Vector3d& reading_m_s2,
                                  double delay_s, Vector3d* jacobian_delay) {
   const Jerk jerk = jerk_of(knot, rig);
@@ -133,7 +128,7 @@ RateFactor delayed_flight_factor(const RateKnot& knot, const RigConstants& rig, 
   return f;
 }
 
-// Computes the residual of delayed_flight_factor(), with derivatives for the calibration only: rate_smoother.md (R12).
+// See rate_smoother.md (R12).
 RateFactor delayed_flight_jacobian_calibration(const RateKnot& knot, const RigConstants& rig,
                                                const Vector3d& reading_m_s2, double delay_s) {
   RateFactor f = flight_factor(knot_before(delay_s, knot, jerk_of(knot, rig)), rig, reading_m_s2);
@@ -141,7 +136,7 @@ RateFactor delayed_flight_jacobian_calibration(const RateKnot& knot, const RigCo
   return f;
 }
 
-// Computes the second time derivative of the specific force in flight: rate_smoother.md (R13).
+// See rate_smoother.md (R13).
 Vector3d flight_curvature(const RateKnot& knot, const RigConstants& rig) {
   const Vector3d &w = knot.rate_rad_s, &alpha = knot.acceleration_rad_s2, &t = rig.lever_arm_m;
   const Jerk jerk = jerk_of(knot, rig);
@@ -150,7 +145,7 @@ Vector3d flight_curvature(const RateKnot& knot, const RigConstants& rig) {
   return snap.cross(t) + j.cross(w.cross(t)) + 2.0 * alpha.cross(alpha.cross(t)) + w.cross(j.cross(t));
 }
 
-// Computes the residual of Euler's equation without torque: rate_smoother.md (R14).
+// See rate_smoother.md (R14).
 RateFactor euler_factor(const RateKnot& knot, const RigConstants& rig) {
   const Vector3d &w = knot.rate_rad_s, &alpha = knot.acceleration_rad_s2;
   const Matrix3d J = rig.inertia_matrix();

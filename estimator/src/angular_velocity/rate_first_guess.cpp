@@ -35,7 +35,6 @@ std::vector<RateEstimate> first_guess(std::span<const RateObservation> observati
   std::vector<WnojSmoother::Measurement> readings(observations.size());
   for (std::size_t k = 0; k < observations.size(); ++k) {
     const RateObservation& o = observations[k];
-    // The caller has checked the samples, so only a gap can cause an error.
     if (!saave.step(o.sample, state, recovered).ok()) {
       state = {};
       (void)saave.step(o.sample, state, recovered);

@@ -46,14 +46,12 @@ RigConstants::Matrix covariance_of(const RateModelParams& p) {
   return variance.cwiseAbs2().asDiagonal();
 }
 
-// Additional standard deviation [rad/s] of the saturation deficit of a partly saturated reading in contact.
+// additional standard deviation [rad/s] of the saturation deficit of a partly saturated reading in contact
 constexpr double kSubsampleInContact = 0.25;
 
-// kLever, kAccelBias and kInertia are indices in RigConstants::vector(). The flight model depends on lever arm and
-// accelerometer bias; Euler's equation depends on the inertia.
+// indices in RigConstants::vector()
 constexpr int kLever = 0, kAccelBias = 6, kInertia = 9;
 
-// Returns the covariance of the flight residual due to the uncertain calibration.
 Eigen::Matrix3d flight_spread(const RateFactor& f, const RigConstants::Matrix& rig) {
   const Eigen::Matrix3d T = f.jacobian_calibration.middleCols<3>(kLever),
                         B = f.jacobian_calibration.middleCols<3>(kAccelBias);
@@ -73,16 +71,14 @@ Eigen::Matrix3d euler_spread(const RateFactor& f, const RigConstants::Matrix& ri
   return IC.lazyProduct(I.transpose());
 }
 
-// Returns the squared normalised residual. The covariance of the residual contains sensor noise and the uncertainty of
-// the calibration: rate_smoother.md (R16).
+// See rate_smoother.md (R16).
 double normalised(const RateFactor& f, Eigen::Matrix3d spread, double sigma, const Vector3d& more = Vector3d::Zero()) {
   spread.diagonal().array() += sigma * sigma;
   spread.diagonal() += more;
   return f.residual.dot(spread.inverse() * f.residual);
 }
 
-// Returns the Mahalanobis distance of `kCount` calibration constants from their prior, divided by the square root of
-// kCount: rate_smoother.md (R32).
+// See rate_smoother.md (R32).
 template <int kFirst, int kCount>
 double mahalanobis(const RigConstants::Vector& moved, const RigConstants::Matrix& covariance) {
   const Eigen::Matrix<double, kCount, 1> part = moved.segment<kCount>(kFirst);
@@ -90,8 +86,7 @@ double mahalanobis(const RigConstants::Vector& moved, const RigConstants::Matrix
   return std::sqrt(part.dot(spread.llt().solve(part)) / kCount);
 }
 
-// Adds a residual to the normal equations of a sample's rate and angular acceleration. Returns A' * information, where
-// A is the derivative of the residual with respect to the sample's unknowns.
+// Returns A' * information, where A is the derivative of the residual with respect to the sample's unknowns.
 Eigen::Matrix<double, 6, 3> add_to_knot(const RateFactor& f, const Eigen::Matrix3d& information, double time_scale_s,
                                         arrow::Block& block) {
   Eigen::Matrix<double, 3, 6> A = f.jacobian_knot;
@@ -102,8 +97,6 @@ Eigen::Matrix<double, 6, 3> add_to_knot(const RateFactor& f, const Eigen::Matrix
   return At;
 }
 
-// Adds a residual to the normal equations of the calibration constants. The residual depends on the kCount constants
-// from index kFirst.
 template <int kFirst, int kCount>
 void add_to_rig(const RateFactor& f, const Eigen::Matrix3d& information, const Eigen::Matrix<double, 6, 3>& At,
                 arrow::Block& block, arrow::Corner& corner) {
@@ -132,7 +125,7 @@ void add_euler(const RateFactor& f, const Eigen::Matrix3d& information, double t
   add_to_rig<kInertia, 5>(f, information, At, block, corner);
 }
 
-// Reduces the information of a residual whose covariance increases by `spread`: rate_stream.md (R92).
+// See rate_stream.md (R92).
 Eigen::Matrix3d with_spread(const Eigen::Matrix3d& information, const Eigen::Matrix3d& spread) {
   return (Eigen::Matrix3d::Identity() + information * spread).inverse() * information;
 }
@@ -167,11 +160,10 @@ void RateModel::compute_flight_weight(const RateObservation& observation, const 
                     normalised(euler, euler_spread(euler, rig_covariance), params_.expert.flight.euler_sigma_rad_s2) +
                     jump;
   const double threshold = threshold_factor * params_.expert.flight.threshold;
-  // Geman-McClure weight, rate_smoother.md (R18): the gradient of a large residual is proportional to the inverse cube
-  // of the residual.
+  // Geman-McClure weight: rate_smoother.md (R18)
   const double ratio = 1.0 / (1.0 + r2 / (threshold * threshold));
   estimate.flight_weight = ratio * ratio;
-  // The contact force is a fraction of the flight residual (model minus reading): rate_smoother.md (R19).
+  // See rate_smoother.md (R19).
   estimate.contact_force_m_s2 = (estimate.flight_weight - 1.0) * flight.residual;
 }
 
@@ -180,15 +172,13 @@ double RateModel::accel_sigma_m_s2(const RateObservation& observation) const {
                     params_.expert.readings.accel_scale_error * observation.sample.specific_force_m_s2.norm());
 }
 
-// Returns the accelerometer variance for sums over samples. Model errors that last longer than a sample do not average
-// out, so their variance is larger.
+// Model errors that last longer than a sample do not average out.
 double RateModel::accel_variance_of_sum(const RateObservation& observation) const {
   const double single = accel_sigma_m_s2(observation), noise2 = accel_noise_m_s2_ * accel_noise_m_s2_;
   return share_ < 1.0 ? noise2 + (single * single - noise2) / share_ : single * single;
 }
 
-// Returns the normalised squared change of rate and angular acceleration between two samples. The normalisation is the
-// variance of the change in flight: rate_smoother.md (R17), (R4).
+// See rate_smoother.md (R17), (R4).
 double RateModel::jump(const RateKnot& from, const RateKnot& to, double dt_s) const {
   const Vector3d e0 = from.rate_rad_s + dt_s * from.acceleration_rad_s2 - to.rate_rad_s;
   const Vector3d e1 = dt_s * (from.acceleration_rad_s2 - to.acceleration_rad_s2);
@@ -212,8 +202,7 @@ double RateModel::gyro_information(const RateObservation& observation, const Rat
   return 1.0 / (lost * lost + impact * impact);
 }
 
-// In contact, the unknown contact force has mean zero and the estimated force as standard deviation: rate_smoother.md
-// (R20). The solver therefore prefers clipped rates that need a small contact force.
+// In contact, the contact force has mean zero and the estimated force as standard deviation: rate_smoother.md (R20).
 RateModel::ForceFactor RateModel::force_factor(const RateObservation& observation, const RateEstimate& estimate,
                                                const RigConstants& rig) const {
   const double flight2 = accel_variance_of_sum(observation);
@@ -302,12 +291,11 @@ Eigen::Matrix3d RateModel::euler_information(const RateEstimate& estimate) const
 void RateModel::add_step(const RateEstimate& from, const RateEstimate& to, double dt_s, arrow::Block& block,
                          arrow::Block& next) const {
   const double h = time_scale_s_, ratio = dt_s / h;
-  // During model_error_s, a contact changes the angular acceleration by up to gain * force. In a shorter time, the
-  // change is proportionally smaller: rate_smoother.md (R5).
+  // See rate_smoother.md (R5).
   const double change =
       params_.expert.contact.gain_rad_m * std::max(from.contact_force_m_s2.norm(), to.contact_force_m_s2.norm());
   const double psd = params_.expert.flight.jerk_psd_rad2_s5 + share_ * change * change / dt_s;
-  // Inverse of the scaled process noise covariance Q = psd [dt^3/3, dt^2 h/2; dt^2 h/2, dt h^2]: rate_smoother.md (R4).
+  // inverse of the scaled process noise covariance Q = psd [dt^3/3, dt^2 h/2; dt^2 h/2, dt h^2]: rate_smoother.md (R4)
   const double a = 12.0 / (psd * dt_s * dt_s * dt_s), b = -6.0 / (psd * dt_s * dt_s * h),
                c = 4.0 / (psd * dt_s * h * h);
   for (int j = 0; j < 3; ++j) {
@@ -315,7 +303,7 @@ void RateModel::add_step(const RateEstimate& from, const RateEstimate& to, doubl
     const double e1 = (from.knot.acceleration_rad_s2[j] - to.knot.acceleration_rad_s2[j]) * h;
     const double g0 = a * e0 + b * e1, g1 = b * e0 + c * e1;
     const int i = 3 + j;
-    // State transition matrix F = [1, ratio; 0, 1].
+    // state transition matrix F = [1, ratio; 0, 1]
     block.diagonal(j, j) += a;
     block.diagonal(j, i) += ratio * a + b;
     block.diagonal(i, j) += ratio * a + b;
@@ -348,7 +336,7 @@ double RateModel::calibration_mahalanobis(const RigConstants& rig) const {
   return std::max({lever, gyro, accel, inertia});
 }
 
-// Converts a solver step to physical units; inverse of scaled(): rate_smoother.md (R1).
+// See rate_smoother.md (R1).
 Eigen::Matrix<double, 6, 1> RateModel::unscaled(const arrow::StateVector& step) const {
   Eigen::Matrix<double, 6, 1> out = step;
   out.tail<3>() /= time_scale_s_;

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// rate_model_auxiliary.cpp contains the functions of RateModel that use the readings of additional IMUs.
 #include <Eigen/LU>
 #include <cmath>
 
@@ -10,7 +9,7 @@ namespace tumble {
 namespace {
 
 using Eigen::Vector3d;
-// Derivative of a residual with respect to the rate and the scaled angular acceleration.
+// derivative of a residual with respect to the rate and the scaled angular acceleration
 using AuxiliaryRow = Eigen::Matrix<double, 1, 6>;
 
 void add_row(const AuxiliaryRow& row, double residual, double sigma, arrow::Block& block) {
@@ -19,8 +18,7 @@ void add_row(const AuxiliaryRow& row, double residual, double sigma, arrow::Bloc
   block.gradient.noalias() -= information * residual * row.transpose();
 }
 
-// Returns whether the force along `axis` of an auxiliary IMU depends only on unclipped readings of the primary IMU. A
-// saturation deficit of the primary's element i changes the force by column i of the inverse of the sensing directions.
+// Returns whether the force along `axis` of an auxiliary IMU depends only on unclipped readings of the primary IMU.
 bool depends_on_unclipped_axes(const Eigen::RowVector3d& axis, const RateObservation& observation) {
   constexpr double kNegligibleCoupling = 0.02;
   if (observation.clipping.accel == 0) return true;
@@ -32,15 +30,13 @@ bool depends_on_unclipped_axes(const Eigen::RowVector3d& axis, const RateObserva
   return true;
 }
 
-// Returns the matrix that converts specific force from the primary IMU's axes to the axes of an auxiliary IMU. If an
-// element of the auxiliary IMU is clipped, the matrix converts to its sensing directions.
 Eigen::Matrix3d axes_of_auxiliary(const Eigen::Matrix3d& R_CI, const SensingDirections& elements,
                                   bool is_element_clipped) {
   return is_element_clipped ? Eigen::Matrix3d(elements.rows * R_CI) : R_CI;
 }
 
-// Returns the standard deviation of a reading due to its uncertain sensing direction. `most` is the largest possible
-// saturation deficit of the other sensing elements.
+// Returns the standard deviation [m/s^2] of a reading due to an uncertain sensing direction. `most` is the largest
+// possible saturation deficit of the other sensing elements.
 double sensing_direction_sigma(const SensingDirections& elements, bool is_element_clipped, int j, double most) {
   return is_element_clipped ? elements.slope_sigma[j] * most : 0.0;
 }

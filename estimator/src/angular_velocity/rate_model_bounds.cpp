@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// rate_model_bounds.cpp contains the functions of RateModel that use clipped readings as lower bounds of the rate.
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -16,11 +15,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Initial precision (inverse variance) of the lower bound from a clipped reading, (rad/s)^-2.
+// initial precision (inverse variance) of the lower bound from a clipped reading, (rad/s)^-2
 constexpr double kStartPrecision = 0.25;
 
-// Limits of search_flight(): number of Newton steps, longest step [rad/s], and the fraction of the measured force that
-// the flight model may leave unexplained.
 constexpr int kFlightSearchSteps = 6;
 constexpr double kFlightSearchStepMax = 3.0, kFlightForceRatioMax = 0.25;
 
@@ -96,8 +93,7 @@ void RateModel::update_bounds(const RateObservation& observation, const RigConst
     for (int i = 0; i < 3; ++i) jacobian_calibration += row[i] * conditional.jacobian_border.row(i);
     const Eigen::Matrix<double, 1, RigConstants::kSize> cross = jacobian_calibration.lazyProduct(rig_covariance);
     const Vector3d by_state = conditional.state.topLeftCorner<3, 3>().lazyProduct(row);
-    // The sign of the saturated reading converts each bound to a lower bound: rate_smoother.md (R22). The variance of
-    // the residual follows from the covariance of the rate: rate_smoother.md (R35).
+    // See rate_smoother.md (R22), (R35).
     const NormalMoments marginal{sign * off.residual[j], row.dot(by_state) + cross.dot(jacobian_calibration)};
     const GaussianSite site =
         refined_bound(marginal, {estimate.bound_precision[j], sign * estimate.bound_shift[j]}, 0.0,
@@ -118,7 +114,6 @@ void mark_subsample_saturation(const RailDetector& rails, const RailDetector::St
     const double reading = now.sample.angular_velocity_rad_s[j], sign = std::copysign(1.0, reading);
     const double neighbour = unsaturated_neighbour(std::abs(reading), *rail, j, before, after,
                                                    [&](const Vector3d& beside) { return sign * beside[j]; });
-    // the reading is a dip between saturated readings, so the saturation deficit is unknown
     if (neighbour > std::abs(reading)) continue;
     const SubsampleSaturation loss = subsample_saturation(std::abs(reading), neighbour, *rail, noise_rad_s);
     if (!loss.saturated) continue;

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// rate_model_elements.cpp contains the functions of RateModel for samples with a clipped sensing element. For such
-// samples, each sensing element has its own residual.
 #include <cmath>
 
 #include "tumble/angular_velocity/detail/rate_model.hpp"
@@ -12,8 +10,8 @@ namespace {
 constexpr int kGyroBias = 3;
 
 // Adds the residual of one sensing element, m_j' (rate - age * acceleration + bias - reading), to the normal equations.
-// `age` is in units of the acceleration's time scale. `pull` is the gradient. If `rig_spread` is given, the residual
-// has a smaller weight and does not update the sensing direction m_j: rate_smoother.md (R8), rate_stream.md (R92).
+// `age` is in units of the acceleration's time scale. If `rig_spread` is set, the residual does not update the sensing
+// direction m_j: rate_smoother.md (R8), rate_stream.md (R92).
 void add_row(const RateFactor& gyro, int j, double age, double information, double pull,
              const RigConstants::Matrix* rig_spread, arrow::Block& block, arrow::Corner& corner) {
   const int first = RigConstants::kElements + 2 * j;
@@ -89,8 +87,8 @@ Eigen::Vector3d RateModel::read_accel_elements(const RateObservation& observatio
   double hidden2 = 0.0;
   for (int j = 0; j < 3; ++j) {
     if ((clipped >> j & 1u) == 0) continue;
-    // The residual is the modelled minus the measured force. The residual is unknown if the modelled force exceeds the
-    // saturated reading: rate_smoother.md (R9).
+    // If the modelled force exceeds the saturated reading, the residual (model minus reading) is unknown:
+    // rate_smoother.md (R9).
     if (flight.residual[j] * observation.sample.specific_force_m_s2[j] < 0.0) continue;
     hidden2 += flight.residual[j] * flight.residual[j];
     flight.residual[j] = 0.0;

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// rate_model_errors.cpp contains the functions of RateModel that correct sensor errors, compute the reported
-// covariance, or exclude samples in contact from the calibration.
 #include "tumble/angular_velocity/detail/rate_model.hpp"
 
 namespace tumble {
@@ -9,8 +7,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-// A sample updates the calibration only if its flight weight is at least kRigWeightMin. In contact, the force residual
-// could strongly change calibration constants with a large uncertainty.
+// In contact, the force residual could strongly change calibration constants with a large uncertainty.
 constexpr double kRigWeightMin = 0.05;
 
 }  // namespace
@@ -19,17 +16,15 @@ bool RateModel::is_uninformative(const RateEstimate& estimate) {
   return estimate.flight_weight < kRigWeightMin;
 }
 
-// Removes derivatives of the flight residual, so that a contact force cannot change the calibration or the rates of
-// unclipped axes.
+// A contact force must not change the calibration or the rates of unclipped axes.
 void RateModel::exclude_from_calibration(const RateObservation& o, RateFactor& flight) {
   flight.jacobian_calibration.setZero();
   for (int j = 0; j < 3; ++j) {
-    // A contact force that changes the rate of an unclipped axis would also change the gyro's bias.
     if ((o.unmeasured_axes() >> j & 1u) == 0) flight.jacobian_knot.col(j).setZero();
   }
 }
 
-// Returns angular rate and angular acceleration at the time of the gyro's reading: rate_smoother.md (R7).
+// See rate_smoother.md (R7).
 RateKnot RateModel::knot_at_reading(const RateObservation& observation, const RateEstimate& estimate) const {
   const RateKnot& knot = estimate.knot;
   return {knot.rate_rad_s - observation.gyro_age_s * knot.acceleration_rad_s2, knot.acceleration_rad_s2};
@@ -49,8 +44,8 @@ RateFactor RateModel::flight(const RateObservation& observation, const RateKnot&
   if (uses_raw_readings_ && delay_s == 0.0 && jacobian_delay == nullptr) return flight_factor(knot, rig, reading);
   const Vector3d force = reading - params_.errors.accel * reading;
   RateFactor out = delayed_flight_factor(knot, rig, force, delay_s, jacobian_delay);
-  // Averaging over the accelerometer's window changes the force in proportion to the second time derivative of the
-  // force: rate_smoother.md (R13). The derivatives of this small force change are neglected.
+  // Averaging over the accelerometer's window changes the force in proportion to the force's second time derivative:
+  // rate_smoother.md (R13).
   out.residual += 0.5 * params_.errors.accel_filter_time_variance_s2 * flight_curvature(knot, rig);
   return out;
 }
@@ -65,7 +60,7 @@ RateFactor RateModel::flight_jacobian_calibration(const RateObservation& observa
   return out;
 }
 
-// Adds the derivatives of a sample's gradient with respect to the sensor errors: rate_smoother.md (R36), (R38).
+// See rate_smoother.md (R36), (R38).
 void RateModel::add_errors(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
                            arrow::ErrorMatrix& block, arrow::BorderErrors& border, SensorErrorEvidence& evidence,
                            bool rig_spread) const {
@@ -126,7 +121,7 @@ void RateModel::add_errors(const RateObservation& observation, const RateEstimat
   }
 }
 
-// Computes the reported covariance of a rate from the covariance of the optimisation: rate_smoother.md (R49).
+// See rate_smoother.md (R49).
 Eigen::Matrix3d RateModel::reported(const Eigen::Matrix3d& covariance, const RateObservation& observation,
                                     const RateEstimate& estimate) const {
   const double factor = 1.0 + (params_.expert.contact.sigma_factor - 1.0) * (1.0 - estimate.flight_weight);

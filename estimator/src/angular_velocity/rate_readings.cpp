@@ -26,8 +26,6 @@ void report_rails(const ClippingFinder& finder, const SaturationLevels& rails, R
   }
 }
 
-// Marks the axes of each sample that were saturated for a part of its averaging window, or may be at an unknown
-// saturation level.
 void mark_possibly_clipped(const RailPlaneFinder::Params& expected, const ClippingFinder& finder,
                            const SaturationLevels& rails, const RailPlanes& planes, double noise_rad_s,
                            std::span<const ImuSample> samples, std::span<RateObservation> observations) {

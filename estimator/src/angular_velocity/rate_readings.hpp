@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// rate_readings.hpp classifies the samples of a recording for RateSmoother.
 #pragma once
 
 #include <optional>
@@ -13,8 +12,7 @@
 
 namespace tumble {
 
-/// RateReadings contains the classified samples of a recording. `known` contains the prior calibration, with cross-axis
-/// sensitivities from the saturation planes.
+/// `known` contains the prior calibration, with cross-axis sensitivities from the saturation planes.
 struct RateReadings {
   std::vector<RateObservation> observations;  ///< one per sample
   RateModelParams known;
@@ -22,8 +20,7 @@ struct RateReadings {
   std::optional<RepeatedReadings> gyro_repeated;
 };
 
-/// Classifies at least two samples: clipped, partly saturated and suspect axes, rest, and repeated readings. Cost:
-/// O(N). The function stores saturation levels, suspect units and repetitions in `health`.
+/// Classifies at least two samples. Cost: O(N).
 RateReadings read_samples(const RateSmoother::Params& params, const ClippingFinder& rails,
                           const ClippingFinder::Found& found, const std::vector<bool>& rest,
                           std::span<const ImuSample> samples,

@@ -12,8 +12,7 @@ namespace tumble {
 
 namespace {
 
-// Shifts the accelerometer's readings by `shift` samples in time. At the ends of the recording, the last available
-// reading repeats.
+// At the ends of the recording, the last available reading repeats.
 void shift_force(std::span<const ImuSample> samples, std::span<const Clipping> clippings, std::ptrdiff_t shift,
                  std::span<const double> accel_age_s, std::span<RateObservation> observations) {
   const auto last = static_cast<std::ptrdiff_t>(samples.size()) - 1;
@@ -26,15 +25,12 @@ void shift_force(std::span<const ImuSample> samples, std::span<const Clipping> c
   }
 }
 
-// Returns the standard deviations of the sensor errors according to the data sheet.
 SensorErrorPriors data_sheet_priors(SensorErrorPriors sizes) {
   sizes.gyro_uncalibrated = sizes.accel_uncalibrated = sizes.g_sensitivity_uncalibrated_s_m =
       sizes.delay_uncalibrated_s = 0.0;
   return sizes;
 }
 
-// Returns whether the estimated errors `found` are plausible for a device with the sensor errors `given` by its data
-// sheet. A difference of more than kDeviations standard deviations comes from the flight model, not from the device.
 bool plausible(const SensorErrors& found, const SensorErrors& given, const SensorErrorPriors& sizes) {
   constexpr double kDeviations = 6.0;
   const SensorErrors errors = SensorErrors::from(found.vector() - given.vector());
@@ -50,7 +46,6 @@ bool has_delay(const TriadDelay& guess) {
   return guess.sigma_s > 0.0 || guess.delay_s != 0.0;
 }
 
-// Returns whether two sets of sensor errors differ enough to repeat the optimisation with readings corrected by `b`.
 bool differ_significantly(const SensorErrors& a, const SensorErrors& b) {
   constexpr double kMatrix = 1e-3, kGSensitivity_s_m = 3e-5, kDelay_s = 3e-4, kFilterTimeVariance_s2 = 3e-6;
   return (a.gyro - b.gyro).cwiseAbs().maxCoeff() > kMatrix || (a.accel - b.accel).cwiseAbs().maxCoeff() > kMatrix ||
@@ -59,12 +54,10 @@ bool differ_significantly(const SensorErrors& a, const SensorErrors& b) {
          std::abs(a.accel_filter_time_variance_s2 - b.accel_filter_time_variance_s2) > kFilterTimeVariance_s2;
 }
 
-// The Mahalanobis distance of three calibration constants exceeds kDeviceMahalanobisMax for one correct device in a
-// thousand.
+// One correct device in a thousand exceeds kDeviceMahalanobisMax, the Mahalanobis distance of three constants.
 constexpr double kDeviceMahalanobisMax = 2.33;
 
-// Returns parameters that fix the calibration at its prior. The gyro's sensing directions remain free, because contact
-// cannot falsify them.
+// The gyro's sensing directions remain free, because contact cannot falsify them.
 RateModelParams fixed_calibration(const RateModelParams& params, const RateModel& model) {
   constexpr int kFirst = RigConstants::kElements, kCount = RigConstants::kSize - kFirst;
   RateModelParams out = params;
@@ -74,8 +67,7 @@ RateModelParams fixed_calibration(const RateModelParams& params, const RateModel
   return out;
 }
 
-// Returns the Mahalanobis distance of the calibration from its prior: rate_smoother.md (R32). The prior covariance
-// includes the effect of uncertain sensor errors.
+// See rate_smoother.md (R32).
 double mahalanobis_of(const RateModelParams& known, const RateModel& model, double period_s,
                       std::span<const RateObservation> observations, const RateSolution& solution) {
   RateIteration again(observations);
@@ -89,8 +81,7 @@ double mahalanobis_of(const RateModelParams& known, const RateModel& model, doub
   return RateModel(wider, period_s).calibration_mahalanobis(solution.rig);
 }
 
-// Optimises the rates and the calibration. If the result classifies contact as flight, a second optimisation fixes the
-// calibration.
+// If the result classifies contact as flight, a second optimisation fixes the calibration.
 Status optimise_or_fix_prior(const RateSmoother::Params& params, const RateModelParams& known, double period_s,
                              std::span<const RateObservation> observations, bool struck, RateFit& fit,
                              RateReport& health) {
@@ -120,12 +111,9 @@ Status optimise_or_fix_prior(const RateSmoother::Params& params, const RateModel
   return {};
 }
 
-// The delay estimated from impacts replaces the assumed delay if they differ by more than kGuessSigmasMax standard
-// deviations.
 constexpr double kGuessSigmasMax = 2.0;
 
-// Adds the delay estimated from impacts to the information about the sensor errors: rate_smoother.md (R38). The flight
-// model uses no impacts, so the two estimates of the delay are independent.
+// See rate_smoother.md (R38). The flight model uses no impacts, so the two estimates of the delay are independent.
 void add_guess(const TriadDelay& guess, SensorErrorEvidence& evidence) {
   if (!(guess.sigma_s > 0.0)) return;
   const double information = 1.0 / (guess.sigma_s * guess.sigma_s);
@@ -133,13 +121,9 @@ void add_guess(const TriadDelay& guess, SensorErrorEvidence& evidence) {
   evidence.gradient[SensorErrors::kDelay] += information * (guess.delay_s - evidence.linearisation_point.accel_delay_s);
 }
 
-// The readings clearly contradict the data sheet if the odds that the device matches the sheet are below
-// kContradictionOdds. At higher odds, the covariance comes from a mixture of a calibrated and an uncalibrated device.
 constexpr double kContradictionOdds = 0.05;
 
-// Returns whether the readings clearly contradict the scale or the sampling times of the data sheet. A wrong scale also
-// makes the sampling times of the sheet unreliable, and vice versa; Naive Bayes combines both kinds of evidence.
-// `triads_asynchronous` states that gyro and accelerometer are known to be asynchronous.
+// A wrong scale also makes the sampling times of the data sheet unreliable, and vice versa.
 bool contradicts_data_sheet(const SensorErrorFit& device, const SensorErrorPriors& sizes, bool triads_asynchronous) {
   const SensorErrorFit before = fit_sensor_errors({}, sizes);
   const auto odds = [](double p) { return std::max(p, 1e-12) / std::max(1.0 - p, 1e-12); };
@@ -147,7 +131,6 @@ bool contradicts_data_sheet(const SensorErrorFit& device, const SensorErrorPrior
   return triads_asynchronous || of_scale * odds(device.synchronous_probability) < kContradictionOdds;
 }
 
-// Returns the standard deviations of the sensor errors for a device without data sheet.
 SensorErrorPriors uncalibrated_priors(SensorErrorPriors sizes) {
   sizes.gyro = std::max(sizes.gyro, sizes.gyro_uncalibrated);
   sizes.accel = std::max(sizes.accel, sizes.accel_uncalibrated);
@@ -156,16 +139,13 @@ SensorErrorPriors uncalibrated_priors(SensorErrorPriors sizes) {
   return sizes;
 }
 
-// Converts the sensor errors of an earlier run to information about their differences from the errors `given` by the
-// user.
 SensorErrorEvidence calibration_evidence_about(const SensorErrors& given, KnownSensorErrors learnt,
                                                const SensorErrorPriors& sizes) {
   learnt.errors = SensorErrors::from(learnt.errors.vector() - given.vector());
   return calibration_evidence(learnt, sizes);
 }
 
-// Estimates sensor errors relative to the errors `given` by the user. `learnt` is the estimate of an earlier run,
-// relative to `given`.
+// `learnt` is the estimate of an earlier run, relative to the sensor errors `given` by the user.
 SensorErrorFit fit_about(const SensorErrors& given, SensorErrorEvidence evidence, const SensorErrorPriors& sizes,
                          const SensorErrorEvidence& learnt) {
   evidence.linearisation_point = SensorErrors::from(evidence.linearisation_point.vector() - given.vector());
@@ -188,8 +168,7 @@ struct Rounds {
 
   const SensorErrorPriors& stated() const { return known.expert.error_priors; }
   bool is_delay_unknown() const { return estimated && stated().delay_uncalibrated_s > stated().delay_s; }
-  /// Returns whether the body has impacts and flight, and is therefore not hand-held. Sensor errors may explain a
-  /// changed calibration only for a body that is not hand-held.
+  /// Returns whether the body has impacts and flight, and is therefore not hand-held.
   bool struck() const { return guess.sigma_s > 0.0; }
 };
 
@@ -208,8 +187,8 @@ Rounds make_rounds(const RateSmoother::Params& params, const RateModelParams& kn
   return out;
 }
 
-// Start contains the initial values of one optimisation. The first optimisation uses `errors`. If the first
-// optimisation had to fix the calibration, a second optimisation uses `other_delay_s` as accelerometer delay.
+// A second optimisation uses `other_delay_s` as accelerometer delay if the first optimisation had to fix the
+// calibration.
 struct Start {
   SensorErrors errors;
   double other_delay_s = 0.0;
@@ -235,12 +214,11 @@ Status optimise_corrected(const Rounds& rounds, const SensorErrors& errors, std:
   return optimise_or_fix_prior(rounds.params, corrected, rounds.period_s, observations, rounds.struck(), fit, health);
 }
 
-// Computes the information about sensor errors that remain in the corrected readings (fit.moved).
 Status collect_evidence(const Rounds& rounds, const SensorErrors& errors, RateFit& fit, const RateReport& health) {
   const RateSolution& solution = fit.solution;
   fit.moved = solution.iteration.error_derivatives(fit.model, solution.estimates, solution.rig);
   if (rounds.estimated) {
-    // An optimisation that has not converged has a gradient, which must not count as evidence of sensor errors.
+    // Before convergence, the gradient is not evidence of sensor errors.
     RateIteration again = solution.iteration;
     if (!again.factorise(fit.model, solution.estimates, solution.rig)) {
       return {ErrorCode::diverged, "iteration", static_cast<double>(health.iterations), 0.0};
@@ -259,7 +237,6 @@ struct RoundsState {
   bool is_plausible = true;  ///< the errors are plausible for a device
 };
 
-// Repeats the optimisation with corrected readings until the estimated sensor errors no longer change.
 Status optimise_rounds(const Rounds& rounds, std::span<RateObservation> observations, RateFit& fit, RateReport& health,
                        RoundsState& rounds_state) {
   const SensorErrors& given = rounds.known.errors;
@@ -298,9 +275,7 @@ Status optimise_rounds(const Rounds& rounds, std::span<RateObservation> observat
   }
 }
 
-// Returns the prior standard deviations of the sensor errors. If the readings clearly contradict the data sheet, the
-// function returns the standard deviations of an uncalibrated device, and enlarges the covariance of the estimated
-// errors.
+// If the readings clearly contradict the data sheet, the function returns the priors of an uncalibrated device.
 SensorErrorPriors open_priors(const Rounds& rounds, const RateFit& fit, RoundsState& rounds_state, RateReport& health) {
   const bool open = rounds.is_delay_unknown() &&
                     (contradicts_data_sheet(rounds_state.found, rounds.stated(), rounds.triads_asynchronous) ||
@@ -316,7 +291,6 @@ SensorErrorPriors open_priors(const Rounds& rounds, const RateFit& fit, RoundsSt
   return sizes;
 }
 
-// Updates rates and calibration to first order for an additional correction `step` of the sensor errors.
 void apply_correction(const SensorErrors::Vector& step, RateFit& fit) {
   for (std::size_t k = 0; k < fit.solution.estimates.size(); ++k) {
     const Eigen::Matrix<double, 6, 1> moved = fit.model.unscaled(fit.moved.of_sample[k] * step);
@@ -339,8 +313,7 @@ Status fit_rounds(const RateSmoother::Params& params, const RateModelParams& kno
   const SensorErrorPriors sizes = open_priors(rounds, fit, rounds_state, health);
   const SensorErrorPriors stated = data_sheet_priors(rounds.stated());
   if (health.calibration_at_prior || !rounds_state.is_plausible || !rounds.estimated) {
-    // The calibration stayed at its prior or the errors are implausible, so the run contains no information about the
-    // device. All sensor errors keep their prior uncertainty.
+    // With a fixed calibration or implausible errors, the run contains no information about the device.
     rounds_state.found = fit_sensor_errors({}, rounds.estimated ? sizes : stated);
     rounds_state.found.known.errors = rounds_state.errors;
   } else {
@@ -349,8 +322,7 @@ Status fit_rounds(const RateSmoother::Params& params, const RateModelParams& kno
   health.sensor_errors = rounds_state.found.known;
   if (health.calibration_at_prior) return {};
   health.calibration.constants = fit.solution.rig;
-  // The next run uses the same device, and therefore has the same sensor errors. The stored covariance of the
-  // calibration therefore includes the uncertainty of the sensor errors.
+  // The next run uses the same device, so the stored covariance includes the uncertainty of the sensor errors.
   const SensorErrors::Matrix device_covariance = fit_sensor_errors({}, stated).known.covariance;
   health.calibration.covariance +=
       fit.moved.calibration_by_errors * device_covariance * fit.moved.calibration_by_errors.transpose();

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// rate_rounds.hpp repeats the optimisation of RateSmoother to estimate the sensor errors.
 #pragma once
 
 #include <span>
@@ -17,11 +16,9 @@ struct RateFit {
   RateIteration::SensorErrorDerivatives moved;
 };
 
-/// Repeats the optimisation, each time with readings corrected by the last estimated sensor errors. A linear correction
-/// follows at the end. If the calibration changes by more than its uncertainty and the sensor errors allow, the
-/// optimisation has classified contact as flight. The optimisation then restarts with the other accelerometer delay
-/// (assumed, or estimated from impacts). If the calibration still changes too much, the function fixes the calibration
-/// at its prior.
+/// Optimises repeatedly, each time with readings corrected by the last estimated sensor errors. A calibration that
+/// changes by more than its standard deviations indicates that contact was classified as flight. If contact was
+/// classified as flight, the optimisation restarts with another accelerometer delay, and finally fixes the calibration.
 Status fit_rounds(const RateSmoother::Params& params, const RateModelParams& known, std::span<const ImuSample> samples,
                   std::span<const Clipping> clippings, std::span<RateObservation> observations, RateFit& fit,
                   RateReport& health);

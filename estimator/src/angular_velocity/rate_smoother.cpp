@@ -28,8 +28,7 @@ Status check_auxiliary_imus(const RateModelParams& params,
   return {};
 }
 
-/// Returns the parameters with the gyro's zero offset as nominal bias, if the offset is large and the user states no
-/// bias.
+/// A large zero offset of the gyro becomes the nominal bias, unless the user states a bias.
 RateSmootherParams with_offset(const RateSmootherParams& params, std::span<const ImuSample> samples) {
   RateSmootherParams out = params;
   Eigen::Vector3d& nominal = out.model.nominal.gyro_bias_rad_s;

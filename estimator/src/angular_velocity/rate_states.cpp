@@ -14,10 +14,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Delays that gyro and accelerometer have in common are considered up to kCommonDelaySigmas standard deviations.
 constexpr double kCommonDelaySigmas = 2.0;
 
-// Interpolates the readings of a gyro that is slower than its log, for samples in which no axis is clipped.
 std::vector<std::optional<InterpolatedRate>> interpolate_gyro(std::span<const ImuSample> samples,
                                                               const RateReadings& readings) {
   std::vector<std::uint8_t> hidden(samples.size());
@@ -28,8 +26,7 @@ std::vector<std::optional<InterpolatedRate>> interpolate_gyro(std::span<const Im
   return rates_between_readings(samples, hidden, readings.gyro_repeated);
 }
 
-// Returns the covariance of a rate due to uncertain sensor errors: rate_smoother.md (R44). The trace of this covariance
-// is limited to rate_max_rad_s^2.
+// See rate_smoother.md (R44).
 Eigen::Matrix3d sensor_error_covariance(const arrow::ErrorMatrix& moved, const SensorErrors::Matrix& covariance,
                                         double rate_max_rad_s) {
   const Eigen::Matrix<double, 3, SensorErrors::kSize> rates = moved.topRows<3>(), spread = rates * covariance;
@@ -38,8 +35,7 @@ Eigen::Matrix3d sensor_error_covariance(const arrow::ErrorMatrix& moved, const S
   return std::min(1.0, most / std::max(out.trace(), 1e-300)) * out;
 }
 
-// Returns how fast the angular rate may change between two samples. For unsaturated readings, the result is the slope
-// of the estimated rate. For readings that may be saturated, the result follows from the contact force.
+// If readings may be saturated, the contact force determines the rate of change.
 double rate_change_rad_s2(const RateModelParams& params, std::span<const RateObservation> observations,
                           std::span<const RateEstimate> estimates, std::size_t k) {
   const RateObservation &from = observations[k], &to = observations[k + 1];
@@ -51,9 +47,8 @@ double rate_change_rad_s2(const RateModelParams& params, std::span<const RateObs
   return (estimates[k + 1].knot.rate_rad_s - estimates[k].knot.rate_rad_s).norm() / dt_s;
 }
 
-// Returns the covariance of a rate due to an unknown delay that gyro and accelerometer have in common. The standard
-// deviation is the delay times the steepest slope of the rate. The search for the steepest slope includes neighbouring
-// samples, because the delay may shift an impact to them.
+// Returns the covariance of a rate due to an unknown delay that gyro and accelerometer have in common. The search for
+// the steepest slope includes neighbouring samples, because the delay may shift an impact.
 Eigen::Matrix3d common_delay_covariance(double variance_s2, const RateModelParams& params,
                                         std::span<const RateObservation> observations,
                                         std::span<const RateEstimate> estimates, std::size_t k) {
@@ -69,8 +64,6 @@ Eigen::Matrix3d common_delay_covariance(double variance_s2, const RateModelParam
   return variance_s2 * (alpha * alpha.transpose() + change * change * Eigen::Matrix3d::Identity());
 }
 
-// Returns the angular rate `late_s` after sample k, with its covariance. A cubic interpolates the rate between the two
-// surrounding samples. The covariance is interpolated linearly.
 RateState extrapolated_state(std::span<const RateObservation> observations, std::span<const RateEstimate> estimates,
                              std::span<const Eigen::Matrix3d> covariances, std::size_t k, double late_s) {
   RateState out;
@@ -136,8 +129,7 @@ std::vector<RateState> rate_states(const RateSmoother::Params& params, std::span
     const RateEstimate& estimate = solution.estimates[k];
     RateState& state = states[k];
     state = extrapolated_state(observations, solution.estimates, covariances, k, gyro_late_s);
-    // In flight, the motion is smoother than the gyro's readings. In other motion, interpolated readings are more
-    // accurate than the white-jerk model.
+    // Outside flight, interpolated readings are more accurate than the white-jerk model.
     const bool by_readings = estimate.flight_weight < 0.5 && !o.at_rest && gyro_late_s == 0.0;
     if (by_readings && !own.empty() && own[k]) {
       const Vector3d g_sensitivity = errors.g_sensitivity_s_m * samples[k].specific_force_m_s2;

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// rate_states.hpp computes the results of RateSmoother for each sample.
 #pragma once
 
 #include <span>
@@ -10,11 +9,10 @@
 
 namespace tumble {
 
-/// Computes angular rates and covariances at the samples. Cost: O(N n) for n samples within the common delay of gyro
-/// and accelerometer. The covariances include the uncertainty of sensor errors, calibration and common delay
-/// (rate_smoother.md). The rates are valid at the times of the gyro's readings. If the gyro is slower than its log,
-/// interpolated readings replace less accurate estimates. `health` receives the numbers of recovered, bounded, unusable
-/// and flight samples.
+/// Computes angular rates and covariances at the times of the gyro's readings. Cost: O(N n) for n samples within the
+/// common delay of gyro and accelerometer. The covariances include the uncertainty of sensor errors, calibration and
+/// common delay (rate_smoother.md). If the gyro is slower than its log, interpolated readings replace less accurate
+/// estimates.
 std::vector<RateState> rate_states(const RateSmoother::Params& params, std::span<const ImuSample> samples,
                                    const RateReadings& readings, const RateFit& fit, RateReport& health);
 

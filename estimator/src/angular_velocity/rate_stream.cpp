@@ -36,8 +36,7 @@ void clamp_to_bounds(const RateObservation& o, Vector3d& rate) {
   }
 }
 
-// Adds the prior that summarises the samples before the window. The gradient of the prior is moved to the current
-// linearisation point: rate_stream.md (R91).
+// See rate_stream.md (R91).
 void add_prior(const RateStream::State& state, const RateModel& model, const RateKnot& knot, arrow::Block& block,
                arrow::Corner& corner) {
   Eigen::Matrix<double, 6, 1> moved;
@@ -126,7 +125,6 @@ Status RateStream::push(const ImuSample& sample, std::span<const AuxiliaryReadin
   return {};
 }
 
-// Marginalises old samples, so that the window has room for another sample.
 void RateStream::marginalise_leaving(State& state) const {
   state.samples_since_step = 0;
   std::size_t count = 0;
@@ -137,8 +135,7 @@ void RateStream::marginalise_leaving(State& state) const {
   state.window.erase(state.window.begin(), state.window.begin() + static_cast<std::ptrdiff_t>(count));
 }
 
-// Computes a preliminary covariance of the newest rate, valid until the next solver step. Measured axes have the gyro's
-// noise; the covariance of clipped axes follows from the possible motion since the previous sample.
+// The covariance of clipped axes follows from the possible motion since the previous sample.
 void RateStream::predict_covariance(State& state) const {
   Knot& newest = state.window.back();
   const Knot& before = state.window[state.window.size() - std::min<std::size_t>(2, state.window.size())];
@@ -149,20 +146,18 @@ void RateStream::predict_covariance(State& state) const {
   newest.covariance_rad2_s2 += sigma.cwiseAbs2().asDiagonal();
 }
 
-// Marginalises the oldest sample of the window: rate_stream.md (R90). rate_smoother.md (R16) to (R19) determine the
-// final flight weight of the sample. A sample in a short flight has a reduced weight: rate_stream.md (R92).
+// See rate_stream.md (R90), (R92).
 void RateStream::marginalise(std::size_t first, State& state) const {
   Knot& oldest = state.window[first];
   const Knot& next = state.window[first + 1];
   arrow::Block block, after;
   arrow::Corner corner;
   add_prior(state, model_, oldest.estimate.knot, block, corner);
-  // The flight weight of a sample that leaves the window is final. This flight weight assumes an exact calibration.
+  // The final flight weight of a sample assumes an exact calibration.
   const double after_it = model_.jump(oldest.estimate.knot, next.estimate.knot, seconds_between(oldest, next));
   const double jump = std::min(change_before_window(oldest, state), after_it);
   model_.compute_flight_weight(oldest.observation, state.rig, RigConstants::Matrix::Zero(), 1.0, jump, oldest.estimate);
-  // The 20 calibration constants can explain any short contact as flight. Only a flight with a minimum number of
-  // samples therefore updates the calibration.
+  // The 20 calibration constants can explain any short contact as flight.
   std::size_t run = state.flight_run;
   const auto needed = static_cast<std::size_t>(params_.expert.flight_run_min);
   const auto flies = [](const Knot& knot) { return knot.estimate.flight_weight >= 0.5; };
@@ -182,8 +177,6 @@ void RateStream::marginalise(std::size_t first, State& state) const {
     state.prior_corner = corner;
     store_errors(block, errors, state);
   } else {
-    // The prior of the samples before the window is not positive definite, so the initial prior of the calibration
-    // replaces it.
     reset_prior(state);
     ++state.failures;
   }
@@ -192,15 +185,12 @@ void RateStream::marginalise(std::size_t first, State& state) const {
   state.prior_knot = next.estimate.knot;
   state.prior_rig = state.rig;
   if (model_.calibration_mahalanobis(state.rig) > params_.calibration_mahalanobis_max) {
-    // An implausible calibration means that RateStream classified contact as flight. The reset discards calibration and
-    // motion.
+    // An implausible calibration means that contact was classified as flight.
     reset_rig(state);
     ++state.rig_resets;
   }
 }
 
-// Returns the normalised change of rate and angular acceleration between the last marginalised sample and the oldest
-// sample of the window.
 double RateStream::change_before_window(const Knot& oldest, const State& state) const {
   if (!state.last_marginalised) return std::numeric_limits<double>::max();
   return model_.jump(*state.last_marginalised, oldest.estimate.knot,
@@ -224,7 +214,6 @@ void RateStream::append(const ImuSample& sample, std::span<const AuxiliaryReadin
   knot.repeats = repeated.repeats && !knot.observation.at_rest;
   if (!knot.observation.at_rest) knot.repeated = repeated;
   knot.estimate.knot.rate_rad_s = sample.angular_velocity_rad_s;
-  // Initial covariance, valid until the first step.
   knot.covariance_rad2_s2 = std::pow(params_.model.rate_max_rad_s, 2) * Eigen::Matrix3d::Identity();
   state.window.push_back(knot);
   state.window.back().reading_growth_rad_s = reading_growth(state.window);
@@ -239,8 +228,7 @@ void RateStream::append(const ImuSample& sample, std::span<const AuxiliaryReadin
   mark_possible_saturation(state);
 }
 
-// Initialises the clipped axes of a new sample. The initial rate is the predicted rate or the rate from the centripetal
-// force, whichever agrees better with flight.
+// The initial rate is the predicted rate or the rate from the centripetal force, whichever agrees better with flight.
 void RateStream::guess(Knot& knot, const Knot& previous, const State& state) const {
   const double dt_s = seconds_between(previous, knot);
   const RateKnot& before = previous.estimate.knot;
@@ -274,8 +262,7 @@ void RateStream::guess(Knot& knot, const Knot& previous, const State& state) con
   centripetal.estimate.knot.rate_rad_s = rate.cwiseMin(largest).cwiseMax(-largest);
   model_.compute_flight_weight(knot.observation, state.rig, state.rig_covariance, 1.0, 0.0, knot.estimate);
   model_.compute_flight_weight(knot.observation, state.rig, state.rig_covariance, 1.0, 0.0, centripetal.estimate);
-  // If the previous sample is part of an impact, the angular acceleration of the impact does not continue, because the
-  // body then rotates without torque.
+  // The angular acceleration of an impact does not continue, because the body then rotates without torque.
   model_.search_flight(knot.observation, state.rig, centripetal.estimate);
   model_.compute_flight_weight(knot.observation, state.rig, state.rig_covariance, 1.0, 0.0, centripetal.estimate);
   if (centripetal.estimate.flight_weight > knot.estimate.flight_weight) knot.estimate = centripetal.estimate;
@@ -305,7 +292,7 @@ void RateStream::compute_flight_weight(State& state) const {
   }
 }
 
-// Makes a Gauss-Newton step over the window: rate_smoother.md (R26) to (R35).
+// See rate_smoother.md (R26) to (R35).
 bool RateStream::step(State& state) const {
   const std::size_t count = state.window.size();
   std::vector<arrow::Block>& blocks = state.work;
@@ -352,7 +339,7 @@ bool RateStream::step(State& state) const {
   return true;
 }
 
-// Returns the covariance of the calibration, inflated while few flights have been observed: rate_stream.md (R97).
+// See rate_stream.md (R97).
 RigConstants::Matrix RateStream::inflated(const State& state) const {
   if (params_.model.calibration) return state.rig_covariance;
   const double samples = static_cast<double>(state.calibration_samples) * model_.independent_reading_ratio() /
@@ -360,8 +347,7 @@ RigConstants::Matrix RateStream::inflated(const State& state) const {
   const double largest = std::sqrt(1.0 + params_.expert.inflation.covariance / (1.0 + samples));
   RigConstants::Vector factor;
   for (int i = 0; i < RigConstants::kSize; ++i) {
-    // The inflated variance of a calibration constant is at most its prior variance. The gyro's bias is not inflated,
-    // because rest determines the bias.
+    // The gyro's bias keeps its variance, because rest determines the bias.
     const bool of_gyro = i >= 3 && i < 6;
     const double before = std::sqrt(model_.prior_covariance()(i, i) / state.rig_covariance(i, i));
     factor[i] = of_gyro ? 1.0 : std::clamp(before, 1.0, largest);

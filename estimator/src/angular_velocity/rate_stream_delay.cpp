@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// RateStream estimates the accelerometer's delay first from impacts, then from the information about sensor errors.
-// Each force reading is paired with the rate at the time of the force.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,21 +10,14 @@ namespace tumble {
 namespace {
 
 constexpr int kBeside = ImpactSums::kDelayMax_samples;
-// Time constant with which the sums over impacts decay, in intervals between readings.
+// time constant, in intervals between readings, with which the sums over impacts decay
 constexpr double kMemory = 2000.0;
-// `kUpdatePeriod_ns` is the time between two estimates of the delay. RateStream ignores changes of the delay below
-// `kDelayChangeMin_s`.
 constexpr TimeNs kUpdatePeriod_ns = 50'000'000;
 constexpr double kDelayChangeMin_s = 3e-4;
-// If the odds of a synchronous gyro and accelerometer are below `kContradictionOdds`, impacts contradict the data
-// sheet. A delay estimated from impacts replaces the current delay if they differ by more than `kGuessSigmasMax`
-// standard deviations.
 constexpr double kContradictionOdds = 0.05, kGuessSigmasMax = 3.0;
-// A delay is estimated from at least `kIntervalsMin` intervals between readings. At the estimated delay, the
-// correlation of force and rate change must exceed the correlation at the stated delay by `kCorrelationGainMin`. The
-// first few impacts may correlate by chance.
+// The first few impacts may correlate with the rate change by chance.
 constexpr double kIntervalsMin = 150.0, kCorrelationGainMin = 0.06;
-// Maximum delay, in prior standard deviations of an uncalibrated device.
+// maximum delay, in prior standard deviations of an uncalibrated device
 constexpr double kReach = 3.0;
 
 double seconds_to(const RateStream::Knot& a, const RateStream::Knot& b) {
@@ -38,8 +29,7 @@ bool repeats_readings(const RateStream::State& state) {
          state.repeat_state.of(Triad::accelerometer).is_slower_than_log();
 }
 
-// ForceNormIntegral integrates the norm of the specific force around a sample of the window. Between readings, the norm
-// is linear. Before the first and after the last reading, the norm is constant.
+// The norm of the specific force is assumed linear between readings and constant outside.
 class ForceNormIntegral {
  public:
   ForceNormIntegral(const std::vector<RateStream::Knot>& window, std::size_t middle, std::size_t first) {
@@ -71,8 +61,7 @@ std::ptrdiff_t RateStream::force_shift(const State& state) const {
   return std::lround(state.device.front().delay.applied_delay_s / params_.period_s);
 }
 
-// Stores in sample k the force reading that was measured at the time of sample k, or the closest in the window. The
-// function also stores the remaining time difference: rate_stream.md (R105).
+// See rate_stream.md (R105).
 void RateStream::pair_force(std::size_t k, State& state) const {
   Knot& knot = state.window[k];
   const auto last = static_cast<std::ptrdiff_t>(state.window.size()) - 1;
@@ -87,7 +76,6 @@ void RateStream::pair_force(std::size_t k, State& state) const {
   o.accel_age_s = (state.device.front().delay.applied_delay_s - prior_delay_s_) - seconds_to(knot, source);
 }
 
-// Updates samples for which the newest force reading is closer in time than the stored force.
 std::size_t RateStream::pair_newest(State& state) const {
   const std::size_t newest = state.window.size() - 1;
   if (state.device.front().delay.applied_delay_s == prior_delay_s_ && force_shift(state) == 0) return newest;
@@ -97,8 +85,7 @@ std::size_t RateStream::pair_newest(State& state) const {
   return first;
 }
 
-// Adds an old interval between two consecutive readings to the sums over impacts: rate_stream.md (R104). The interval
-// is old enough if its clipped axes and all forces up to the maximum delay are known.
+// See rate_stream.md (R104).
 void RateStream::accumulate_impacts(State& state) const {
   if (!delay_is_estimated_ || state.window.size() < ForceNormIntegral::kReadings) return;
   const std::size_t first = state.window.size() - ForceNormIntegral::kReadings, after = first + kBeside + 1;
@@ -120,15 +107,14 @@ void RateStream::accumulate_impacts(State& state) const {
   impacts.add((end - begin).norm() / span_s, mean);
 }
 
-// Returns the delay estimated from impacts. Returns an empty delay if the log repeats readings, because repeated
-// readings would falsify the correlation.
+// Repeated readings would falsify the correlation of force and rate change.
 TriadDelay RateStream::guessed_delay(const State& state) const {
   const ImpactSums& impacts = state.device.front().delay.impacts;
   if (repeats_readings(state) || impacts.intervals < kIntervalsMin) return {};
   return impacts.estimate_delay(params_.period_s, params_.period_s);
 }
 
-// Decides before a solver step whether to change the accelerometer's delay: rate_stream.md (R106).
+// See rate_stream.md (R106).
 void RateStream::update_delay(State& state) const {
   RateStreamDelay& delay = state.device.front().delay;
   const TimeNs now_ns = state.window.back().observation.sample.time_ns;
@@ -152,8 +138,7 @@ void RateStream::update_delay(State& state) const {
   if (delay.found && std::abs(delay.estimated_s - delay.applied_delay_s) > kDelayChangeMin_s) refine_delay(state);
 }
 
-// Replaces the accelerometer's delay, restarts the window, and discards the calibration that was estimated with the
-// previous delay.
+// A new delay invalidates the calibration that was estimated with the previous delay.
 void RateStream::apply_delay(double delay_s, bool found, State& state) const {
   RateStreamDelay& delay = state.device.front().delay;
   delay.applied_delay_s = delay.estimated_s = delay_s;
@@ -170,8 +155,7 @@ void RateStream::apply_delay(double delay_s, bool found, State& state) const {
   }
 }
 
-// Applies a small change of the accelerometer's delay. The prior of the samples before the window changes to first
-// order: rate_stream.md (R107).
+// See rate_stream.md (R107).
 void RateStream::refine_delay(State& state) const {
   RateStreamDevice& device = state.device.front();
   const std::ptrdiff_t before = force_shift(state);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// RateStream treats the sensor errors as consider parameters (Schmidt, 1966). RateStream sums the information about
-// sensor errors, and adds their uncertainty to the covariances of the rates.
+// RateStream treats the sensor errors as consider parameters (Schmidt, 1966).
 #include <algorithm>
 #include <cmath>
 
@@ -12,12 +11,10 @@ namespace {
 
 using Eigen::Matrix3d;
 
-// Time between two estimates of the sensor errors. Each estimate solves a system of 29 unknowns, which costs more than
-// a step of the stream.
+// Each estimate of the sensor errors solves a system of 29 unknowns, which costs more than a step of the stream.
 constexpr TimeNs kUpdatePeriod_ns = 50'000'000;
 
-// Returns the covariance of a rate due to uncertain sensor errors: rate_smoother.md (R44). The trace of this covariance
-// is limited to rate_max_rad_s^2.
+// See rate_smoother.md (R44).
 Matrix3d considered(const arrow::ErrorMatrix& moved, const SensorErrors::Matrix& covariance, double rate_max_rad_s) {
   const Eigen::Matrix<double, 3, SensorErrors::kSize> rates = moved.topRows<3>(),
                                                       spread = rates.lazyProduct(covariance);
@@ -31,8 +28,7 @@ bool moves(const RateStream::Knot& knot) {
 
 }  // namespace
 
-// Updates the information about the sensor errors when a sample leaves the window. A Schur complement eliminates the
-// sample's unknowns and keeps the sensor errors: rate_stream.md (R100).
+// See rate_stream.md (R100).
 void RateStream::store_errors(const arrow::Block& block, arrow::ErrorMatrix& errors, State& state) const {
   RateStreamDevice& device = state.device.front();
   device.prior.setZero();
@@ -41,7 +37,6 @@ void RateStream::store_errors(const arrow::Block& block, arrow::ErrorMatrix& err
   device.evidence.gradient.noalias() += errors.transpose().lazyProduct(block.gradient);
 }
 
-// Deletes the prior of the samples before the window, but keeps the estimated calibration.
 void RateStream::reset_prior(State& state) const {
   state.prior = {};
   state.prior_corner = {};
@@ -53,7 +48,6 @@ void RateStream::reset_prior(State& state) const {
   device.evidence.gradient.setZero();
 }
 
-// Resets the calibration to its prior, and deletes the information about the motion before the window.
 void RateStream::reset_rig(State& state) const {
   state.rig = state.prior_rig = model_.prior_constants();
   state.rig_covariance = model_.prior_covariance();
@@ -69,8 +63,7 @@ KnownSensorErrors RateStream::sensor_errors(const State& state) const {
   return out;
 }
 
-// Computes the derivatives of the estimated rates with respect to the sensor errors: rate_stream.md (R101). The caller
-// must have factorised the window with the current estimates and calibration.
+// See rate_stream.md (R101). The caller must have factorised the window with the current estimates and calibration.
 void RateStream::add_sensor_error_covariance(const arrow::BorderVector& rig_step, State& state) const {
   RateStreamDevice& device = state.device.front();
   const std::size_t count = state.window.size();
@@ -105,7 +98,7 @@ void RateStream::add_sensor_error_covariance(const arrow::BorderVector& rig_step
   RateStreamDelay& delay = device.delay;
   if (delay.found) {
     if (const TriadDelay& guess = delay.guess; guess.sigma_s > 0.0) {
-      // The delay from impacts has full weight, so this division cancels the factor kEvidenceWeight.
+      // The factor kEvidenceWeight is cancelled, because the delay from impacts has full weight.
       const double information = 1.0 / (DeviceUncertainty::kEvidenceWeight * guess.sigma_s * guess.sigma_s);
       window_evidence.information(SensorErrors::kDelay, SensorErrors::kDelay) += information;
       window_evidence.gradient[SensorErrors::kDelay] += information * (guess.delay_s - delay.applied_delay_s);
@@ -116,7 +109,6 @@ void RateStream::add_sensor_error_covariance(const arrow::BorderVector& rig_step
   device_.update(window_evidence, posterior_work, device.posterior, delay.found);
 }
 
-// Returns the covariance of a rate due to sensor errors and due to a delay that gyro and accelerometer have in common.
 Matrix3d RateStream::device_covariance(std::size_t k, const State& state) const {
   const Knot& knot = state.window[k];
   if (!moves(knot)) return Matrix3d::Zero();

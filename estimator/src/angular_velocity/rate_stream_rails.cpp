@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// RateStream classifies the samples of its window by the detected saturation levels.
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -16,28 +15,21 @@ namespace {
 
 using Eigen::Vector3d;
 
-// The cross-axis sensitivities of a saturation plane may be wrong by `kSlopeSigmasMax` standard deviations. A suspect
-// run has at least `kPlateauReadingsMin` readings within kNearRailRatio of the axis' largest reading. The slopes at
-// both ends of a run predict the height of its maximum. For a rounded maximum of n readings, the predicted height is at
-// most (n/(n - 1))^2 <= 2.25 times the measured height. A run counts as cut off by saturation if the ratio exceeds
-// `kHeightRatioMin` and the predicted height exceeds `kHeightNoiseSigmas` standard deviations of the noise.
+// For a rounded maximum of n readings, the height predicted from the slopes is at most (n/(n - 1))^2 <= 2.25 times the
+// measured height.
 constexpr double kSlopeSigmasMax = 3.0, kHeightRatioMin = 4.0, kHeightNoiseSigmas = 5.0;
 constexpr std::ptrdiff_t kPlateauReadingsMin = 3;
 
-// Maximum relative difference between the saturation levels of two sensing elements. The wand of the data set RepoIMU
-// has a difference of 3 %.
+// maximum relative difference between two elements' saturation levels; the wand of the data set RepoIMU has 3 %
 constexpr double kLevelDifferenceMax = 0.05;
 
-// Returns whether the largest reading of a sensing element is close to the saturation levels of the other sensing
-// elements. The largest reading may then be the element's saturation level.
 bool is_near_other_rails(const RailPlanes& planes, double peak_rad_s) {
   return std::all_of(planes.element.begin(), planes.element.end(), [&](const auto& element) {
     return !element || peak_rad_s >= (1.0 - kLevelDifferenceMax) * element->distance_rad_s;
   });
 }
 
-// Returns the first sample of the reading before the reading of sample k. Returns nothing if the reading begins before
-// the window.
+// Returns nothing if the previous reading begins before the window.
 std::optional<std::size_t> reading_before(std::size_t k, const std::vector<RateStream::Knot>& window) {
   while (k > 0 && window[k].repeats) --k;
   if (k == 0) return std::nullopt;
@@ -46,8 +38,6 @@ std::optional<std::size_t> reading_before(std::size_t k, const std::vector<RateS
   return k;
 }
 
-// Returns the first sample of the reading after the reading of sample k. Returns the window's size if no new reading
-// has arrived.
 std::size_t reading_after(std::size_t k, const std::vector<RateStream::Knot>& window) {
   const std::size_t size = window.size();
   if (k >= size) return size;
@@ -56,14 +46,10 @@ std::size_t reading_after(std::size_t k, const std::vector<RateStream::Knot>& wi
   return k;
 }
 
-// Beside points to the samples with the gyro readings before and after a sample's reading. A pointer is null if the
-// window contains no earlier or later reading.
 struct Beside {
   const ImuSample *before = nullptr, *after = nullptr;
 };
 
-// Returns the samples with the gyro readings before and after the reading of sample k. All samples that repeat a
-// reading have the same result.
 Beside neighbour_readings(std::size_t k, const RateStream::State& state) {
   const std::optional<std::size_t> before = reading_before(k, state.window);
   const std::size_t after = reading_after(k, state.window);
@@ -89,8 +75,7 @@ void RateStream::reclassify_window(State& state) const {
   for (std::size_t k = 0; force_shift(state) != 0 && k < state.window.size(); ++k) pair_force(k, state);
 }
 
-// Classifies samples of the window with the current saturation levels. The classification starts one reading before
-// `changed`, because it depends on neighbouring readings. A newly clipped sample gets a new initial rate.
+// The classification of a sample depends on neighbouring readings.
 void RateStream::classify_from(std::size_t changed, State& state) const {
   const std::size_t first = reading_before(changed, state.window).value_or(0);
   const SaturationLevels& rails = state.rails.known;
@@ -129,9 +114,7 @@ void RateStream::classify_from(std::size_t changed, State& state) const {
   }
 }
 
-// Returns whether a reading may be saturated: rate_stream.md (R93). If the saturation plane is known, the reading must
-// be within the plane's uncertainty. If the plane is unknown, the axis' largest reading must be close to the levels of
-// the other sensing elements.
+// See rate_stream.md (R93).
 bool RateStream::may_clip(const ImuSample& sample, int axis, int sign, const State& state) const {
   const Vector3d& y = sample.angular_velocity_rad_s;
   const RailPlanes planes = state.rails.known.planes_in_use();
@@ -147,7 +130,6 @@ bool RateStream::may_clip(const ImuSample& sample, int axis, int sign, const Sta
   return high && std::abs(y[axis]) >= (1.0 - kNearRailRatio) * extreme;
 }
 
-// Stores the possible saturation deficit of a single sample whose reading is near another element's saturation level.
 void RateStream::mark_undetected_clipping(std::size_t k, State& state) const {
   RateObservation& now = state.window[k].observation;
   now.isolated_high_axes = 0;
@@ -157,8 +139,7 @@ void RateStream::mark_undetected_clipping(std::size_t k, State& state) const {
                               now, after);
 }
 
-// Removes suspect marks from samples of the window that a larger reading or a newly detected saturation level has made
-// obsolete.
+// A larger reading or a newly detected saturation level shows that marked readings are unsaturated.
 void RateStream::clear_suspects(State& state) const {
   for (std::size_t k = 0; k < state.window.size(); ++k) {
     if (state.window[k].observation.possibly_saturated_axes() == 0) continue;
@@ -167,7 +148,7 @@ void RateStream::clear_suspects(State& state) const {
   }
 }
 
-// Marks runs of three or more unflagged readings that may be saturated. The function is called for each new sample.
+// Marks runs of three or more unflagged readings that may be saturated.
 void RateStream::mark_possible_saturation(State& state) const {
   const unsigned stood = state.window.front().observation.suspect;
   clear_suspects(state);
@@ -177,7 +158,6 @@ void RateStream::mark_possible_saturation(State& state) const {
       const int sign = state.window[k].observation.sample.angular_velocity_rad_s[j] < 0.0 ? -1 : 1;
       std::size_t end = k;
       while (end < state.window.size() && may_clip(state.window[end].observation.sample, j, sign, state)) ++end;
-      // the first samples of this suspect run have already left the window
       const bool goes_on = k == 0 && end > k && (stood >> j & 1u) != 0;
       const auto readings = std::count_if(state.window.begin() + static_cast<std::ptrdiff_t>(k),
                                           state.window.begin() + static_cast<std::ptrdiff_t>(end),
@@ -188,8 +168,8 @@ void RateStream::mark_possible_saturation(State& state) const {
   }
 }
 
-// Returns the slope of the readings per sample at the ends of a suspect run: the larger of the slopes before and after
-// the run. Each slope is the smaller of two consecutive steps, because an impact causes a single large step.
+// Returns the slope of the readings per sample at the ends of a run of possibly saturated readings. Each slope is the
+// smaller of two consecutive steps, because an impact causes a single large step.
 double RateStream::run_slope(int axis, std::size_t first, std::size_t last, const State& state) {
   const auto size = [&](std::size_t k) {
     return std::abs(state.window[k].observation.sample.angular_velocity_rad_s[axis]);
@@ -204,8 +184,8 @@ double RateStream::run_slope(int axis, std::size_t first, std::size_t last, cons
   return std::max({in, out, 0.0});
 }
 
-// Marks one run of suspect readings. The deficit follows from a smooth motion that continues with the slopes at the
-// ends of the run: rate_stream.md (R94).
+// The saturation deficit follows from a smooth motion that continues with the slopes at the ends of the run:
+// rate_stream.md (R94).
 void RateStream::mark_suspect_run(int axis, std::size_t first, std::size_t last, State& state) const {
   const auto size = [&](std::size_t k) {
     return std::abs(state.window[k].observation.sample.angular_velocity_rad_s[axis]);
@@ -231,8 +211,7 @@ void RateStream::mark_suspect_run(int axis, std::size_t first, std::size_t last,
   }
 }
 
-// Returns the increase of the gyro's reading per sample, before the newest sample. The result is the smaller of two
-// steps, because an impact causes a single large step. A constant spin after an impact is not saturation.
+// Returns the smaller of two consecutive increases of the gyro's reading, because an impact causes a single large step.
 Vector3d RateStream::reading_growth(const std::vector<Knot>& window) {
   const std::optional<std::size_t> one = reading_before(window.size() - 1, window);
   const std::optional<std::size_t> two = one ? reading_before(*one, window) : std::nullopt;
@@ -246,8 +225,8 @@ Vector3d RateStream::reading_growth(const std::vector<Knot>& window) {
   return now.cwiseMin(before).cwiseMax(0.0);
 }
 
-// Stores the slope before a run of clipped readings. The saturation deficit of the run depends on this slope after the
-// first reading of the run has left the window.
+// The saturation deficit of a clipped run depends on the slope before the run, even after that slope has left the
+// window.
 void RateStream::store_slope_before_clipping(const Knot& leaving, const Knot& next, State& state) {
   const auto hidden = [](const Knot& knot, int j) {
     return ((knot.observation.clipping.gyro | knot.observation.partly_saturated_axes()) >> j & 1) != 0;
@@ -259,8 +238,6 @@ void RateStream::store_slope_before_clipping(const Knot& leaving, const Knot& ne
   }
 }
 
-// Adds the information of the saturation planes about the sensing directions of clipped elements. Each step adds the
-// information again, because the planes become more accurate.
 void RateStream::add_rails(const State& state, arrow::Corner& corner) const {
   const SaturationLevels& rails = state.rails.known;
   const RailPlanes planes = rails.planes_in_use();

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// RateStream computes the reported rate of a sample in its window.
 #include <algorithm>
 #include <cmath>
 
@@ -8,7 +7,6 @@
 
 namespace tumble {
 
-// Returns whether a sample belongs to a flight that is long enough to update the calibration.
 bool RateStream::in_long_flight(std::size_t at, const State& state) const {
   const std::vector<Knot>& window = state.window;
   const auto needed = static_cast<std::size_t>(params_.expert.flight_run_min);
@@ -20,8 +18,7 @@ bool RateStream::in_long_flight(std::size_t at, const State& state) const {
   return last - first + 1 + (first > 0 ? 0 : state.flight_run) >= needed;
 }
 
-// Returns the saturation deficit that the slopes before and after a run of clipped readings predict: rate_stream.md
-// (R99). The run also ends at the start of a flight, where the specific force determines the rate.
+// See rate_stream.md (R99).
 double RateStream::deficit_from_slopes_rad_s(std::size_t at, int axis, const State& state) const {
   const std::vector<Knot>& window = state.window;
   const auto hidden = [&](std::size_t k) {
@@ -34,14 +31,14 @@ double RateStream::deficit_from_slopes_rad_s(std::size_t at, int axis, const Sta
   const bool from_flight = state.flight_run >= static_cast<std::size_t>(params_.expert.flight_run_min);
   const double before =
       static_cast<double>(at - first) + 0.5 + (first > 0 || from_flight ? 0.0 : state.entry_samples[axis]);
-  // An unfinished run is assumed to continue for at least as long as it has lasted.
+  // An unfinished run of clipped readings is assumed to continue for at least as long as it has lasted.
   const double left = static_cast<double>(last - at) + 0.5,
                after = last + 1 < window.size() ? left : std::max(before, left);
   const double slope = run_slope(axis, first, last, state);
   return slope * before * after / (before + after);
 }
 
-// Returns the covariance of a clipped rate in contact, with the lower limits of rate_stream.md (R98), (R99).
+// See rate_stream.md (R98), (R99).
 Eigen::Matrix3d RateStream::suspect_covariance(std::size_t at, const State& state) const {
   const Knot& knot = state.window[at];
   Eigen::Matrix3d out = knot.covariance_rad2_s2;
@@ -60,9 +57,7 @@ Eigen::Matrix3d RateStream::suspect_covariance(std::size_t at, const State& stat
   return out;
 }
 
-// Returns whether a rate depends on a reading that may have been saturated for a part of its averaging window. The rate
-// depends on the reading of its sample. If the log repeats readings, the rate also depends on the neighbouring
-// readings.
+// If the log repeats readings, a rate also depends on the neighbouring readings.
 bool RateStream::may_be_partly_saturated(std::size_t at, const State& state) const {
   const std::vector<Knot>& window = state.window;
   if (window[at].near != 0) return true;
@@ -74,9 +69,7 @@ bool RateStream::may_be_partly_saturated(std::size_t at, const State& state) con
   return (window[next].near | after.clipping.gyro | after.possibly_saturated_axes()) != 0;
 }
 
-// Computes the rate at the time `late_s` after a sample, because the gyro is delayed relative to the accelerometer:
-// rate_stream.md (R108). Between samples, the rate is a cubic. After the newest sample, the angular acceleration is
-// assumed constant, and the covariance includes the error of this assumption.
+// See rate_stream.md (R108). After the newest sample, the angular acceleration is assumed constant.
 void RateStream::extrapolate_estimate(std::size_t at, double late_s, const State& state, RateState& out) const {
   const auto reported = [&](std::size_t k) {
     const Knot& knot = state.window[k];

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// rate_stream_state.cpp reports faults that the state of a RateStream shows.
 #include "tumble/angular_velocity/rate_stream.hpp"
 
 namespace tumble {

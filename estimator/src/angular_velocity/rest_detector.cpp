@@ -27,7 +27,6 @@ bool RestDetector::observe(const ImuSample& sample, State& state, const Eigen::V
   }
   state.pending_rate_rad_s += sample.angular_velocity_rad_s;
   state.pending_force_m_s2 += sample.specific_force_m_s2;
-  // An averaged reading ends at the sample that makes its length closest to params_.reading_s.
   const double half_s = 0.5 * seconds(sample.time_ns - state.last_ns);
   const bool whole = !state.started || seconds(sample.time_ns - state.last_reading_ns) >= params_.reading_s - half_s;
   state.started = true;
@@ -40,7 +39,7 @@ bool RestDetector::observe(const ImuSample& sample, State& state, const Eigen::V
                       sample.time_ns, bias_rad_s, state);
 }
 
-/// Adds an averaged reading to the current run of quiet readings, and tests for rest: attitude.md (A15).
+/// See attitude.md (A15).
 bool RestDetector::observe_mean(const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& force_m_s2, TimeNs from_ns,
                                 TimeNs to_ns, const Eigen::Vector3d& bias_rad_s, State& state) const {
   const double step_s = seconds(to_ns - state.last_mean_ns);
@@ -85,7 +84,6 @@ std::vector<bool> RestDetector::find(std::span<const ImuSample> samples, const E
   State state;
   for (std::size_t k = 0; k < samples.size(); ++k) {
     if (!observe(samples[k], state, bias_rad_s)) continue;
-    // All samples of the run so far are samples at rest.
     for (std::size_t i = k + 1; i-- > 0 && samples[i].time_ns >= state.first_ns && !rest[i];) rest[i] = true;
   }
   return rest;

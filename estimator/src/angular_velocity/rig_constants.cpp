@@ -31,7 +31,7 @@ const Eigen::Matrix3d& RigConstants::inertia_basis(int i) {
   return kBasis[static_cast<std::size_t>(i)];
 }
 
-// Computes the inertia matrix from its parameters: rate_smoother.md (R3).
+// See rate_smoother.md (R3).
 Eigen::Matrix3d RigConstants::inertia_matrix() const {
   const double half = 0.5 * std::numbers::sqrt2, sixth = std::numbers::inv_sqrt3 * half;
   const double a = half * inertia[0], b = sixth * inertia[1];
@@ -56,7 +56,7 @@ Eigen::Vector3d RigConstants::sensing_direction(int j) const {
   return row;
 }
 
-// Returns the constants as a vector: rate_smoother.md (R2).
+// See rate_smoother.md (R2).
 RigConstants::Vector RigConstants::vector() const {
   Vector v;
   v << lever_arm_m, gyro_bias_rad_s, accel_bias_m_s2, inertia, elements;

@@ -18,8 +18,7 @@ std::uint8_t axes_beyond(const Eigen::Vector3d& rate, double bound) {
   return axes;
 }
 
-// Returns the squared rate |w|^2, computed from the component of the specific force towards the rotation axis: saave.md
-// (S1), (S2). Returns NaN if the IMU is on the rotation axis.
+// Returns |w|^2, see saave.md (S1), (S2), or NaN if the IMU is on the rotation axis.
 double squared_rate(const Eigen::Vector3d& lever_arm, const Eigen::Vector3d& axis, const Eigen::Vector3d& force) {
   const Eigen::Vector3d to_axis = lever_arm.dot(axis) * axis - lever_arm;
   const double r = to_axis.norm();
@@ -54,7 +53,6 @@ Status Saave::step(const ImuSample& sample, State& state, Recovered& out) const 
     unclipped[j] = 0.0;
     const double others = unclipped.squaredNorm();
     const double squared = squared_rate(params_.lever_arm_m, state.axis, sample.specific_force_m_s2);
-    // If the IMU is on the rotation axis, `squared` is NaN and the comparison is false.
     out.accepted = squared > others;
     if (out.accepted) {
       const double magnitude = std::max(std::sqrt(squared - others), std::abs(reading[j]));

@@ -5,10 +5,7 @@
 
 namespace tumble {
 
-/// sample_hold_bounds.hpp contains criteria for repeated readings, in recordings (find_repeated) and live
-/// (RepeatDetector). Only samples with a rate above kMoving_rad_s count, from kMovingMin to kMovingMax samples. At
-/// least the fraction kRepeatsMin of the samples in motion must be repetitions. Repetitions longer than kSlowest
-/// samples are rest, saturation or a frozen axis.
+/// Repetitions longer than kSlowest samples are rest, saturation or a frozen axis.
 namespace sample_hold {
 inline constexpr double kMoving_rad_s = 0.3, kRepeatsMin = 0.05, kSlowest = 10.0, kAgreementMin = 0.9;
 inline constexpr std::size_t kMovingMin = 30, kMovingMax = 1000;

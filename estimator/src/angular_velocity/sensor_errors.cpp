@@ -18,8 +18,7 @@ using Vector = SensorErrors::Vector;
 using Matrix = SensorErrors::Matrix;
 using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
-// Size is a hypothesis about the standard deviations of the sensor errors. `share` is 0 for the data sheet, 1 for an
-// uncalibrated device; `probability` is the prior probability.
+// `share` is 0 for the data sheet's standard deviations and 1 for those of an uncalibrated device.
 struct Size {
   double share, probability;
 };
@@ -28,7 +27,7 @@ constexpr std::array<Size, 3> kCrossSizes = {{{0.0, 0.5}, {0.5, 0.2}, {1.0, 0.3}
 constexpr std::array<Size, 2> kGSensitivitySizes = {{{0.0, 0.6}, {1.0, 0.4}}};
 constexpr std::array<Size, 2> kDelaySizes = {{{0.0, 0.6}, {1.0, 0.4}}};
 
-// minimum prior standard deviation of a sensor error, which keeps the prior covariance invertible
+// A positive standard deviation keeps the prior covariance invertible.
 constexpr double kLeast = 1e-9;
 
 double between(double sheet, double unknown, double share) {
@@ -54,12 +53,9 @@ Vector deviations(const SensorErrorPriors& s, const Shares& shares) {
   return out;
 }
 
-// The readings clearly contradict the data sheet if the probability of its standard deviations is below kPlain.
 constexpr double kPlain = 0.05;
 
-// Factor on the readings' information for the covariance of the sensor errors. kEvidenceWeight is below 1, because
-// errors of the flight model last longer than a sample. The likelihood of a hypothesis uses the readings with full
-// weight.
+// Errors of the flight model last longer than a sample, so the information of the readings is reduced.
 constexpr double kEvidenceWeight = 0.03;
 
 struct Hypothesis {
@@ -69,8 +65,7 @@ struct Hypothesis {
   Matrix covariance;
 };
 
-// Computes the posterior of the sensor errors: rate_smoother.md (R40), (R41), (R43). `h` is the gradient plus
-// information * errors.
+// See rate_smoother.md (R40), (R41), (R43).
 Hypothesis posterior(const Matrix& information, const Matrix& earlier_runs, const Vector& h, const Vector& deviation,
                      double log_prior) {
   constexpr int kRest = SensorErrors::kSize - SensorErrors::kGSensitivity;
@@ -84,8 +79,8 @@ Hypothesis posterior(const Matrix& information, const Matrix& earlier_runs, cons
   Vector sharpened = scaled_h;
   all.solve_vector(sharpened);
   out.log_odds = log_prior + 0.5 * scaled_h.dot(sharpened) - all.half_log_determinant();
-  // The estimated scale and misalignment errors stay zero, because errors of the flight model look like scale and
-  // misalignment errors.
+  // Errors of the flight model look like errors of scale and misalignment, so estimates of scale and misalignment stay
+  // zero.
   Vector mean = Vector::Zero();
   mean.tail<kRest>() = scaled_h.tail<kRest>();
   dense::Cholesky(sharp.bottomRightCorner<kRest, kRest>()).solve_vector(mean.tail<kRest>());
@@ -150,7 +145,7 @@ Vector prior_sigmas(const SensorErrorPriors& sizes, double share) {
 
 void discount_unobservable(double share, SensorErrorEvidence& evidence) {
   if (share >= 1.0) return;
-  // Orthonormal directions in which the readings do not determine the sensor errors.
+  // orthonormal directions in which the readings do not determine the sensor errors
   Eigen::Matrix<double, SensorErrors::kSize, 5> unobservable = Eigen::Matrix<double, SensorErrors::kSize, 5>::Zero();
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
@@ -158,8 +153,8 @@ void discount_unobservable(double share, SensorErrorEvidence& evidence) {
     unobservable(3 * j + k, 2 + i) = unobservable(SensorErrors::kAccel + 3 * j + k, 2 + i) = 0.5;
     unobservable(3 * k + j, 2 + i) = unobservable(SensorErrors::kAccel + 3 * k + j, 2 + i) = -0.5;
   }
-  // Multiplies the information matrix by (I - d U U') on both sides. The code uses only the five columns of U, because
-  // the thread of a RateStream may have a small stack.
+  // Multiplies the information matrix by (I - d U U') on both sides. Only the five columns of U are stored, because the
+  // thread of a RateStream may have a small stack.
   Eigen::Matrix<double, 5, SensorErrors::kSize> said = unobservable.transpose().lazyProduct(evidence.information);
   evidence.information.noalias() -= (1.0 - share) * unobservable.lazyProduct(said);
   said = unobservable.transpose().lazyProduct(evidence.information.transpose());
@@ -201,7 +196,6 @@ SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const Sens
     if (one.shares.scale == 0.0) out.data_sheet_probability += one.log_odds;
     if (one.shares.delay == 0.0) out.synchronous_probability += one.log_odds;
   }
-  // Corrections deviate from the data sheet only if the readings clearly contradict the data sheet.
   Vector mean = Vector::Zero();
   double kept = 0.0;
   for (const Hypothesis& one : all) {
@@ -210,7 +204,7 @@ SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const Sens
     kept += one.log_odds;
   }
   mean /= std::max(kept, 1e-300);
-  // The covariance includes the difference between each hypothesis and the mean in use: rate_smoother.md (R42).
+  // See rate_smoother.md (R42).
   for (const Hypothesis& one : all) {
     const Vector off = one.mean - mean;
     out.known.covariance += one.log_odds * (one.covariance + off * off.transpose());
@@ -219,7 +213,7 @@ SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const Sens
   return out;
 }
 
-// Converts the sensor errors of an earlier run to information: rate_smoother.md (R43).
+// See rate_smoother.md (R43).
 SensorErrorEvidence calibration_evidence(const KnownSensorErrors& earlier_runs, const SensorErrorPriors& sizes) {
   const Vector unit = deviations(sizes, {});
   const Matrix symmetric = 0.5 * (earlier_runs.covariance + earlier_runs.covariance.transpose());
@@ -227,7 +221,8 @@ SensorErrorEvidence calibration_evidence(const KnownSensorErrors& earlier_runs, 
   Vector values;
   Matrix vectors;
   dense::decompose(scaled, values, vectors);
-  // The earlier run contains no information about a direction if the variance along it equals the prior variance.
+  // If the variance along a direction equals the prior variance, the earlier run contains no information about the
+  // direction.
   const Vector precision_ratio = values.cwiseMax(1e-12).cwiseInverse();
   const Vector of_mean = (precision_ratio.array() > 1.0).select(precision_ratio, Vector::Zero());
   const auto in_units = [&](const Vector& kept_values) -> Matrix {

@@ -15,18 +15,14 @@ namespace {
 
 using Eigen::Vector3d;
 
-// A reading above `kNearExtremeRatio` times the axis' largest reading may be saturated. `StreamingClippingFinder`
-// stores readings above `kStoreRatio` times the largest reading, and `kBeside` neighbours on both sides.
 constexpr double kNearExtremeRatio = 0.9, kStoreRatio = 0.85;
 constexpr std::size_t kBeside = 4;
-// `StreamingClippingFinder` always stores the latest readings, and the first readings of a run, which determine the
-// gyro's noise.
+// The first readings of a run determine the gyro's noise.
 constexpr std::size_t kLatestReadings = 48;
-// StreamingClippingFinder repeats the search for saturation when the number n of readings near the extremes has grown
-// by n / kSearchGrowthDivisor, and by at least two.
+// The search for saturation repeats when the number of readings near the extremes has grown by the fraction 1 /
+// kSearchGrowthDivisor.
 constexpr std::size_t kSearchGrowthDivisor = 8;
-// A reading is far from saturation if it is below kLowReadingRatios (gyro, accelerometer) times the lowest possible
-// saturation level. The larger fraction for the accelerometer excludes gravity.
+// Gravity requires a larger fraction for the accelerometer than for the gyro.
 constexpr double kLowReadingRatios[] = {0.5, 0.9};
 
 std::array<std::optional<double>, 6> rails_of(const RailDetector& axis_aligned_rails,
@@ -64,8 +60,7 @@ bool StreamingClippingFinder::is_near(const Vector3d& reading, Triad triad, cons
   return false;
 }
 
-// Stores a reading. A full memory first drops readings far from the extremes, then the oldest readings. The first
-// readings of the run remain.
+// A full memory first drops readings far from the extremes, then the oldest readings.
 void StreamingClippingFinder::store(const Vector3d& reading, Triad triad, Memory& memory) const {
   std::vector<Vector3d>& readings = memory.readings;
   if (readings.size() == readings_max_) {

@@ -8,25 +8,19 @@ namespace tumble {
 
 namespace {
 
-// Maximum saturated fraction of an averaging window. If a larger fraction is saturated, the reading does not determine
-// the slope of the rate.
+// If a larger fraction of the averaging window is saturated, the reading does not determine the slope of the rate.
 constexpr double kSaturatedFractionMax = 0.85;
-// The variance of the saturation deficit is the sum of two squares: `kDeficitSigmaRatio` times the deficit, and
-// `kDepthSigmaRatio` times the distance from the saturation level (at most `kDepthMax` [rad/s]).
 constexpr double kDeficitSigmaRatio = 0.5, kDepthSigmaRatio = 0.25, kDepthMax = 1.0;
 
 }  // namespace
 
-// Computes the saturation deficit of a rate that crosses the saturation level with constant slope: rails.md (R69),
-// (R70).
+// The rate is assumed to cross the saturation level with constant slope: rails.md (R69), (R70).
 SubsampleSaturation subsample_saturation(double reading_rad_s, double neighbour_rad_s, double rail_rad_s,
                                          double noise_rad_s) {
   const double depth = rail_rad_s - reading_rad_s, slope = reading_rad_s - neighbour_rad_s;
-  // If the whole window is saturated, the reading is at the saturation level. Noise that is added before clipping
-  // lowers this reading by less than a tenth of the noise.
+  // Noise that is added before clipping lowers a fully saturated reading by less than a tenth of the noise.
   if (!(depth > 0.1 * noise_rad_s)) return {};
-  // A constant rate does not cross the saturation level. Saturated readings on a slightly tilted plane may change
-  // slowly.
+  // Saturated readings on a slightly tilted plane may change slowly.
   if (!(slope > noise_rad_s)) return {};
   double share = 0.0;  // rails.md (R71)
   if (slope > 2.0 * depth) {
@@ -35,7 +29,7 @@ SubsampleSaturation subsample_saturation(double reading_rad_s, double neighbour_
     share = (1.0 - root) / (1.0 + ratio);
   }
   if (share > kSaturatedFractionMax) return {};
-  // The saturation deficit and its standard deviation: rails.md (R72), (R73).
+  // See rails.md (R72), (R73).
   const double free = 1.0 - share, lost = share * share / (free * free) * depth;
   return {true, lost,
           std::hypot(2.0 * noise_rad_s, kDeficitSigmaRatio * lost + kDepthSigmaRatio * std::min(depth, kDepthMax))};

@@ -27,14 +27,13 @@ constexpr int kDelaysPerSample =
 constexpr double kRateMin_rad_s = 2.0;
 constexpr std::size_t kSamplesMin = 20, kSamplesMax = 2000;
 constexpr double kLeverSigma_m = 0.02, kBiasSigma_m_s2 = 0.3;
-// Two readings that are closer in time than kApart_s count as one reading with jitter.
+// Two readings within kApart_s are one reading with jitter.
 constexpr double kApart_s = 1e-4;
-// Widths of the robust kernel for the flight residuals, for successive iterations [m/s^2].
+// widths [m/s^2] of the robust kernel for the flight residuals in successive iterations
 constexpr double kKernelWidths_m_s2[] = {3.0, 1.5, 0.8, 0.4, 0.25, 0.2};
-// Decrease of the robust cost that is significant; each sample costs at most 1.
+// significant decrease of the robust cost, to which each sample contributes at most 1
 constexpr double kGainMin = 0.4;
 
-// TriadReadings contains the readings of a gyro or accelerometer with their true times, without repetitions.
 struct TriadReadings {
   std::vector<double> time_s;
   std::vector<Vector3d> value;
@@ -70,8 +69,6 @@ struct RotationSample {
   Matrix3d jacobian_lever;  ///< [alpha]x + [w]x [w]x
 };
 
-// Interpolates the specific force at `time_s` by a cubic through four readings. Sets `from` to the index of the last
-// reading before `time_s`.
 bool force_at(const TriadReadings& force, double time_s, std::size_t& from, Vector3d& out) {
   while (from + 2 < force.size() && force.time_s[from + 1] <= time_s) ++from;
   if (from < 1 || from + 2 >= force.size() || force.time_s[from] > time_s) return false;
@@ -92,7 +89,6 @@ std::vector<RotationSample> rotation_samples(const TriadReadings& gyro) {
   for (std::size_t k = 1; k + 1 < gyro.size() && out.size() < kSamplesMax; ++k) {
     const Vector3d &before = gyro.value[k - 1], &w = gyro.value[k], &after = gyro.value[k + 1];
     if (w.norm() < kRateMin_rad_s || gyro.clipped[k - 1] || gyro.clipped[k] || gyro.clipped[k + 1]) continue;
-    // Angular acceleration at the middle reading: slope of a parabola through three readings.
     const double left = gyro.time_s[k] - gyro.time_s[k - 1], right = gyro.time_s[k + 1] - gyro.time_s[k];
     const Vector3d alpha = (left / right * (after - w) + right / left * (w - before)) / (left + right);
     out.push_back({gyro.time_s[k], so3::hat(alpha) + so3::hat(w) * so3::hat(w)});
@@ -100,8 +96,7 @@ std::vector<RotationSample> rotation_samples(const TriadReadings& gyro) {
   return out;
 }
 
-// Returns the robust cost of the flight residuals for one delay, minimised over lever arm and bias: rate_smoother.md
-// (R10).
+// Returns the robust cost of the flight residuals, minimised over lever arm and bias: rate_smoother.md (R10).
 double cost(const TriadReadings& accel, std::span<const RotationSample> instants, const Vector3d& lever_arm_m,
             double delay_s) {
   Unknown prior, at, information;
@@ -134,8 +129,7 @@ double cost(const TriadReadings& accel, std::span<const RotationSample> instants
   return sum;
 }
 
-// ForceIntegral integrates the norm of the specific force over time, from the first reading. The norm is linear between
-// readings, and constant after the last reading.
+// The norm of the specific force is assumed linear between readings and constant after the last reading.
 class ForceIntegral {
  public:
   explicit ForceIntegral(const TriadReadings& force)
@@ -145,7 +139,6 @@ class ForceIntegral {
       if (k > 0) sum_[k] = sum_[k - 1] + 0.5 * (norm_[k] + norm_[k - 1]) * (time_s_[k] - time_s_[k - 1]);
     }
   }
-  // `from` is set to the index of the last reading before `time_s`, as in force_at().
   double to(double time_s, std::size_t& from) const {
     if (time_s <= time_s_.front()) return norm_.front() * (time_s - time_s_.front());
     if (time_s >= time_s_.back()) return sum_.back() + norm_.back() * (time_s - time_s_.back());
@@ -160,8 +153,7 @@ class ForceIntegral {
   std::vector<double> norm_, sum_;
 };
 
-// Estimates the accelerometer's delay from impacts: rate_smoother.md (R45). Sets `sigma_s` to 0 if there are too few
-// impacts.
+// See rate_smoother.md (R45).
 TriadDelay struck(const TriadReadings& gyro, const TriadReadings& accel, double period_s) {
   if (accel.size() < 4) return {};
   const ForceIntegral force(accel);
@@ -186,7 +178,6 @@ TriadDelay struck(const TriadReadings& gyro, const TriadReadings& accel, double 
   return sums.estimate_delay(period_s, std::max(mean_period(gyro), mean_period(accel)));
 }
 
-// Estimates the accelerometer's delay from flight. Returns 0 if there is too little flight.
 double delay_from_flight_s(const TriadReadings& gyro, const TriadReadings& accel, const Vector3d& lever_arm_m,
                            double period_s) {
   const std::vector<RotationSample> turning = rotation_samples(gyro);

@@ -9,8 +9,7 @@ namespace tumble {
 
 namespace {
 
-// Returns phi(z) / Phi(z), the ratio of the normal density to the normal distribution function. Below z = -8, where phi
-// and Phi may underflow, the result is an asymptotic series.
+// Returns phi(z) / Phi(z), by an asymptotic series below z = -8, where phi and Phi may underflow.
 double inverse_mills_ratio(double z) {
   if (z < -8.0) return -z / (1.0 - 1.0 / (z * z) + 3.0 / (z * z * z * z));
   const double density = std::exp(-0.5 * z * z) * std::numbers::inv_sqrtpi / std::numbers::sqrt2;
@@ -19,7 +18,7 @@ double inverse_mills_ratio(double z) {
 
 }  // namespace
 
-// Computes mean and variance of a normal variable with a soft lower bound: rate_smoother.md (R23), (R24).
+// See rate_smoother.md (R23), (R24).
 NormalMoments truncated_below(const NormalMoments& from, double bound, double bound_variance) {
   const double spread2 = from.variance + bound_variance, spread = std::sqrt(spread2);
   const double z = (from.mean - bound) / spread, r = inverse_mills_ratio(z);
@@ -27,8 +26,7 @@ NormalMoments truncated_below(const NormalMoments& from, double bound, double bo
           from.variance - from.variance * from.variance * r * (z + r) / spread2};
 }
 
-// Updates the Gaussian factor (site) that approximates a lower bound: rate_smoother.md (R22), (R25). The cavity is the
-// marginal distribution without the old Gaussian factor.
+// See rate_smoother.md (R22), (R25).
 GaussianSite refined_bound(const NormalMoments& marginal, const GaussianSite& now, double bound, double bound_variance,
                            double variance_max, double share) {
   const double precision = std::max(1.0 / marginal.variance - now.precision, 1.0 / variance_max);

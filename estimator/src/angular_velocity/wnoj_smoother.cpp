@@ -11,25 +11,22 @@ namespace {
 constexpr double kVarianceMin = 1e-18;
 constexpr double kVarianceMax = 1e18;
 
-// EliminatedKnot is the equation of one axis of sample k after elimination: R x_k + S x_{k+1} = z, saave.md (S6). R is
-// upper triangular, and z has noise of unit variance. The state x is (rate, acceleration * time_scale). The time scale
-// gives both components similar magnitudes at any sample rate.
+// Represents the equation R x_k + S x_{k+1} = z of one axis: saave.md (S6). The state x is (rate, acceleration *
+// time_scale), R is upper triangular, and z has noise of unit variance.
 struct EliminatedKnot {
   Eigen::Matrix2d R, S;
   Eigen::Vector2d z;
 };
 
-// Carried is the equation R x = z for the state x of the current sample, from all earlier samples. R is upper
-// triangular.
+// Represents the equation R x = z with upper triangular R for the state x of the current sample.
 struct Carried {
   Eigen::Matrix2d R = Eigen::Matrix2d::Zero();
   Eigen::Vector2d z = Eigen::Vector2d::Zero();
 };
 
-// Columns 0 and 1: sample k; columns 2 and 3: sample k+1; column 4: right-hand side.
+// columns 0 and 1: sample k; columns 2 and 3: sample k+1; column 4: right-hand side
 using Stack = Eigen::Matrix<double, 5, 5>;
 
-// Triangularises the first four columns in place by Householder reflections.
 void triangularise(Stack& a) {
   for (int c = 0; c < 4; ++c) {
     const int n = 5 - c;
@@ -48,8 +45,7 @@ void triangularise(Stack& a) {
 
 EliminatedKnot eliminate(Carried& carried, double rate, double deviation, double dt_s, double psd,
                          double time_scale_s) {
-  // The scaled process noise is Q = L L' with lower triangular L. The vector L^-1 (F x_k - x_{k+1}) is therefore white
-  // noise of unit variance: saave.md (S5).
+  // See saave.md (S5).
   const double ratio = dt_s / time_scale_s;
   const double unit = std::sqrt(psd * dt_s) * dt_s;
   const double l11 = unit / std::sqrt(3.0);
@@ -120,8 +116,7 @@ void smooth_axis(std::span<const WnojSmoother::Measurement> measurements, int ax
   }
   measure(carried, measurements.back().rate_rad_s[axis], std::sqrt(measurements.back().variance_rad2_s2[axis]));
 
-  // The back-substitution computes x_k = R^-1 (z - S x_{k+1}), with covariance R^-1 (1 + S P S') R^-T: saave.md (S7).
-  // The covariance is a sum of positive terms, so no digits are lost by cancellation.
+  // See saave.md (S7).
   Eigen::Matrix2d R_inv = carried.R.triangularView<Eigen::Upper>().solve(Eigen::Matrix2d::Identity());
   Eigen::Vector2d x = R_inv * carried.z;
   Eigen::Matrix2d P = R_inv * R_inv.transpose();

@@ -25,8 +25,7 @@ ForceErrors::ForceErrors(const Params& p) : params_(p) {
   require_within("gate_deviations", p.gate_sigmas, 1e-12, 1e3);
 }
 
-/// Adds the force differences between the IMUs, and their derivatives with respect to the accelerometer errors, to
-/// averages: imu_merge.md (I10), (I11).
+/// See imu_merge.md (I10), (I11).
 void ForceErrors::calibrate(std::span<const Eigen::Vector3d> forces, const Eigen::Vector3d& rate,
                             const Eigen::Vector3d& acceleration, double dt_s, State& state) const {
   const auto count = static_cast<std::size_t>(params_.count);
@@ -58,7 +57,7 @@ void ForceErrors::calibrate(std::span<const Eigen::Vector3d> forces, const Eigen
   if (state.span_s >= kSpan_s - 0.5 * dt_s) update(state);
 }
 
-/// Updates the estimated errors of the accelerometers with the averaged force differences: imu_merge.md (I11).
+/// See imu_merge.md (I11).
 void ForceErrors::update(State& state) const {
   const double share = 1.0 / params_.count;
   const double samples = state.samples;
@@ -99,7 +98,7 @@ void ForceErrors::update(State& state) const {
   state.span_s = 0.0;
 }
 
-/// Returns the specific force of IMU k, corrected by the estimated accelerometer errors: imu_merge.md (I13).
+/// See imu_merge.md (I13).
 Eigen::Vector3d ForceErrors::corrected(int k, const Eigen::Vector3d& force, const State& state) {
   if (!state.started) return force;
   const auto own = state.x.segment<kPerUnit>(kPerUnit * k);

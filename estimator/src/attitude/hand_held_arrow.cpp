@@ -3,7 +3,6 @@
 
 namespace tumble {
 
-// All files for hand-held motion share this explicit instantiation of ArrowSystem.
 template struct ArrowSystem<hand_held::kBlockSize, hand_held::kBorderSize>;
 
 }  // namespace tumble

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// hand_held_jerk.cpp estimates the density of the angular jerk from a gyro's readings.
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
@@ -14,7 +13,6 @@ using Eigen::Vector3d;
 namespace {
 
 // White jerk of density q gives the second difference of readings with period P the variance `kSecondDifference` q P^3.
-// A second difference covers the time kJerkSpan_periods * P.
 constexpr double kSecondDifference = 11.0 / 20.0, kJerkSpan_periods = 1.5;
 
 bool is_free(const GyroReadings& rates, std::size_t k, Eigen::Index axis) {
@@ -28,9 +26,7 @@ struct Reach {
         last(std::min(nodes, static_cast<std::size_t>(std::max(0.0, std::floor(to_s / node_s) + 1.0)))) {}
 };
 
-// Estimates the jerk of each sensing element from three consecutive unsaturated readings: carried.md (C24). Each
-// reading is the mean rate over a window P. White jerk of density q gives the second difference of the readings the
-// variance 11/20 q P^3. The noise of the readings adds six times the noise variance.
+// See carried.md (C24).
 void add_curvature_densities(const GyroReadings& rates, const Eigen::Matrix3d& rows, double noise_rad_s, double node_s,
                              std::vector<double>& densities) {
   const double period_s = rates.windows.period_s, reach_s = kJerkSpan_periods * std::max(period_s, node_s);
@@ -55,8 +51,7 @@ void add_curvature_densities(const GyroReadings& rates, const Eigen::Matrix3d& r
     densities[i] = counts[i] > 0.0 ? std::max(0.0, densities[i] / counts[i]) : 0.0;
 }
 
-// Computes the slope between the consecutive readings k and k + 1 of sensing element `axis`, and the time of the slope.
-// Returns false if reading k or k + 1 is saturated, or if a reading is missing between k and k + 1.
+// Returns false if reading k or k + 1 is saturated, or if a reading is missing between them.
 bool slope_of(const GyroReadings& rates, const Eigen::Matrix3d& rows, std::size_t k, Eigen::Index axis, double& slope,
               double& at_s) {
   if (!is_free(rates, k, axis) || !is_free(rates, k + 1, axis)) return false;
@@ -68,9 +63,7 @@ bool slope_of(const GyroReadings& rates, const Eigen::Matrix3d& rows, std::size_
   return true;
 }
 
-// Estimates the jerk of a sensing element across a clipped segment: carried.md (C25). White jerk of density q changes
-// the angular acceleration within the time T by q T (mean square). A motion that reverses above the saturation level
-// has a larger jerk than the unsaturated readings before and after.
+// See carried.md (C25).
 void add_clipped_slope_densities(const GyroReadings& rates, const Eigen::Matrix3d& rows, double noise_rad_s,
                                  double node_s, std::vector<double>& densities) {
   const std::size_t count = rates.samples.size();

@@ -16,16 +16,15 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using so3::hat;
 
-// Derivative of a residual with respect to rate and angular acceleration.
+// derivative of a residual with respect to rate and angular acceleration
 using GyroRow = Eigen::Matrix<double, 1, 6>;
-// Derivative of a residual with respect to the calibration constants.
+// derivative of a residual with respect to the calibration constants
 using BorderRow = Eigen::Matrix<double, 1, kBorderSize>;
-// Derivative of the force residual with respect to attitude, rate, angular acceleration and hand acceleration.
+// derivative of the force residual with respect to attitude, rate, angular acceleration and hand acceleration
 using ForceState = Eigen::Matrix<double, 3, 12>;
 using ForceBorder = Eigen::Matrix<double, 3, kBorderSize>;
 
-// Returns phi(u)/Phi(u), the slope of log Phi(u) for the normal distribution: carried.md (C14). Below u = -12, where
-// phi and Phi may underflow, the result is an asymptotic series.
+// Returns phi(u)/Phi(u), see carried.md (C14), by an asymptotic series below u = -12, where phi and Phi may underflow.
 double hazard(double u) {
   if (u < -12.0) return -u - 1.0 / u * (1.0 - 2.0 / (u * u));
   const double density = std::exp(-0.5 * u * u) / std::sqrt(2.0 * std::numbers::pi);
@@ -47,8 +46,6 @@ void add_gyro_row(const GyroRow& state, const BorderRow& border, double weight, 
   corner.gradient.noalias() -= slope * border.transpose();
 }
 
-// GyroRows contains derivatives of one sensing element: of its rate with respect to a node's state (`value`) and the
-// constants (`border`), and of its angular acceleration with respect to the state (`slope`).
 struct GyroRows {
   GyroRow value = GyroRow::Zero(), slope = GyroRow::Zero();
   BorderRow border = BorderRow::Zero();
@@ -67,8 +64,7 @@ GyroRows predict_gyro(const Eigen::RowVector3d& m, const Node& node, const Const
   return rows;
 }
 
-// Sums |estimated rate - reading| over the clipped and unusable sensing elements, without element `except`. For a
-// clipped sensing element, this difference is the saturation deficit.
+// Sums the saturation deficits |estimated rate - reading| of the clipped and unusable elements other than `except`.
 double deficit(const NodeReadings& readings, const std::array<GyroRows, 3>& rows, int except) {
   double sum = 0.0;
   for (int i = 0; i < 3; ++i) {
@@ -82,8 +78,8 @@ double deficit(const NodeReadings& readings, const std::array<GyroRows, 3>& rows
   return sum;
 }
 
-// Adds the unclipped readings of a sensing element near a node. The unclipped readings form two independent
-// measurements, the rate at the mean time and the slope of the rate: carried.md (C13).
+// Unclipped readings form two independent measurements, the rate at the mean time and the slope of the rate: carried.md
+// (C13).
 double add_unclipped_readings(const ElementSums& e, const GyroRows& rows, double information, System::Block& block,
                               System::Corner& corner) {
   const double mean_t = e.time_sum_s / e.count;
@@ -102,7 +98,7 @@ double add_unclipped_readings(const ElementSums& e, const GyroRows& rows, double
   return cost;
 }
 
-// Adds a saturated reading as lower bound of the rate: carried.md (C14).
+// See carried.md (C14).
 double add_bound(const ElementSums& e, const GyroRows& rows, double sigma, double share, System::Block& block,
                  System::Corner& corner) {
   const GyroRow row = rows.value + e.clipped_time_s * rows.slope;
@@ -112,16 +108,13 @@ double add_bound(const ElementSums& e, const GyroRows& rows, double sigma, doubl
   return minus_two_log_phi(u);
 }
 
-// Adds a prior with mean zero and information (inverse variance) `w` for three states. `i` is the index of the first
-// state; `value` contains the current states.
+// Adds a prior with mean zero and information (inverse variance) `w` for three states.
 double add_zero_prior(const Vector3d& value, double w, int i, System::Block& block) {
   block.diagonal.diagonal().segment<3>(i).array() += w;
   block.gradient.segment<3>(i) -= w * value;
   return w * value.squaredNorm();
 }
 
-// Adds the motion model of `N` states per axis between two consecutive nodes, with equal information for each axis.
-// `first` is the index of the first state.
 template <int N>
 double add_motion_factor(const Eigen::Matrix<double, 2 * N, 2 * N>& information, double scale, int first,
                          const Eigen::Matrix<double, 3, 2 * N>& values, System::Block& block, System::Block& next) {
@@ -142,7 +135,7 @@ double add_motion_factor(const Eigen::Matrix<double, 2 * N, 2 * N>& information,
 
 }  // namespace
 
-// Adds a solver step to the motion state of the node: carried.md (C1).
+// See carried.md (C1).
 void Node::move(const System::StateVector& step) {
   q_WI = (q_WI * so3::exp(step.segment<3>(kPhi))).normalized();
   w_WI_I_rad_s += step.segment<3>(kRate);
@@ -169,8 +162,7 @@ double add_gyro(const NodeReadings& readings, const Matrix3d& rows, const Readin
     const ElementSums& e = readings.gyro[static_cast<std::size_t>(i)];
     const GyroRows& element = elements[static_cast<std::size_t>(i)];
     if (e.count > 0.0) {
-      // All readings of a node share the tilt error of the saturation plane, so averaging the readings does not reduce
-      // the tilt error.
+      // All readings of a node share the tilt error of the saturation plane, so averaging does not reduce this error.
       const double tilt = noise.deficit_error_ratio * deficit(readings, elements, i);
       cost += add_unclipped_readings(
           e, element,
@@ -185,7 +177,7 @@ double add_gyro(const NodeReadings& readings, const Matrix3d& rows, const Readin
   return cost;
 }
 
-// Adds the residual of the specific force: carried.md (C16).
+// See carried.md (C16).
 double add_force(const NodeReadings& readings, const Vector3d& g_W_m_s2, const ReadingNoise& noise, const Node& node,
                  const Constants& constants, System::Block& block, System::Corner& corner) {
   if (!(readings.force_count > 0.0)) return 0.0;
@@ -241,7 +233,7 @@ double add_rest(const ReadingNoise& noise, const Node& node, System::Block& bloc
          add_zero_prior(node.a_W_m_s2, 1.0 / (noise.rest_m_s2 * noise.rest_m_s2), kHandAcceleration, block);
 }
 
-// Returns the rotation between two nodes as a rotation vector: carried.md (C3).
+// See carried.md (C3).
 Vector3d turned(const Node& from, const Node& to, double h) {
   const Vector3d& w0 = from.w_WI_I_rad_s;
   const Vector3d& w1 = to.w_WI_I_rad_s;
@@ -252,17 +244,16 @@ Vector3d turned(const Node& from, const Node& to, double h) {
 Motion::Motion(const Params& params) : params_(params) {
   const double h = params.step_s;
   const double q = params.jerk_rad_s3_sqrts * params.jerk_rad_s3_sqrts;
-  // Covariance that white jerk adds to rate and angular acceleration between two nodes: carried.md (C2).
+  // See carried.md (C2).
   Eigen::Matrix2d Q;
   Q << h * h * h / 3.0, h * h / 2.0, h * h / 2.0, h;
   Eigen::Matrix<double, 2, 4> J;
   J << -1.0, -h, 1.0, 0.0, 0.0, -1.0, 0.0, 1.0;
   jerk_ = J.transpose() * (q * Q).inverse() * J;
-  // The rotation angle between two nodes has this variance even if rate and angular acceleration of both nodes are
-  // known: carried.md (C4).
+  // variance of the rotation between two nodes with known rate and angular acceleration: carried.md (C4)
   phi_variance_ = q * std::pow(h, 5) / 720.0 + 1e-12;
 
-  // White noise drives the acceleration of the hand-held point of the body: carried.md (C6), (C7), (C8).
+  // See carried.md (C6), (C7), (C8).
   const double decay = std::exp(-h / params.hand_tau_s);
   const double density = (1.0 - decay * decay) * params.hand_sigma_m_s2 * params.hand_sigma_m_s2 / h;
   Eigen::Matrix<double, 1, 6> row;
@@ -275,7 +266,7 @@ Motion::Motion(const Params& params) : params_(params) {
   kinematics_ += row.transpose() * row / (density * std::pow(h, 5) / 120.0 + 1e-10);
 }
 
-// Adds the attitude residual between two consecutive nodes: carried.md (C4), (C5).
+// See carried.md (C4), (C5).
 double Motion::add_attitude(const Node& from, const Node& to, double jerk, System::Block& block,
                             System::Block& next) const {
   const double h = params_.step_s;
@@ -302,7 +293,7 @@ double Motion::add_attitude(const Node& from, const Node& to, double jerk, Syste
   return w * error.squaredNorm();
 }
 
-// Adds the motion model between two consecutive nodes: carried.md (C2), (C4), (C6), (C7), (C8).
+// See carried.md (C2), (C4), (C6), (C7), (C8).
 double Motion::add_step(const Node& from, const Node& to, double hand, System::Block& block, System::Block& next,
                         double jerk) const {
   double cost = add_attitude(from, to, jerk, block, next);
@@ -316,7 +307,7 @@ double Motion::add_step(const Node& from, const Node& to, double hand, System::B
   return cost;
 }
 
-// Adds the weak priors that keep velocity and position of the hand-held point close to zero: carried.md (C9).
+// See carried.md (C9).
 double Motion::add_bounds(const Node& node, System::Block& block) const {
   const double velocity = params_.velocity_m_s * params_.velocity_m_s * params_.velocity_tau_s;
   const double position = params_.position_m * params_.position_m * params_.position_tau_s;

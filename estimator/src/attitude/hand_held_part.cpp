@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// hand_held_part.cpp solves for a part of the nodes of a hand-held motion. All nodes outside of the part act as a prior
-// on its first and last node.
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
@@ -13,7 +11,7 @@ namespace tumble::hand_held {
 
 namespace {
 
-// The iteration has converged if the cost changes by less than kCostChange; 0.2 corresponds to odds of 1.1.
+// A change of the cost by 0.2 corresponds to odds of 1.1.
 constexpr double kCostChange = 0.2;
 constexpr int kStepsMax = 30;  // maximum number of iterations
 
@@ -54,11 +52,9 @@ Problem::Problem(const Problem& whole, const Part& part)
             whole.hand_.begin() + static_cast<std::ptrdiff_t>(part.last + 1)),
       blocks_(nodes_.size()) {}
 
-// Computes the priors on the first and last node of each part by Schur complements, which eliminate all nodes outside
-// the part: carried.md (C17).
+// See carried.md (C17).
 bool Problem::condense_rest(std::span<Part> parts) const {
   System::Corner unused;
-  // The forward pass eliminates all earlier nodes, which leaves a prior on node i.
   System::Block here, next;
   motion_.add_initial_prior(nodes_[0], here);
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
@@ -72,7 +68,6 @@ bool Problem::condense_rest(std::span<Part> parts) const {
     here = next;
     here.border.setZero();
   }
-  // The backward pass eliminates all later nodes, which leaves a prior on node i.
   here = {};
   for (std::size_t i = nodes_.size(); i-- > 0;) {
     for (Part& part : parts)

@@ -7,8 +7,7 @@ namespace tumble {
 
 namespace {
 
-/// Returns the sensing directions of the gyro. An element without a known saturation plane is assumed to be parallel to
-/// its output axis.
+/// A sensing element without a known saturation plane is assumed to be parallel to its output axis.
 Eigen::Matrix3d rows_of(const RailPlanes& planes) {
   Eigen::Matrix3d out = Eigen::Matrix3d::Identity();
   for (int j = 0; j < 3; ++j) {
@@ -44,13 +43,11 @@ Status HandHeldPipeline::push(const ImuSample& sample, State& state, std::option
   if (!status.ok()) return status;
   state.repeat_state = repeat_state;
   state.levels_changed = clipping_finder_.observe(sample, state.rails);
-  // classify() updates the hysteresis of the clipped axes.
   clipping_finder_.axis_aligned_rails().classify(sample, state.rails.known.axis_aligned_rails);
   return status;
 }
 
-/// Classifies the newest sample of the window, given the sample `next` after it. If the saturation levels have changed,
-/// the function classifies all samples of the window again.
+/// New saturation levels change the classification of all samples of the window.
 void HandHeldPipeline::classify_window(const ImuSample& next, State& state) const {
   const std::vector<HandHeldStream::Reading>& window = state.stream.readings;
   RailDetector::State& axis_aligned_rails = state.rails.known.axis_aligned_rails;

@@ -11,11 +11,10 @@ using Eigen::Vector3d;
 
 namespace {
 
-// largest change of an attitude in one step, within which the linearisation is valid
+// largest change of an attitude for which the linearisation is valid
 constexpr double kRotationMax_rad = 0.8;
 constexpr double kConvergenceTolerance = 1e-3;  // attitudes [rad]; ten times for rates [rad/s]
 constexpr int kFirstAdaptIteration = 3;         // iterations before the hand's acceleration density is estimated
-// The estimated density remains constant after this many iterations, which ensures convergence.
 constexpr int kLastAdaptIteration = 8;
 constexpr double kHandAveraging_s = 0.25;  // averaging time of the hand's acceleration
 constexpr int kHalvings = 4;               // maximum number of times that a step is halved if the cost increases
@@ -52,9 +51,8 @@ ReadingNoise reading_noise(const HandHeldSmoother::Params& p, double period_s) {
 
 namespace {
 
-// Returns the reading noise for covariances. Lower bounds of the rate do not reduce a covariance. The mean rate over a
-// window P differs from the rate at the window's centre. For white jerk of density q, the variance of the difference is
-// q P^3/320: carried.md (C26).
+// Lower bounds of the rate do not reduce a covariance. The mean rate over a window P differs from the rate at the
+// window's centre with variance q P^3/320 (jerk density q): carried.md (C26).
 ReadingNoise stated_noise(const HandHeldSmoother::Params& params, ReadingNoise noise, double period_s) {
   noise.bound = 0.0;
   noise.window_rate_sigma_rad_s = params.jerk_rad_s3_sqrts * std::sqrt(period_s * period_s * period_s / 320.0);
@@ -89,7 +87,7 @@ double add_node(const NodeReadings& readings, const Eigen::Matrix3d& rows, const
   return cost;
 }
 
-// Adds the prior of the calibration constants (biases and lever arm): carried.md (C1).
+// See carried.md (C1).
 double add_constants_prior(const HandHeldSmoother::Params& params, const Constants& constants, System::Corner& corner) {
   double cost = 0.0;
   const auto prior = [&](const Vector3d& value, double sigma, int at) {
@@ -131,7 +129,7 @@ double Problem::linearise() {
   return cost;
 }
 
-// Eliminates the nodes from the normal equations and solves for the calibration constants: carried.md (C17), (C18).
+// See carried.md (C17), (C18).
 bool Problem::eliminate(System::BorderVector& step) {
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
     System::Block* const next = i + 1 < blocks_.size() ? &blocks_[i + 1] : nullptr;
@@ -140,10 +138,9 @@ bool Problem::eliminate(System::BorderVector& step) {
   return System::solve_corner(corner_, step, constants_covariance_);
 }
 
-// Makes one Gauss-Newton step: carried.md (C19).
+// See carried.md (C19).
 bool Problem::step(double& largest) {
   if (!eliminate(border_step_)) return false;
-  // The steps replace the gradients in the memory of the solver.
   steps_.resize(blocks_.size());
   double turn = 0.0;
   largest = 0.0;
@@ -167,8 +164,7 @@ void Problem::go(double share) {
   constants_.move(share * border_step_);
 }
 
-// Adapts the process noise of the hand's acceleration around each node to the estimated acceleration there: carried.md
-// (C10).
+// See carried.md (C10).
 void Problem::adapt_process_noise() {
   const std::size_t count = nodes_.size();
   const double assumed = 3.0 * params_.hand_sigma_m_s2 * params_.hand_sigma_m_s2;
@@ -191,7 +187,7 @@ void Problem::restore(Answer answer) {
   covariances_ = std::move(answer.covariances);
 }
 
-// Iterates Gauss-Newton steps until convergence: carried.md (C19), (C20).
+// See carried.md (C19), (C20).
 Status Problem::solve(HandHeldSmoother::Report& report) {
   std::optional<Iterate> before;
   report.converged = false;
@@ -211,7 +207,6 @@ Status Problem::solve(HandHeldSmoother::Report& report) {
     if (report.converged && k > kFirstAdaptIteration) break;
   }
   if (before && !report.converged) {
-    // The last Gauss-Newton step may have increased the cost.
     report.cost = linearise();
     (void)halve_step_until_decrease(*before, report.cost);
   }
@@ -220,8 +215,6 @@ Status Problem::solve(HandHeldSmoother::Report& report) {
   return {};
 }
 
-// Halves the last Gauss-Newton step if it increased the cost. If no shorter step decreases the cost, the function
-// restores the nodes, linearises again, and returns false.
 bool Problem::halve_step_until_decrease(const Iterate& before, double& cost) {
   const auto cost_decreases = [&] { return cost < before.cost + kCostRiseMax; };
   for (int k = 0; k < kHalvings && !cost_decreases(); ++k) {
@@ -237,8 +230,7 @@ bool Problem::halve_step_until_decrease(const Iterate& before, double& cost) {
   return false;
 }
 
-// Computes the covariances of the nodes, carried.md (C21), (C22), with the inflated jerk density (C23). Lower bounds of
-// the rate do not reduce the covariances.
+// See carried.md (C21), (C22), (C23).
 Status Problem::covariances(HandHeldSmoother::Report& report) {
   for (std::size_t i = 0; i < jerk_.size(); ++i)
     jerk_[i] = std::max(params_.expert.jerk_inflation, measured_jerk_[i] / params_.jerk_rad_s3_sqrts);
@@ -262,9 +254,8 @@ Status Problem::covariances(HandHeldSmoother::Report& report) {
   return {};
 }
 
-// Compares the hand's mean acceleration over windows with its motion model: carried.md (C30). The model is a random
-// process with standard deviation s and correlation time tau. The mean of the random process over a window T has the
-// variance s^2 2 tau/T (1 - tau/T (1 - exp(-T/tau))).
+// See carried.md (C30). A random process with standard deviation s and correlation time tau has a mean over a window T
+// with the variance s^2 2 tau/T (1 - tau/T (1 - exp(-T/tau))).
 double Problem::hand_acceleration_ratio() const {
   const auto window = static_cast<std::size_t>(std::max(1.0, kHandAveraging_s / params_.expert.node_s));
   const double span = static_cast<double>(window) * params_.expert.node_s,

@@ -10,11 +10,9 @@
 
 namespace tumble::hand_held {
 
-/// Returns the parameters of the motion model. `jerk` multiplies the root density of the angular jerk.
+/// `jerk` is a factor on the root density of the angular jerk.
 Motion::Params motion_params(const HandHeldSmoother::Params& params, double jerk = 1.0);
 ReadingNoise reading_noise(const HandHeldSmoother::Params& params, double period_s);
-/// Adds the measurements of one node to its block: gyro, specific force, weak priors of velocity and position, and
-/// rest.
 double add_node(const NodeReadings& readings, const Eigen::Matrix3d& rows, const ReadingNoise& noise,
                 const Eigen::Vector3d& g_W_m_s2, const Motion& motion, const Node& node, const Constants& constants,
                 System::Block& block, System::Corner& corner);
@@ -22,8 +20,7 @@ double add_constants_prior(const HandHeldSmoother::Params& params, const Constan
 /// Returns the difference between the states of two nodes, as a step for Node::move.
 System::StateVector moved(const Node& from, const Node& to);
 
-/// Message is a prior on a node that summarises all earlier or all later nodes. The prior is a quadratic function of
-/// the difference from the state `about`.
+/// Message is a prior on a node that summarises all earlier or all later nodes, relative to the state `about`.
 struct Message {
   Node about;
   System::StateMatrix information = System::StateMatrix::Zero();
@@ -31,8 +28,7 @@ struct Message {
   double add(const Node& node, System::Block& block) const;
 };
 
-/// Part is the range of nodes [first, last] of a problem. `before` and `after` summarise the other nodes as priors on
-/// both ends, for fixed constants.
+/// Part is the range of nodes [first, last] of a problem, with all other nodes summarised as priors on its ends.
 struct Part {
   std::size_t first = 0, last = 0;
   Message before = {}, after = {};
@@ -42,16 +38,12 @@ class Problem {
  public:
   Problem(const HandHeldSmoother::Params& params, const Eigen::Matrix3d& rows, const NodeData& collected,
           std::vector<Node> nodes);
-  /// Constructs the sub-problem of `part`; condense_rest() must have set `part.before` and `part.after`. The
-  /// sub-problem keeps the constants and the density of the hand's acceleration of `whole`.
+  /// condense_rest() must have set `part.before` and `part.after`.
   Problem(const Problem& whole, const Part& part);
 
-  /// Estimates all nodes and constants by Gauss-Newton iteration. Returns `diverged` if the normal equations are not
-  /// positive definite.
+  /// Returns `diverged` if the normal equations are not positive definite.
   Status solve(HandHeldSmoother::Report& report);
-  /// Computes the covariances of all nodes at the solution.
   Status covariances(HandHeldSmoother::Report& report);
-  /// Answer is a copy of nodes, constants and covariances, for restore().
   struct Answer {
     std::vector<Node> nodes;
     Constants constants;
@@ -61,15 +53,12 @@ class Problem {
   };
   Answer answer() const { return {nodes_, constants_, constants_covariance_, hand_, covariances_}; }
   void restore(Answer answer);
-  /// Computes the priors on both ends of each part from all other nodes, by one elimination from each end of the
-  /// recording. Returns false if the normal equations are not positive definite.
+  /// Returns false if the normal equations are not positive definite.
   bool condense_rest(std::span<Part> parts) const;
-  /// Solves a sub-problem by Gauss-Newton iteration. Returns the cost at the solution, or infinity if the iteration
-  /// does not converge.
+  /// Returns the cost at the solution, or infinity without convergence.
   double converge();
 
   const Eigen::Matrix3d& rows() const { return rows_; }
-  /// Returns the expected gyro reading at a node: estimated rate plus bias.
   Eigen::Vector3d gyro_rad_s(std::size_t node) const { return nodes_[node].w_WI_I_rad_s + constants_.gyro_bias_rad_s; }
   double rail_sigma_rad_s() const { return noise_.rail_rad_s; }
   double jerk_rad_s3_sqrts() const { return params_.jerk_rad_s3_sqrts; }
@@ -77,10 +66,9 @@ class Problem {
   const Eigen::Vector3d& gravity_W_m_s2() const { return g_W_m_s2_; }
   const NodeReadings& readings(std::size_t node) const { return readings_[node]; }
   std::span<const Node> nodes() const { return nodes_; }
-  /// Replaces the nodes from index `first` by `nodes`.
   void place(std::size_t first, std::span<const Node> nodes);
   void widen(std::size_t node, const Eigen::Matrix<double, 9, 9>& by) { covariances_[node] += by; }
-  /// Returns the joint covariance of attitude error (sensor axes), rate and angular acceleration.
+  /// joint covariance of attitude error (sensor axes), rate and angular acceleration
   const Eigen::Matrix<double, 9, 9>& covariance(std::size_t node) const { return covariances_[node]; }
 
  private:
@@ -88,7 +76,6 @@ class Problem {
   double add_node(std::size_t i, System::Block& block, System::Corner& corner) const;
   bool eliminate(System::BorderVector& step);
   bool step(double& largest);
-  /// Iterate contains the nodes and constants before a Gauss-Newton step.
   struct Iterate {
     std::vector<Node> nodes;
     Constants constants;

@@ -45,19 +45,15 @@ double since_s(std::span<const ImuSample> samples, std::size_t from, std::size_t
   return seconds(samples[to].time_ns - samples[from].time_ns);
 }
 
-// Equal readings are repetitions of a slow sensor if a regular clock predicts at least the fraction kMinClockAgreement
-// of the equal readings.
 constexpr double kMinClockAgreement = 0.9;
-// A reading may be partly saturated if its averaging window is longer than kLongWindow node intervals. In recordings of
-// pendulums, averaging windows of 20 ms were partly saturated. In recordings of hand-held wands, averaging windows of
-// 10 ms were not.
+// In recordings of pendulums, averaging windows of 20 ms were partly saturated; windows of 10 ms of hand-held wands
+// were not.
 constexpr double kLongWindow = 1.5;
 
 TimeNs nanoseconds(double s) {
   return static_cast<TimeNs>(std::llround(1e9 * s));
 }
 
-/// Returns the median time between samples, or `otherwise_s` for fewer than two samples.
 double median_step_or(std::span<const ImuSample> samples, double otherwise_s) {
   if (samples.size() < 2) return otherwise_s;
   std::vector<double> periods(samples.size() - 1);
@@ -91,8 +87,7 @@ void add_gyro_reading(double z, double t, int sign, ElementSums& e) {
   e.reading_time_sum += z * t;
 }
 
-/// Replaces the clipped segment [begin, end) of one sensing element by a cubic. `raw` contains all readings of the
-/// element.
+/// Replaces a clipped segment of one sensing element by a cubic.
 void fill_segment(std::span<const ImuSample> samples, const std::vector<double>& raw, std::size_t begin,
                   std::size_t end, int sign, std::vector<double>& filled) {
   if (begin < 2 || end + 1 >= raw.size()) return;
@@ -109,7 +104,6 @@ void fill_segment(std::span<const ImuSample> samples, const std::vector<double>&
   }
 }
 
-/// HiddenSegment is a range of samples in which a sensing element is at one saturation level or unusable.
 struct HiddenSegment {
   std::size_t end = 0;
   int sign = 0;
@@ -127,13 +121,12 @@ HiddenSegment hidden_segment(std::span<const ClipSigns> signs, std::size_t eleme
     if (sign == 0 || (sign != ClipSigns::kMissing && out.sign != 0 && sign != out.sign)) break;
     if (sign != ClipSigns::kMissing) out.sign = sign;
   }
-  // If all readings of a segment are unusable, the rate is assumed to be beyond the saturation level. The rate then has
-  // the sign of the last reading before the segment.
+  // If all readings of a segment are unusable, the rate is assumed to be beyond the saturation level.
   if (out.sign == 0) out.sign = raw[begin == 0 ? begin : begin - 1] < 0.0 ? -1 : 1;
   return out;
 }
 
-// Computes ends and centres of the averaging windows, which are `period_s` long even after a missing reading.
+// Averaging windows are `period_s` long even after a missing reading.
 Windows windows_of(std::span<const ImuSample> samples, TimeNs origin_ns, double period_s) {
   Windows out;
   out.period_s = period_s;
@@ -155,9 +148,8 @@ void place(double node_s, std::size_t nodes, Windows& windows) {
   }
 }
 
-// Corrects the window centres of a slow accelerometer, which averages over an unknown part of its period: carried.md
-// (C12). The corrected centre is the middle of its possible range. Returns the standard deviations of the forces due to
-// the possible range of the centre.
+// A slow accelerometer averages over an unknown part of its period: carried.md (C12). Returns the standard deviations
+// of the forces due to the possible range of the window's centre.
 std::vector<double> window_force_sigmas(TimedReadings& forces, double log_period_s) {
   const std::vector<ImuSample>& samples = forces.samples;
   std::vector<double> out(samples.size(), 0.0);
@@ -171,8 +163,7 @@ std::vector<double> window_force_sigmas(TimedReadings& forces, double log_period
   return out;
 }
 
-// Corrects unsaturated readings next to clipped readings, which may have been saturated for a part of their averaging
-// window: rails.md (R69) to (R73).
+// See rails.md (R69) to (R73).
 void correct_partial_saturation(double noise_rad_s, const Eigen::Matrix3d& rows, GyroReadings& rates) {
   const std::size_t count = rates.samples.size();
   const auto along = [&](std::size_t k, Eigen::Index j) {
@@ -198,8 +189,7 @@ void correct_partial_saturation(double noise_rad_s, const Eigen::Matrix3d& rows,
   for (std::size_t k = 0; k < count; ++k) rates.samples[k].angular_velocity_rad_s += inverse * lost[k];
 }
 
-// Replaces recovered rates, whose errors are correlated, by equivalent readings with independent errors: carried.md
-// (C15).
+// Recovered rates have correlated errors: carried.md (C15).
 void recovered_readings(const HandHeldSmoother::Params& params, const ClippedElements& clipped, GyroReadings& rates) {
   const double nodes = std::sqrt(2.0 * params.expert.readings.recovered_tau_s / params.expert.node_s);
   for (std::size_t k = 0; k < clipped.recovered_covariance_rad2_s2.size(); ++k) {
@@ -341,7 +331,6 @@ Status start_nodes(const HandHeldSmoother::Params& params, const Eigen::Matrix3d
     const double off = std::abs(windows.centre_s[k] - static_cast<double>(i) * params.expert.node_s);
     if (off < nearest[i]) nearest[i] = off, nodes[i].q_WI = state.q_WI;
   }
-  // A node without readings is between two nodes with readings, or after the last one.
   std::size_t before = 0;
   for (std::size_t i = 1; i < count; ++i) {
     if (!(readings[i] > 0.0)) continue;

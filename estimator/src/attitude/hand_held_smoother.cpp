@@ -37,7 +37,6 @@ Status check(const HandHeldSmoother::Params& params, std::span<const ImuSample> 
   return check_samples(samples, params.expert.gap_max_s);
 }
 
-// Returns the sensing elements that are saturated in the whole averaging window of a reading or in a part of it.
 std::uint8_t clipped_axes(const hand_held::GyroReadings& rates, std::size_t k) {
   const std::size_t reading = rates.of_sample[k];
   std::uint8_t axes = 0;
@@ -54,9 +53,8 @@ RateSource source(const RateState& rate, double recovered_sigma) {
   return variance < recovered_sigma * recovered_sigma ? RateSource::recovered_contact : RateSource::bounded_only;
 }
 
-/// Adds the effect of the gyro's scale error to the attitude covariance: carried.md (C27). The attitude error grows
-/// with the rotation since the last rest, or until the next rest if this rotation is smaller. The scale error matters
-/// only for long rotations in one direction, which a hand cannot make.
+/// The gyro's scale error increases the attitude covariance in proportion to the rotation since the last rest:
+/// carried.md (C27).
 void widen_by_rotation(const HandHeldSmoother::Params& params, const hand_held::NodeData& collected,
                        const std::vector<RateState>& rates, std::vector<AttitudeState>& attitudes) {
   const double share = params.expert.readings.recovered_scale_sigma;
@@ -110,8 +108,8 @@ Status HandHeldSmoother::estimate(std::span<const ImuSample> samples, const Clip
     const double at = static_cast<double>(i) * params_.expert.node_s;
     const double centre = collected.samples.centre_s[k] - at, end = collected.samples.end_s[k] - at;
     rates[k].time_ns = attitudes[k].time_ns = samples[k].time_ns;
-    // A reading is the mean over its averaging window, so the reported rate is the rate at the window's centre. The
-    // reported attitude is the attitude at the time stamp of the reading.
+    // A reading is the mean rate over its averaging window, and therefore valid at the window's centre. The reported
+    // attitude is the attitude at the time stamp of the reading.
     rates[k].w_WI_I_rad_s = node.w_WI_I_rad_s + centre * node.angular_acceleration_rad_s2;
     rates[k].covariance_rad2_s2 = covariance.block<3, 3>(hand_held::kRate, hand_held::kRate);
     rates[k].clipped_axes = clipped_axes(collected.rates, k);

@@ -50,7 +50,7 @@ HandHeldStream::HandHeldStream(const Params& params)
   require_within("window_s", params.window_s, params.lag_s + 4.0 * params.body.expert.node_s, 20.0);
   nodes_max_ = static_cast<std::size_t>(std::lround(params.window_s / params.body.expert.node_s)) + 1;
   delay_ = static_cast<std::size_t>(std::lround(params.lag_s / params.period_s));
-  // The buffer has room for twice the nominal sample rate. At higher rates, the stream drops the oldest readings.
+  // At more than twice the nominal sample rate, the stream drops the oldest readings.
   readings_max_ = 2 * static_cast<std::size_t>(std::ceil(params.window_s / params.period_s)) + 4;
 }
 
@@ -99,8 +99,7 @@ Status HandHeldStream::push(const ImuSample& sample, const ClippedElements& know
   if (begun) extend(state);
   add(latest, state);
   if (begun) predict_newest(state);
-  // While the gyro is unsaturated, the predicted nodes are accurate. One optimisation step per kFreeNodes nodes then
-  // suffices for attitude and calibration constants.
+  // While the gyro is unsaturated, the predicted nodes are accurate, so fewer optimisation steps suffice.
   const bool due =
       begun && (latest.node % hand_held::kFreeNodes == 0 || latest.node < kFirstNodes || has_clipped_reading(state));
   const bool factorised = due && step(state);
@@ -118,7 +117,6 @@ void HandHeldStream::extend(State& state) const {
   state.window.emplace_back();
 }
 
-// Initialises the newest node from its prediction and its readings.
 void HandHeldStream::predict_newest(State& state) const {
   Knot& newest = state.window.back();
   if (state.window.size() == 1) {
@@ -128,7 +126,6 @@ void HandHeldStream::predict_newest(State& state) const {
   }
 }
 
-// Adds a sample to the window. After missing samples, the averaging window of the next reading has the usual length.
 void HandHeldStream::append(const ImuSample& sample, const RepeatDetector::State& repeated, State& state) const {
   Reading reading;
   reading.sample = sample;
@@ -150,7 +147,7 @@ void HandHeldStream::append(const ImuSample& sample, const RepeatDetector::State
   ++state.samples;
 }
 
-// Updates the clipped axes and the sensing directions. Returns whether a sample in the window has changed.
+// Returns whether a sample in the window has changed.
 bool HandHeldStream::reclassify(const ClippedElements& known, State& state) const {
   bool changed = state.rows != known.rows;
   state.rows = known.rows;
@@ -164,15 +161,14 @@ bool HandHeldStream::reclassify(const ClippedElements& known, State& state) cons
   return changed;
 }
 
-// Reassigns all readings of the window to the nodes. push() adds the newest reading.
+// push() adds the newest reading.
 void HandHeldStream::rebuild(State& state) const {
   for (Knot& knot : state.window) knot.readings = {};
   for (const Reading& reading : std::span(state.readings).first(state.readings.size() - 1)) add(reading, state);
 }
 
-// Adds an IMU reading to the nearest nodes of the window. A repetition of the last reading is ignored. A slow sensor
-// averages over its period, and the averaging window ended at an unknown time since the previous sample: rate_stream.md
-// (R95). A slow accelerometer averages over an unknown part of its period: carried.md (C12).
+// A slow sensor's averaging window ended at an unknown time since the previous sample: rate_stream.md (R95). A slow
+// accelerometer averages over an unknown part of its period: carried.md (C12).
 void HandHeldStream::add(const Reading& reading, State& state) const {
   const double node_s = params_.body.expert.node_s;
   const auto readings_at = [&](std::int64_t node) -> hand_held::NodeReadings* {
@@ -210,7 +206,6 @@ void HandHeldStream::add(const Reading& reading, State& state) const {
   if (hand_held::NodeReadings* const own = readings_at(reading.node)) own->rest = own->rest || reading.rest;
 }
 
-// Returns the noise of the readings. If the log repeats readings, the noise belongs to the gyro's longer period.
 hand_held::ReadingNoise HandHeldStream::adapted_noise(const State& state) const {
   const RepeatedReading& gyro = state.readings.back().gyro;
   return gyro.is_slower_than_log() ? hand_held::reading_noise(params_.body, gyro.period_samples * params_.period_s)
@@ -226,8 +221,8 @@ Node HandHeldStream::begin(const State& state) const {
   return out;
 }
 
-// Predicts a new node from the previous node. Each unsaturated sensing element measures one component of the rate. For
-// clipped elements, the predicted rate is at or beyond the saturation level.
+// Each unsaturated sensing element measures one component of the rate. For clipped sensing elements, the predicted rate
+// is at or beyond the saturation level.
 void HandHeldStream::predict(const Node& before, const Eigen::Matrix3d& rows, Knot& knot) const {
   const double h = params_.body.expert.node_s;
   Node& node = knot.node;
@@ -249,14 +244,13 @@ void HandHeldStream::predict(const Node& before, const Eigen::Matrix3d& rows, Kn
   if (knot.readings.force_count > 0.0) node.a_W_m_s2 = node.q_WI * knot.readings.force_m_s2 + g_W_m_s2_;
 }
 
-// Returns the density factor of the hand's acceleration, which follows the recent motion: carried.md (C41).
+// See carried.md (C41).
 double HandHeldStream::hand(const State& state) const {
   return std::max(params_.body.expert.hand.hand_noise_floor_ratio,
                   1.0 + params_.body.expert.hand.hand_noise_adaptation * (state.acceleration_power_ratio - 1.0));
 }
 
-// Adds the prior on the oldest node and the constants that summarises the nodes before the window: rate_stream.md
-// (R91).
+// See rate_stream.md (R91).
 void HandHeldStream::add_prior(const State& state, System::Block& block, System::Corner& corner) const {
   if (state.first_node == 0) {
     (void)motion_.add_initial_prior(state.window.front().node, block);
@@ -272,8 +266,7 @@ void HandHeldStream::add_prior(const State& state, System::Block& block, System:
   corner.gradient += state.prior_corner.gradient - state.prior_corner.matrix * c - state.prior.border.transpose() * x;
 }
 
-// Marginalises the oldest node, carried.md (C17), in the form of rate_stream.md (R90). The density of the hand's
-// acceleration follows from carried.md (C41).
+// See carried.md (C17), (C41), in the form of rate_stream.md (R90).
 void HandHeldStream::marginalise_oldest(State& state) const {
   store_oldest_rates(state);
   const Knot& oldest = state.window[0];
@@ -288,7 +281,6 @@ void HandHeldStream::marginalise_oldest(State& state) const {
     state.prior = after;
     state.prior_corner = corner;
   } else {
-    // The prior of the nodes before the window is not positive definite, so the initial prior replaces it.
     state.prior = {};
     state.prior_corner = {};
     (void)motion_.add_initial_prior(next, state.prior);
@@ -306,7 +298,6 @@ void HandHeldStream::marginalise_oldest(State& state) const {
   prune_output_samples(state);
 }
 
-// Deletes the readings whose rates have been reported and whose nodes have left the window.
 void HandHeldStream::prune_output_samples(State& state) const {
   std::size_t gone = 0;
   const std::size_t given = first_unreported(state);
@@ -314,7 +305,7 @@ void HandHeldStream::prune_output_samples(State& state) const {
   state.readings.erase(state.readings.begin(), state.readings.begin() + static_cast<std::ptrdiff_t>(gone));
 }
 
-// Eliminates the nodes of the window and solves for the calibration constants: carried.md (C17), (C18).
+// See carried.md (C17), (C18).
 bool HandHeldStream::factorise(const hand_held::Motion& motion, const hand_held::ReadingNoise& noise, State& state,
                                System::BorderVector& step) const {
   const std::size_t count = state.window.size();
@@ -337,7 +328,7 @@ bool HandHeldStream::factorise(const hand_held::Motion& motion, const hand_held:
   return System::solve_corner(corner, step, state.constants_covariance);
 }
 
-// Makes one Gauss-Newton step over the window: carried.md (C19).
+// See carried.md (C19).
 bool HandHeldStream::step(State& state) const {
   System::BorderVector border;
   if (!factorise(motion_, adapted_noise(state), state, border)) return false;

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// hand_held_stream_rates.cpp computes the rates that HandHeldStream reports, with their covariances.
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -17,7 +16,7 @@ using hand_held::System;
 namespace {
 
 constexpr double kUnknown_rad2_s2 = 1e6;  // variance of a rate if the equations have no solution
-// Covariances use the inflated jerk density if the time from a clipped node is at most kNear_s.
+// maximum time from a clipped node for which covariances use the inflated jerk density
 constexpr double kNear_s = 0.1;
 
 std::uint8_t clipped_axes(const ClipSigns& signs) {
@@ -29,8 +28,6 @@ std::uint8_t clipped_axes(const ClipSigns& signs) {
 
 }  // namespace
 
-// Returns the rate to report for reading `at`. All readings of one node share the node's covariance until the next
-// optimisation step. `factorised` is described at report_rates().
 RateState HandHeldStream::compute_report(std::size_t at, bool due, bool factorised, State& state) const {
   const Reading& reading = state.readings[at];
   if (reading.smoothed) return *reading.smoothed;
@@ -44,13 +41,11 @@ RateState HandHeldStream::compute_report(std::size_t at, bool due, bool factoris
   return rate;
 }
 
-// Returns the first reading whose rate is unreported, without the reading that push() processes.
 std::size_t HandHeldStream::first_unreported(const State& state) const {
   return state.readings.size() - std::min(state.readings.size(), delay_ + 1);
 }
 
-// Stores the current rate of the oldest node, because the node may leave the window before its rate is reported. A node
-// leaves early if samples are sparser than params_.period_s.
+// If samples are sparser than params_.period_s, a node may leave the window before its rate is reported.
 void HandHeldStream::store_oldest_rates(State& state) const {
   const std::size_t first = first_unreported(state);
   for (std::size_t k = first; k < state.readings.size() && state.readings[k].node <= state.first_node; ++k) {
@@ -78,8 +73,7 @@ RateState HandHeldStream::to_rate(const Reading& reading, const State& state, co
   return out;
 }
 
-// Counts the clipped segment around the reading `at` in the report if its number of revolutions is ambiguous:
-// carried.md (C43).
+// Counts a clipped segment whose number of revolutions is ambiguous: carried.md (C43).
 void HandHeldStream::count_revolutions(std::size_t at, const RateState& rate, State& state) const {
   const Reading& reading = state.readings[at];
   const double since_s = at > 0 ? reading.end_s - state.readings[at - 1].end_s : params_.period_s;
@@ -102,9 +96,8 @@ void HandHeldStream::count_revolutions(std::size_t at, const RateState& rate, St
   }
 }
 
-// Reports the rates of the readings [first, last] with their covariances. Near clipped readings, the covariances follow
-// from carried.md (C23), (C42). `factorised` is true if the solver has already factorised the equations for the assumed
-// jerk density.
+// See carried.md (C23), (C42). `factorised` is true if the equations are already factorised for the assumed jerk
+// density.
 void HandHeldStream::report_rates(std::size_t first, std::size_t last, bool factorised, State& state,
                                   std::span<RateState> out) const {
   const auto of = [&](std::size_t k) {
@@ -117,7 +110,7 @@ void HandHeldStream::report_rates(std::size_t first, std::size_t last, bool fact
   for (std::size_t i = from; i < to; ++i) clipped = clipped || hand_held::clips(state.window[i].readings);
   System::BorderVector unused;
   hand_held::ReadingNoise noise = adapted_noise(state);
-  // Lower bounds of rates and forces do not reduce the covariances: carried.md (C42).
+  // See carried.md (C42).
   if (clipped) noise.bound = noise.force_bound = 0.0;
   const bool known = (factorised && !clipped) || factorise(clipped ? inflated_ : motion_, noise, state, unused);
   System::Conditional here, next;

@@ -21,14 +21,12 @@ constexpr double kCertainDeviations = 4.0;
 constexpr int kMinImusForRecovery = 3;          // minimum number of IMUs for recovering a rate from accelerometers
 constexpr double kUnsaturatedForceRatio = 0.8;  // accelerometer errors are estimated up to this fraction of the range
 constexpr int kOffset = ImuMerge::kErrorCount - 1;
-// Minimum integral of the squared lever arm force: 1 m/s^2 for 1 s. At kArmSquareMin_m2_s3, an accelerometer bias of
-// 0.05 m/s^2 changes lever_arm_agreement() by 0.05.
+// At 1 m^2/s^3, an accelerometer bias of 0.05 m/s^2 changes lever_arm_agreement() by 0.05.
 constexpr double kArmSquareMin_m2_s3 = 1.0;
 constexpr double kRepeated_s = 0.03;
 constexpr double kWindowMax_s = 0.05;  // maximum window for a central difference
 
-// An accelerometer stays suspect for kSuspect_s after an impact, because impacts come in groups, and filters prolong
-// impacts.
+// Impacts come in groups, and filters prolong impacts.
 constexpr double kSuspect_s = 0.04;
 // standard deviation of an angular acceleration, as a fraction of its change per sample
 constexpr double kAccelerationSigmaRatio = 0.3;
@@ -42,7 +40,6 @@ ForceErrors::Params ImuMerge::force_params(const Params& p) {
   return out;
 }
 
-/// Returns parameters of RateRecovery in which the IMU positions are relative to their mean.
 RateRecovery::Params ImuMerge::recovery_params(const Params& p) {
   RateRecovery::Params out;
   out.count = p.count;
@@ -97,7 +94,6 @@ Status ImuMerge::step(std::span<const ImuSample> samples, State& state, std::opt
   return {};
 }
 
-/// Adds the finite readings of all IMUs, with their saturation flags, to the averaging window of each IMU.
 void ImuMerge::accumulate_window(std::span<const ImuSample> samples, double dt_s, State& state) const {
   const double weight_s = state.samples > 0 ? dt_s : params_.window_s;
   for (std::size_t k = 0; k < samples.size(); ++k) {
@@ -118,7 +114,6 @@ void ImuMerge::accumulate_window(std::span<const ImuSample> samples, double dt_s
   state.window_s += dt_s;
 }
 
-/// Completes the averaging windows, merges the IMUs, and starts new windows.
 ImuSample ImuMerge::merge(State& state) const {
   const auto count = static_cast<std::size_t>(params_.count);
   const double h = state.window_s;
@@ -178,11 +173,10 @@ ImuSample ImuMerge::merge(State& state) const {
   return merged;
 }
 
-/// Selects the unsaturated IMUs whose rate and specific force agree with the median of all IMUs: imu_merge.md (I5).
+/// Selects unsaturated IMUs that agree with the median of all IMUs: imu_merge.md (I5).
 ImuMerge::UnitMask ImuMerge::select_units(const Readings& readings, const UnitMask& present, const Vectors& rates,
                                           const Vectors& forces, double h, State& state) const {
-  // If the body rotates, IMUs at different positions measure different specific forces. The tolerance of the median
-  // test therefore grows with the rotation.
+  // If the body rotates, IMUs at different positions measure different specific forces.
   const Eigen::Vector3d middle_rate = median(rates, present), middle_force = median(forces, present);
   const auto units = std::count(present.begin(), present.end(), true);
   const double rate_tolerance =
@@ -193,14 +187,12 @@ ImuMerge::UnitMask ImuMerge::select_units(const Readings& readings, const UnitMa
     const double turned = (params_.T_CI[i].translation() - p_C_m_).norm() * middle_rate.squaredNorm() * 2.0;
     const bool agrees = units < 3 || ((rates[i] - middle_rate).norm() < rate_tolerance &&
                                       (forces[i] - middle_force).norm() < params_.expert.outliers.force_m_s2 + turned);
-    // With three or more IMUs, RateRecovery uses a clipped gyro as a lower bound, so the accelerometer of that IMU
-    // remains in use.
+    // With three or more IMUs, RateRecovery uses a clipped gyro as a lower bound.
     const int clipping = units < kMinImusForRecovery ? kClipAccel | kClipGyro : kClipAccel;
     used[i] = agrees && (readings[i].device_clip_flags & clipping) == 0;
   }
   const auto kept = std::count(used.begin(), used.end(), true);
-  // If the selected IMUs are a minority of three or more IMUs, ImuMerge uses all present IMUs. If a rig has one or two
-  // IMUs, ImuMerge uses all present IMUs only if none is selected.
+  // Without a majority, it is unknown which IMUs are right.
   if (units < kMinImusForRecovery ? kept == 0 : 2 * kept <= units && kept < units) used = present;
   const bool apart = state.windows > 0 && h > 0.0;  // derivatives from the last window exist
   if (units >= kMinImusForRecovery && apart && middle_rate.cwiseAbs().maxCoeff() < params_.gyro_range_rad_s) {
@@ -210,7 +202,7 @@ ImuMerge::UnitMask ImuMerge::select_units(const Readings& readings, const UnitMa
   return used;
 }
 
-/// Returns the mean of the selected IMUs, transformed to the mean position of all IMUs: imu_merge.md (I1), (I2).
+/// See imu_merge.md (I1), (I2).
 ImuSample ImuMerge::mean_of_used(const Vectors& rates, const Vectors& forces, const UnitMask& used, double h,
                                  const State& state) const {
   const auto kept = static_cast<int>(std::count(used.begin(), used.end(), true));
@@ -234,21 +226,18 @@ ImuSample ImuMerge::mean_of_used(const Vectors& rates, const Vectors& forces, co
   return merged;
 }
 
-/// Returns the ratio of the measured force differences between the IMUs to the differences that rotation and lever arms
-/// should cause: imu_merge.md (I8).
+/// Returns the ratio of the measured to the expected force differences between the IMUs: imu_merge.md (I8).
 std::optional<double> ImuMerge::lever_arm_agreement(const State& state) {
   if (state.lever_arm_effect_m2_s3 < kArmSquareMin_m2_s3) return std::nullopt;
   return state.lever_arm_correlation / state.lever_arm_effect_m2_s3;
 }
 
-/// Updates the estimated errors of the IMUs with the mean readings of the last averaging windows, and starts new
-/// windows.
 void ImuMerge::close_windows(const UnitMask& present, const Vectors& rates, const Vectors& forces, bool all_used,
                              const ImuSample& merged, State& state) const {
   const double length_s = state.windows > 0 ? state.window_s : params_.window_s;
   const bool follows = state.windows > 1 && length_s < kWindowMax_s;
-  // An IMU that repeats its reading may be frozen, so its reading does not update the estimated errors. If all IMUs
-  // repeat their readings, the rate is constant and no IMU is frozen.
+  // An IMU that repeats its reading may be frozen. If all IMUs repeat their readings, the rate is constant and no IMU
+  // is frozen.
   const auto end = state.units.begin() + params_.count;
   const auto any_repeats = [&](Repetition Unit::*hold) {
     const auto holding = std::count_if(state.units.begin(), end,
@@ -280,11 +269,8 @@ void ImuMerge::close_windows(const UnitMask& present, const Vectors& rates, cons
   ++state.windows;
 }
 
-/// Excludes IMUs whose accelerometer may be saturated for a part of the window because of an impact: imu_merge.md (I6).
-/// On a rigid body, the force at one IMU predicts the force at another IMU along the line between the IMUs. The force
-/// along this line does not depend on the angular acceleration. The reference is the IMU that agrees with most other
-/// IMUs. IMUs that disagree with the reference are excluded. If no two IMUs agree, the function first estimates a
-/// common angular acceleration that started within the window: imu_merge.md (I7).
+/// Excludes accelerometers that an impact may have saturated for a part of the averaging window: imu_merge.md (I6). If
+/// no two IMUs agree, a common angular acceleration within the averaging window is estimated first: imu_merge.md (I7).
 void ImuMerge::exclude_subsample_saturated(const Readings& samples, const UnitMask& present, const Vectors& forces,
                                            const Eigen::Vector3d& rate, double h, State& state, UnitMask& used) const {
   const double since_s = 0.5 * (h + state.length_s);
@@ -339,8 +325,7 @@ void ImuMerge::recover(const Readings& readings, const UnitMask& present, double
   recovery_.step({corrected.data(), static_cast<std::size_t>(params_.count)}, h, state.recovery, merged);
 }
 
-/// Updates bias, scale and time offset of each gyro relative to the mean of all IMUs: imu_merge.md (I3), (I8). The
-/// angular acceleration is the central difference of the rates in the next and previous window.
+/// See imu_merge.md (I3), (I8).
 void ImuMerge::calibrate(const Vectors& rates, State& state) const {
   const auto count = static_cast<std::size_t>(params_.count);
   Eigen::Vector3d now = Eigen::Vector3d::Zero(), mean = Eigen::Vector3d::Zero();

@@ -5,41 +5,35 @@
 
 #include "tumble/attitude/imu_merge.hpp"
 
-// imu_merge_health.cpp detects IMUs that are saturated, frozen, or in disagreement with the other IMUs.
 namespace tumble {
 
 namespace {
 
-// An IMU is frozen if it repeats its reading for kUnitFrozen_s (longer than any sample and hold) while the rates or
-// forces of the other IMUs change by more than the limits, or while gravity rotates. It is used again after
-// kUnfreeze_s.
+// A frozen IMU repeats its reading for longer than any sample and hold, while other IMUs change or gravity rotates.
 constexpr double kUnitFrozen_s = 0.1, kOthersRate_rad_s = 0.03, kOthersForce_m_s2 = 0.3, kGravityRotation_rad = 1.0;
 constexpr double kUnfreeze_s = 0.5;
-// An IMU disagrees if its mean over kMisfitTau_s differs from the median of all IMUs by more than the limits, for
-// kDisagrees_s. The limit of the rate grows by a fraction of the rate, for errors of scale.
+// The tolerance of the rate grows with the rate, because of scale errors.
 constexpr double kDisagreeRate_rad_s = 0.1, kDisagreeRateRatio = 0.06, kDisagreeForce_m_s2 = 1.0, kDisagrees_s = 0.3;
 constexpr int kMinImusForFault = 3;  // minimum number of IMUs for identifying the faulty IMU
 constexpr double kMisfitTau_s = 0.5;
 constexpr double kComparableRateRatio = 0.8;  // fraction of the gyro's range up to which IMUs are compared
 
 constexpr double kArmShareMin = 0.5;  // smallest plausible lever_arm_agreement() if the gyros are confirmed
-// Largest deviation of lever_arm_agreement() from 1 for IMUs without a common scale error. Centripetal force grows with
-// the squared rate, so the limit corresponds to 3 % of gyro scale, three times the data sheet's scale error. In runs of
-// the scenario `slip` without faults, lever_arm_agreement() was 0.999 to 1.002.
+// A deviation of 6 % corresponds to a gyro scale error of 3 %, because the centripetal force grows with the squared
+// rate. In runs without faults, lever_arm_agreement() was 0.999 to 1.002.
 constexpr double kArmShareOff = 0.06;
 
 constexpr double kAxisContributionMin =
     0.02;  // another axis counts as clipped if a clipped axis contributes more than this fraction to it
 
-/// Returns the angle by which the direction of the repeated force, which is mostly gravity, should have rotated.
+/// A repeated force is mostly gravity, whose direction should rotate with the body.
 double rotation_across_force_rad(const ImuMerge::Repetition& hold) {
   return hold.turned_rad.cross(hold.reading.stableNormalized()).norm();
 }
 
 }  // namespace
 
-/// Returns the saturation flags of the selected IMUs for the axes of the common frame C. An axis of frame C is flagged
-/// if a clipped axis of any selected IMU contributes to it.
+/// An axis of the common frame C is flagged if a clipped axis of any selected IMU contributes to it.
 std::uint8_t ImuMerge::combined_flags(const Readings& readings, const UnitMask& which) const {
   unsigned out = 0;
   for (std::size_t k = 0; k < which.size(); ++k) {
@@ -73,8 +67,8 @@ Eigen::Vector3d ImuMerge::median(const Vectors& values, const UnitMask& which) {
   return out;
 }
 
-/// Detects gyros and accelerometers that repeat readings while the median of the IMUs changes. Accelerometers count as
-/// frozen only if the body rotates, which also detects accelerometers that all freeze together.
+/// An accelerometer counts as frozen only if the body rotates, so accelerometers that all freeze together are detected
+/// too.
 void ImuMerge::detect_frozen_units(const UnitMask& present, const Vectors& rates, const Vectors& forces, double dt_s,
                                    TimeNs time_ns, State& state) const {
   UnitMask counted = present;
@@ -159,7 +153,6 @@ void ImuMerge::add_findings(const std::optional<UnitSignCheck::Detected>& mislab
              "imu");
 }
 
-/// Detects IMUs that disagree with the other IMUs for a long time.
 void ImuMerge::detect_disagreeing_units(const UnitMask& present, const Vectors& rates, const Vectors& forces,
                                         TimeNs time_ns, State& state) const {
   if (std::count(present.begin(), present.end(), true) < kMinImusForFault) return;

@@ -16,15 +16,13 @@ constexpr double kForceReading_s = 0.02;  // averaging time of the readings, so 
 constexpr double kWindowGapMax_s = 0.1;   // an unmeasured rotation may hide in a longer gap
 constexpr double kChangeMax = 0.12;       // largest change of a steady force in a window, as a share of the force
 constexpr double kGravityNear = 0.25;     // directions are compared if force and gravity differ by less than this share
-// Plausible slopes of gravity's rotation on the gyro's rotation. Pendulums and hand-held wands reach 0.75 and 1.21.
+// Pendulums and hand-held wands reach slopes of 0.75 and 1.21 between the rotations of gravity and gyro.
 constexpr double kSlopeMin = 0.65, kSlopeMax = 1.5;
 constexpr double kRotationMin_rad2 = 0.5, kRotationMin_rad = 0.15;  // minimum rotation in total, and of a window
-// Fewer windows may be a push, or the centripetal force of a spin in flight.
+// A push, or the centripetal force of a spin in flight, may also rotate the measured force for a few windows.
 constexpr double kRotatedWindowsMin = 5.0;
-// Largest residual with a scaled gyro, as a share of the residual with the unscaled gyro, for slopes
-// outside of 0 to 1, and for slopes between 0 and 1, which pushes of the body also cause.
+// Pushes of the body also cause slopes between 0 and 1, so these slopes need a smaller residual.
 constexpr double kScaledResidualMax = 0.75, kReducedResidualMax = 0.33;
-// A triad is frozen after a repetition of kFrozen_s that is kRepetitionRatio times as long as any earlier repetition.
 constexpr double kFrozen_s = 1.0, kRepetitionRatio = 10.0;
 constexpr double kUnmeasuredMin = 0.5;      // share of gravity's rotation that a gyro without changing readings leaves
 constexpr double kStandstillRad2 = 1e-6;    // largest squared rotation of a gyro at rest
@@ -32,13 +30,11 @@ constexpr double kNonRestForceRatio = 0.5;  // difference from gravity that excl
 constexpr double kPushedMin_s = 0.2;        // minimum duration of a force that excludes rest
 constexpr double kDirectionForceRatioMin = 0.05;  // minimum force with a usable direction, as a fraction of gravity
 
-// Returns the scalar product of the rotations that gyro and specific force measure: imu_merge.md (I20). The product a b
-// follows from |a - b|^2 = |a|^2 + |b|^2 - 2 a b.
+// See imu_merge.md (I20).
 double rotation_product_rad2(const ImuPlausibility::State& state) {
   return 0.5 * (state.force_rotation_rad2 + state.gyro_rotation_rad2 - state.unexplained_rad2);
 }
 
-/// Returns whether the force rotated far enough, in enough windows, for a decision.
 bool rotated_enough(const ImuPlausibility::State& state) {
   return state.force_rotation_rad2 >= kRotationMin_rad2 && state.rotated_windows >= kRotatedWindowsMin;
 }
@@ -90,8 +86,7 @@ void ImuPlausibility::step(const ImuSample& sample, State& state) const {
   state.last_time_ns = sample.time_ns;
 }
 
-/// Adds an averaged reading to the window in which the rotations of gyro and specific force are compared: imu_merge.md
-/// (I18), (I19).
+/// See imu_merge.md (I18), (I19).
 void ImuPlausibility::process_average(State& state) const {
   const Eigen::Vector3d force = state.average.mean.specific_force_m_s2;
   const Eigen::Vector3d turned = state.average.length_s * state.average.mean.angular_velocity_rad_s;
@@ -100,9 +95,8 @@ void ImuPlausibility::process_average(State& state) const {
   if (std::abs(force.norm() - params_.gravity_m_s2) > kNonRestForceRatio * params_.gravity_m_s2)
     state.non_rest_force_s += length_s;
   if (state.window_started) {
-    // Each averaged force is valid at the centre of its averaging interval. The rotation between two forces is
-    // therefore the sum of the rotations in between, plus half of the first and last. To first order, this equals the
-    // sum of all rotations except the first.
+    // Each averaged force is valid at the centre of its averaging interval. To first order, the rotation between two
+    // averaged forces is the sum of all rotations except the first.
     state.gyro_rotation = (state.gyro_rotation * so3::exp(turned)).normalized();
     state.length_s += length_s;
     const double start = state.force_start_m_s2.norm();
@@ -124,8 +118,7 @@ void ImuPlausibility::process_average(State& state) const {
   }
 }
 
-/// Adds the rotations of gyro and specific force in a window of constant force magnitude to the sums: imu_merge.md
-/// (I19).
+/// See imu_merge.md (I19).
 void ImuPlausibility::compare_rotations(const Eigen::Vector3d& force_m_s2, State& state) const {
   const auto near_gravity = [&](const Eigen::Vector3d& force) {
     return std::abs(force.norm() - params_.gravity_m_s2) <= kGravityNear * params_.gravity_m_s2;
@@ -158,9 +151,9 @@ double ImuPlausibility::unexplained_rotation_ratio(const State& state) const {
                                : 0.0;
 }
 
-/// Returns for how long a sensor has repeated its reading, in seconds. A sensor whose reading never changed counts as
-/// frozen only while the body moves. A rotating force, or a force that excludes rest, shows that the body moves while
-/// the gyro repeats. The gyro shows that the body moves while the accelerometer reads zero for longer than a free fall.
+/// A sensor whose reading never changed counts as frozen only while the body moves. A rotating force, or a force that
+/// excludes rest, proves that the body moves. An accelerometer that reads zero for longer than a free fall is frozen if
+/// the gyro measures rotation.
 double ImuPlausibility::frozen_s(const State& state) const {
   const auto never_moved = [&](const Repetition& hold) {
     return hold.changing_duration_s == 0.0 && hold.repeated_s >= kFrozen_s;
@@ -173,7 +166,7 @@ double ImuPlausibility::frozen_s(const State& state) const {
                    accel ? state.accel.repeated_s : 0.0});
 }
 
-/// Returns the slope of a linear regression of the force's rotation on the gyro's rotation: imu_merge.md (I20).
+/// See imu_merge.md (I20).
 double ImuPlausibility::rotation_slope(const State& state) const {
   if (!rotated_enough(state)) return 1.0;
   return rotation_product_rad2(state) / std::max(state.gyro_rotation_rad2, kStandstillRad2);
@@ -185,8 +178,8 @@ double ImuPlausibility::rotation_agreement(const State& state) const {
          std::sqrt(state.force_rotation_rad2 * std::max(state.gyro_rotation_rad2, kStandstillRad2));
 }
 
-/// Returns whether a different gyro scale explains the readings better than pushes of the body do: imu_merge.md (I21).
-/// Pushes also rotate the measured force, but do not fit any gyro scale better than another.
+/// See imu_merge.md (I21). Pushes of the body also rotate the measured force, but fit no gyro scale better than
+/// another.
 bool ImuPlausibility::fits_better(const State& state) const {
   const double slope = rotation_slope(state), agreement = rotation_agreement(state);
   const double left = state.force_rotation_rad2 * (1.0 - agreement * agreement);

@@ -23,7 +23,7 @@ constexpr double kSegmentRotationMin_rad = 1.0;  // less rotation in a segment d
 constexpr double kExplained_m_s = 0.3;           // rms velocity of the pivot below which rates explain a segment
 constexpr double kPivotNoise_m_s = 0.03;  // rms velocity due to noise: below it, two alternatives fit equally well
 constexpr double kSegmentGapMax_s = 0.1;  // an unmeasured impact may hide in a longer gap
-// Limits of the decision. The segments overlap by half, so that six segments are three independent ones.
+// The segments overlap by half, so that six segments are three independent ones.
 constexpr double kEvidenceMin = 5.0, kMeanEvidenceMin = 0.6, kBetterSegmentsMin = 6.0, kBetterWorseRatioMin = 4.0;
 constexpr double kPivotDistanceMax_m = 0.25;  // a pivot further away is a rod, whose length the scale would absorb
 constexpr double kScaleErrorMin = 0.025, kScaleErrorMinSigmas = 5.0;
@@ -37,7 +37,7 @@ constexpr double kClearLogRatio = 0.4;
 
 using Readings = std::array<Eigen::Matrix3d, kReadings>;
 
-/// Returns the matrices S by which each hypothesis about the gyro multiplies the rates: imu_merge.md (I27).
+/// Each hypothesis about the gyro multiplies the rates by a matrix: imu_merge.md (I27).
 Readings all_readings() {
   Readings out;
   for (std::size_t k = 0; k < kAxisLabels; ++k) {
@@ -53,13 +53,11 @@ Readings all_readings() {
   return out;
 }
 
-/// ScaleVote is the estimate of the gyro's scale from one segment of motion. `step` is the Newton step from scale 1.
-/// `weight` is the second derivative of the residual with respect to the scale, at scale 1.
+/// `step` is the Newton step from gyro scale 1, and `weight` is the second derivative of the cost.
 struct ScaleVote {
   double step, weight;
 };
 
-/// Segments contains the results of the completed segments of a recording, and the sums of the current segment.
 class Segments {
  public:
   Segments(double gravity_m_s2, const Readings& readings) : gravity_m_s2_(gravity_m_s2), readings_(readings) {}
@@ -72,7 +70,6 @@ class Segments {
     rotated_rad_ += dt_s * rate_rad_s.norm();
     if (length_s_ >= kSegment_s) close();
   }
-  /// Completes the current segment of motion. A segment that is shorter than half of the nominal length is discarded.
   void close() {
     if (length_s_ >= 0.5 * kSegment_s && rotated_rad_ >= kSegmentRotationMin_rad) take();
     sums_ = {};
@@ -92,11 +89,8 @@ class Segments {
     vote(fits);
   }
 
-  /// Compares how well the unchanged gyro and each hypothesis about a wrong gyro explain a segment: imu_merge.md (I28),
-  /// (I29).
+  /// See imu_merge.md (I28), (I29).
   void compare(const std::array<PivotFit, kReadings>& fits) {
-    // The residual of a hypothesis has two parts: the unexplained velocity, and the difference between mean force and
-    // gravity.
     const auto residual = [&](std::size_t k) {
       return std::hypot(fits[k].residual_m_s, length_s_ * (fits[k].gravity_m_s2 - gravity_m_s2_) / std::sqrt(12.0));
     };
@@ -113,7 +107,7 @@ class Segments {
     }
   }
 
-  /// Adds the segment's estimate of the gyro's scale: imu_merge.md (I30).
+  /// See imu_merge.md (I30).
   void vote(const std::array<PivotFit, kReadings>& fits) {
     const PivotFit& fit = fits[0];
     if (fit.residual_m_s > kExplained_m_s) return;
@@ -132,8 +126,7 @@ class Segments {
   double length_s_ = 0.0, rotated_rad_ = 0.0;
 };
 
-/// Computes the weighted mean of the segments' gyro scales, with a heteroscedasticity-consistent standard deviation
-/// (White, 1980): imu_merge.md (I30).
+/// See imu_merge.md (I30), with a heteroscedasticity-consistent standard deviation (White, 1980).
 void conclude_scale(const std::vector<ScaleVote>& votes, PivotCheck& found) {
   double weight = 0.0, sum = 0.0, spread = 0.0;
   for (const ScaleVote& vote : votes) weight += vote.weight, sum += vote.weight * vote.step;
@@ -153,8 +146,8 @@ void conclude_scale(const std::vector<ScaleVote>& votes, PivotCheck& found) {
 PivotCheck PivotCheck::of(std::span<const ImuSample> samples, double gravity_m_s2, double gyro_range_rad_s,
                           double accel_range_m_s2) {
   static const Readings readings = all_readings();
-  // The check divides the recording twice into segments, offset by half a segment. An event at a boundary between two
-  // segments is therefore inside a segment of the other division.
+  // An event at the boundary between two segments is inside a segment of the second series, which is shifted by half a
+  // segment.
   std::array<Segments, 2> series = {Segments(gravity_m_s2, readings), Segments(gravity_m_s2, readings)};
   double mean_s = 0.0, since_s = 0.0;
   Eigen::Vector3d turned = Eigen::Vector3d::Zero(), gained = Eigen::Vector3d::Zero();
@@ -201,7 +194,7 @@ PivotCheck PivotCheck::of(std::span<const ImuSample> samples, double gravity_m_s
   return found;
 }
 
-/// Returns an error if the evidence for a wrong gyro scale or axis exceeds its limits: imu_merge.md (I29), (I30).
+/// See imu_merge.md (I29), (I30).
 Status PivotCheck::verdict() const {
   const double least = std::max(kEvidenceMin, kMeanEvidenceMin * static_cast<double>(compared_segments));
   const auto better = static_cast<double>(better_segments), worse = static_cast<double>(worse_segments);

@@ -10,19 +10,16 @@
 
 namespace tumble {
 
-/// PivotFit is the result of fitting a rotation about a body point (pivot) that moves at constant velocity to a motion
-/// segment: imu_merge.md (I27).
+/// PivotFit is the fit of a rotation about a body point (pivot) with constant velocity: imu_merge.md (I27).
 struct PivotFit {
   double residual_m_s = 0.0;  ///< root mean square of the components of the unexplained velocity
   double gravity_m_s2 = 0.0;  ///< magnitude of the constant force in world axes
   double arm_m = 0.0;         ///< distance from the pivot to the sensor
 };
 
-/// PivotSums contains the normal equations of imu_merge.md (I27) for one hypothesis about the gyro.
 class PivotSums {
  public:
-  /// Adds the mean reading of a window of `dt_s` seconds, whose middle is `at_s` after the start of the segment. Cost:
-  /// O(1).
+  /// `at_s` is the time from the start of the segment to the middle of the averaging window. Cost: O(1).
   void add(double at_s, double dt_s, const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& force_m_s2) {
     const Eigen::Quaterniond half = so3::exp(0.5 * dt_s * rate_rad_s);
     const Eigen::Quaterniond middle = turned_ * half;

@@ -25,15 +25,12 @@ void update(const Row& row, double innovation, double variance, RateRecovery::St
   state.x += scalar_update(row, innovation, variance, state.P);
 }
 
-// Seen contains the readings of one gyro or accelerometer. If a sensing element clips, the readings are the components
-// along the sensing directions, rails.md (R52); otherwise along the axes of the IMU.
+// If a sensing element clips, the readings are components along the sensing directions, rails.md (R52).
 struct Seen {
   Eigen::Matrix3d rows_C;
   Eigen::Vector3d reading, slope_sigma = Eigen::Vector3d::Zero();
   std::array<bool, 3> railed{};
 
-  // Returns the saturation deficit of the clipped sensing elements (root of the sum of squares) for the true values
-  // `expected`.
   double hidden(const Eigen::Vector3d& expected) const {
     double sum2 = 0.0;
     for (int axis = 0; axis < 3; ++axis) {
@@ -103,16 +100,15 @@ RateRecovery::SaturatedSensors RateRecovery::find_saturated_sensors(std::span<co
     }
     clipped += force;
   }
-  // While all gyros are unsaturated, the unsaturated accelerometers give a better force than the filter. The merged
-  // force then counts as clipped only if most accelerometers are saturated.
+  // While all gyros are unsaturated, the unsaturated accelerometers give a better force than the filter.
   out.force = clipped > 0 && (out.rate || 2 * clipped > received);
   return out;
 }
 
 void RateRecovery::step(std::span<const ImuSample> units, double dt_s, State& state, ImuSample& merged) const {
   const SaturatedSensors met = find_saturated_sensors(units);
-  // Accelerometers saturate where gravity and centripetal force add up. The mean of the unsaturated accelerometers
-  // therefore has a bias in a constant direction of the world.
+  // Accelerometers saturate where gravity and centripetal force add up, so the unsaturated accelerometers have a biased
+  // mean.
   merged.device_clip_flags = met.force ? kClipAccelX | kClipAccelY | kClipAccelZ : 0;
   const bool fast = merged.angular_velocity_rad_s.cwiseAbs().maxCoeff() >= kActiveRangeRatio * params_.gyro_range_rad_s;
   if (!fast && !met.rate) {
@@ -133,12 +129,10 @@ void RateRecovery::step(std::span<const ImuSample> units, double dt_s, State& st
   } else if (met.rate) {
     merged.device_clip_flags = static_cast<std::uint8_t>(merged.device_clip_flags | kClipGyro);
   }
-  // The filter's force replaces the mean force, which depends on a possibly wrong rate.
   if (met.rate || met.force) merged.specific_force_m_s2 = state.x.segment<3>(kForce);
 }
 
 void RateRecovery::start(const ImuSample& merged, State& state) const {
-  // The lever arms keep their estimates when the filter restarts.
   state.P.topRows<kArms>().setZero();
   state.P.leftCols<kArms>().setZero();
   auto diagonal = state.P.diagonal();
@@ -150,10 +144,10 @@ void RateRecovery::start(const ImuSample& merged, State& state) const {
   state.started = state.running = true;
 }
 
-/// Predicts rate, angular acceleration and specific force: imu_merge.md (I14), (I15).
+/// See imu_merge.md (I14), (I15).
 void RateRecovery::predict(double dt_s, State& state) const {
   const Eigen::Vector3d rate = state.x.segment<3>(kRate), force = state.x.segment<3>(kForce);
-  // A force that is constant in the world rotates in the axes of C.
+  // A force that is constant in the world rotates in the body axes C.
   const Eigen::Matrix3d turn = so3::exp(-dt_s * rate).toRotationMatrix();
   Eigen::Matrix<double, kArms, kArms> F = Eigen::Matrix<double, kArms, kArms>::Identity();
   F.block<3, 3>(kRate, kAcceleration) = dt_s * Eigen::Matrix3d::Identity();
@@ -170,7 +164,7 @@ void RateRecovery::predict(double dt_s, State& state) const {
   diagonal.segment<3>(kForce).array() += squared(params_.force_walk_m_s2_sqrts) * dt_s;
 }
 
-/// Updates the filter with the gyro readings: imu_merge.md (I16).
+/// See imu_merge.md (I16).
 void RateRecovery::measure_rates(std::span<const ImuSample> units, double dt_s, State& state) const {
   const double shorter = std::max(1.0, kReading_s / dt_s);
   for (std::size_t k = 0; k < units.size(); ++k) {
@@ -193,7 +187,7 @@ void RateRecovery::measure_rates(std::span<const ImuSample> units, double dt_s, 
   }
 }
 
-/// Updates the filter with the accelerometer readings: imu_merge.md (I17).
+/// See imu_merge.md (I17).
 void RateRecovery::measure_forces(std::span<const ImuSample> units, double dt_s, State& state) const {
   const double shorter = std::max(1.0, kReading_s / dt_s);
   for (std::size_t k = 0; k < units.size(); ++k) {

@@ -12,7 +12,6 @@ namespace tumble {
 
 namespace {
 
-/// Returns whether recover_rates() keeps the gyro reading of a sample.
 bool is_kept(const RateState& rate, ReplacedReadings replaced) {
   return rate.clipped_axes == 0 && (replaced == ReplacedReadings::clipped || rate.source == RateSource::measured);
 }
@@ -22,7 +21,7 @@ bool any_clips(std::span<const ClipSigns> signs) {
                      [](const ClipSigns& sign) { return sign.gyro != std::array<std::int8_t, 3>{}; });
 }
 
-/// Returns the gyro bias: the mean of reading minus estimated rate, over the samples whose readings are kept.
+/// gyro bias: mean of reading minus estimated rate
 Eigen::Vector3d bias_rad_s(std::span<const ImuSample> samples, std::span<const RateState> rates,
                            ReplacedReadings replaced) {
   double kept = 0.0;

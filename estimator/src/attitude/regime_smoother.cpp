@@ -11,14 +11,12 @@ namespace tumble {
 
 namespace {
 
-/// Returns whether the reading of sample k is clipped or suspect (possibly saturated). A reading that was saturated for
-/// a part of its averaging window does not count.
+/// Partly saturated readings do not count as unusable.
 bool unusable_count(const RateReport& report, const RateState& rate, std::size_t k) {
   return rate.clipped_axes != 0 || report.suspect_axes[k] != 0;
 }
 
-/// Returns the samples with specific forces interpolated to the times of the rates: carried.md (C38). The readings of a
-/// slow accelerometer are older than the rates.
+/// See carried.md (C38). The readings of a slow accelerometer are older than the rates.
 std::vector<ImuSample> interpolate_forces(std::span<const ImuSample> samples) {
   std::vector<ImuSample> out(samples.begin(), samples.end());
   const std::vector<Eigen::Vector3d> forces = forces_between_readings(samples);
@@ -74,13 +72,11 @@ void RegimeSmoother::join(std::span<const ImuSample> samples, std::vector<RateSt
     if (by_segment[k] <= params_.hand_held_probability_min) continue;
     const bool only_suspect = rates[k].clipped_axes == 0 && rates[k].source != RateSource::measured;
     rates[k] = mix_rate_states(rates[k], other[k], by_segment[k]);
-    // No motion type assumes clipping at this sample, so the sample counts as unclipped.
     if (only_suspect) rates[k].clipped_axes = 0, rates[k].source = RateSource::bounded_only;
   }
 }
 
-/// Replaces the rates between two gaps of the recording by those of HandHeldSmoother, if HandHeldSmoother succeeds. The
-/// report describes the last replaced part. Returns whether HandHeldSmoother succeeded for any part.
+/// HandHeldSmoother replaces the rates between two gaps of the recording. The report describes the last replaced part.
 bool RegimeSmoother::estimate_hand_held(std::span<const ImuSample> samples, const ClippedReadings& known,
                                         std::vector<RateState>& rates, HandHeldSmoother::Report& report) const {
   bool any = false;
@@ -102,9 +98,8 @@ bool RegimeSmoother::estimate_hand_held(std::span<const ImuSample> samples, cons
   return any;
 }
 
-/// Returns the probability of hand-held motion for each sample: carried.md (C40). For a sample within
-/// `segment_gap_max_s` of a segment of clipped or suspect readings, the result is the smallest probability among the
-/// segment samples within this time. The result is 0 for all other samples.
+/// See carried.md (C40). Near clipped or suspect readings, the result is the smallest probability of the samples within
+/// `segment_gap_max_s`. Elsewhere, the result is 0.
 std::vector<double> RegimeSmoother::segment_hand_held_probability(std::span<const RegimeProbabilities> probabilities,
                                                                   const RateReport& report,
                                                                   std::span<const RateState> rates) const {

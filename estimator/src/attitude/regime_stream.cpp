@@ -9,7 +9,6 @@ namespace tumble {
 namespace {
 
 constexpr double kAccelerationSpan_s = 0.01;  // = model_error_s of the rate model
-// The calibration is unstable if more than kResetFraction of the solver steps within a lag reset the calibration.
 constexpr double kResetFraction = 0.5;
 
 HandHeldStream::Params joined(const RegimeStream::Params& params) {
@@ -17,40 +16,34 @@ HandHeldStream::Params joined(const RegimeStream::Params& params) {
   out.period_s = params.rate.period_s;
   out.lag_s = params.rate.lag_s;
   out.window_s = std::max(out.window_s, out.lag_s + 4.0 * out.body.expert.node_s);
-  // HandHeldStream restarts after a gap longer than gap_max_s. The limit on gap_max_s ensures that HandHeldStream
-  // reports samples before they leave its window.
+  // HandHeldStream must report samples before the samples leave the window.
   out.body.expert.gap_max_s = std::min(out.body.expert.gap_max_s, out.window_s - out.lag_s);
   return out;
 }
 
-// Returns whether the gyro reading of a sample is clipped, partly saturated, or suspect (possibly saturated).
 bool clips(const RateStream::Knot& knot) {
   return (knot.observation.unmeasured_axes() | knot.observation.partly_saturated_axes()) != 0;
 }
 
-// Returns the sign of the saturation level for each clipped axis of a sample. Suspect readings count as clipped,
-// because they are also lower bounds of the rate.
+// Suspect readings count as clipped, because suspect readings are also lower bounds of the rate.
 ClipSigns signs_of(const RateObservation& observation) {
   Clipping clipping = observation.clipping;
   clipping.gyro = static_cast<std::uint8_t>(clipping.gyro | observation.partly_saturated_axes());
   return clip_signs(observation.sample, clipping);
 }
 
-// Combines the rates of RateStream and HandHeldStream. `share` is the weight of HandHeldStream. The combined rate of a
-// suspect reading has the source `bounded_only`.
+// `share` is the weight of HandHeldStream in the combined rate.
 RateState mixed_rate(const RateState& rate, const RateState& hand_held, double share) {
   RateState out = mix_rate_states(rate, hand_held, share);
   out.clipped_axes = rate.clipped_axes;
-  // Only RateStream detects partly saturated readings.
   if (rate.source == RateSource::bounded_only && out.source == RateSource::measured) out.source = rate.source;
   return out;
 }
 
-// Returns the angular acceleration around sample k as the derivative of the rates: carried.md (C44). The derivative
-// covers kAccelerationSpan_s seconds if the window contains enough samples. The angular acceleration of RateStream is
-// unsuitable, because RateStream uses the specific force under test.
+// See carried.md (C44). The angular acceleration of RateStream is unsuitable, because RateStream uses the specific
+// force under test.
 Eigen::Vector3d angular_acceleration(std::span<const RateStream::Knot> window, std::size_t k) {
-  // Integer time stamps are subtracted, because seconds since the epoch would lose precision.
+  // Seconds since the epoch as a floating-point number would lose precision.
   const auto between_s = [&](std::size_t from, std::size_t to) {
     return seconds(window[to].observation.sample.time_ns - window[from].observation.sample.time_ns);
   };
@@ -87,7 +80,7 @@ Status RegimeStream::push(const ImuSample& sample, std::span<const AuxiliaryRead
     share = hand_held_weight(*out, state);
   }
   std::optional<RateState> hand_held;
-  // HandHeldStream rejects a sample that RateStream accepted only if the sensing directions do not span three
+  // HandHeldStream rejects an accepted sample of RateStream only if the sensing directions do not span three
   // dimensions.
   if (state.probabilities.hand_held >= params_.hand_held_probability_min) {
     if (!state.hand_held_running) {
@@ -128,7 +121,7 @@ RegimeProbabilities RegimeStream::next(const RegimeProbabilities& before, double
                                        std::span<const RateStream::Knot> window, std::size_t k,
                                        const RigCalibration& rig, bool unstable) const {
   const RateStream::Knot& knot = window[k];
-  // With an invalid calibration, the rate was fitted to the force, so both agree in any motion.
+  // An invalid calibration was fitted to the force, so rate and force agree in any motion.
   if (unstable && knot.observation.unmeasured_axes() != 0) return before;
   RateState rate;
   rate.w_WI_I_rad_s = knot.estimate.knot.rate_rad_s;
@@ -145,14 +138,13 @@ std::size_t RegimeStream::index_of(const RateState& rate, const State& state) co
   return k;
 }
 
-// Returns whether RateStream resets its calibration repeatedly, which indicates motion without flight. Only resets
-// within the lag of RateStream count, because they affect the reported rate.
+// Repeated resets of the calibration indicate motion without flight.
 bool RegimeStream::calibration_is_unstable(const State& state) const {
   const RateStream::Params& rate = params_.rate;
   return state.resets > kResetFraction * rate.lag_s / std::max(rate.period_s, rate.step_s);
 }
 
-// Updates the probabilities of the motion types with a reported sample and its rate: forward pass of carried.md (C38).
+// See the forward pass of carried.md (C38).
 void RegimeStream::update_probabilities(const RateState& rate, State& state) const {
   const double dt_s = state.reported == 0 ? params_.evidence.memory_s : seconds(rate.time_ns - state.reported_ns);
   state.probabilities = next(state.probabilities, dt_s, state.rate.window, index_of(rate, state),
@@ -167,8 +159,7 @@ void RegimeStream::update_probabilities(const RateState& rate, State& state) con
   state.sum.hand_held += state.probabilities.hand_held;
 }
 
-// Returns the weight of HandHeldStream in the reported rate: s in carried.md (C40). Near a clipped segment, the weight
-// is the smallest probability of hand-held motion among the segment's nearby samples. Elsewhere, the weight is 0.
+// Returns the weight of HandHeldStream in the reported rate: s in carried.md (C40).
 double RegimeStream::hand_held_weight(const RateState& rate, State& state) const {
   const auto near_ns = static_cast<TimeNs>(std::llround(1e9 * params_.segment_gap_max_s));
   const std::vector<RateStream::Knot>& window = state.rate.window;

@@ -23,15 +23,15 @@ double log_gaussian(double squared_norm, double variance) {
 }
 
 // Returns the log density of a measured force of norm n, if the true force has norm g and any direction: carried.md
-// (C35). For variance v and x = n g / v, the density is N(n; 0) exp(-g^2 / 2v) sinh(x) / x.
+// (C35). For variance v and x = n g / v, the density of the measured force is N(n; 0) exp(-g^2 / 2v) sinh(x) / x.
 double log_about_gravity(double n, double g, double variance) {
   const double x = n * g / variance;
   const double log_sinh_x = x < 1e-3 ? 0.0 : x - std::log(2.0 * x) + std::log1p(-std::exp(-2.0 * x));
   return log_gaussian(n * n + g * g, variance) + log_sinh_x;
 }
 
-// Hand-held motion is either gentle or rough: carried.md (C33). One in kRoughly samples of hand-held motion is rough.
-// Rough motion has a force with a standard deviation kRougher times as large.
+// One in kRoughly samples of hand-held motion is rough, with a kRougher times larger standard deviation of the force:
+// carried.md (C33).
 constexpr double kRoughly = 3.0, kRougher = 5.0;
 
 double log_hand_held(double n, double g, double hand_variance, double grip_variance) {
@@ -41,9 +41,7 @@ double log_hand_held(double n, double g, double hand_variance, double grip_varia
   return larger + std::log(((kRoughly - 1.0) * std::exp(gentle - larger) + std::exp(rough - larger)) / kRoughly);
 }
 
-// Contact is either gentle rolling or an impact with a force of any size: carried.md (C34). `kRolls` is the prior
-// fraction of gentle rolling. A single sample of gentle rolling looks like hand-held motion; the samples before and
-// after decide.
+// Contact is gentle rolling (prior fraction `kRolls`) or an impact with a force of any size: carried.md (C34).
 constexpr double kRolls = 0.5;
 
 double log_contact(double left, double n, double most, double g, double variance) {
@@ -59,7 +57,7 @@ Vector3d angular_acceleration(std::span<const RateState> rates, std::size_t k) {
   return (rates[b].w_WI_I_rad_s - rates[a].w_WI_I_rad_s) / dt_s;
 }
 
-// Returns the matrix of transition probabilities between the motion types within `dt_s`: carried.md (C37).
+// See carried.md (C37).
 Matrix3d changes(const RegimeEvidence::Params& p, double dt_s) {
   const double contacts = 1.0 - std::exp(-p.contacts_hz * dt_s), throws = 0.5 * (1.0 - std::exp(-p.throws_hz * dt_s));
   Matrix3d out;
@@ -75,7 +73,7 @@ RegimeEvidence::RegimeEvidence(const Params& params) : params_(params) {
   require_valid_fields(params);
 }
 
-// Returns the likelihood of a sample and its rate for each motion type: carried.md (C31), (C32), (C33), (C34), (C36).
+// See carried.md (C31), (C32), (C33), (C34), (C36).
 Vector3d RegimeEvidence::likelihood(double dt_s, const ImuSample& sample, const RateState& rate, const Vector3d& alpha,
                                     const Vector3d& lever_arm_m, double lever_arm_variance_m2) const {
   const Vector3d& w = rate.w_WI_I_rad_s;
@@ -98,7 +96,7 @@ Vector3d RegimeEvidence::likelihood(double dt_s, const ImuSample& sample, const 
   return (logs.array() - logs.maxCoeff()).exp().cwiseMax(1e-300);
 }
 
-// Computes one forward step of the motion type probabilities: carried.md (C38).
+// See carried.md (C38).
 RegimeProbabilities RegimeEvidence::next(const RegimeProbabilities& before, double dt_s, const ImuSample& sample,
                                          const RateState& rate, const Vector3d& alpha, const Vector3d& lever_arm_m,
                                          const Matrix3d& lever_arm_covariance_m2) const {
@@ -109,7 +107,7 @@ RegimeProbabilities RegimeEvidence::next(const RegimeProbabilities& before, doub
   return {after[0], after[1], after[2]};
 }
 
-// Computes the motion type probabilities of a recording by a forward and a backward pass: carried.md (C38).
+// See carried.md (C38).
 Status RegimeEvidence::find(std::span<const ImuSample> samples, std::span<const RateState> rates,
                             const Vector3d& lever_arm_m, const Matrix3d& lever_arm_covariance_m2,
                             std::vector<RegimeProbabilities>& out) const {
@@ -143,11 +141,10 @@ Status RegimeEvidence::find(std::span<const ImuSample> samples, std::span<const 
   return {};
 }
 
-// Combines two rate estimates: carried.md (C39). `share` is the probability of the second estimate.
+// See carried.md (C39). `share` is the probability of the second estimate.
 RateState mix_rate_states(const RateState& first, const RateState& second, double share) {
   RateState out = share > 0.5 ? second : first;
   const Vector3d apart = second.w_WI_I_rad_s - first.w_WI_I_rad_s;
-  // The difference `apart` between the two rates increases the covariance of the combined rate.
   out.covariance_rad2_s2 = (1.0 - share) * first.covariance_rad2_s2 + share * second.covariance_rad2_s2 +
                            std::min(share, 1.0 - share) * apart * apart.transpose();
   return out;

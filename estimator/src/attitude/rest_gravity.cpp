@@ -15,7 +15,7 @@ namespace {
 // The limits of the rest detector accept any unit of the force and any plausible gyro bias.
 constexpr RestDetector::Params kRests{.rate_max_rad_s = 0.15, .force_min_m_s2 = 0.3};
 constexpr double kMagnitudeErrorMax = 0.15;  // covers 80 mg of bias and 3 % of scale
-// The tolerance of the angle covers bias and pushes at rest. Above its maximum, chance alone would pass.
+// The tolerance of the angle between measured and expected gravity covers gyro bias and pushes at rest.
 constexpr double kAngleMax_sigmas = 5.0, kAngleToleranceMin_rad = 0.3, kAngleToleranceMax_rad = 0.6;
 constexpr double kCorrelation_s = 0.1;        // minimum correlation time of a rate's error
 constexpr double kSpanRotationMin_rad = 1.0;  // less rotation between two rests hides most faults
@@ -24,7 +24,6 @@ constexpr double kRestGapMax_s = 0.1;         // an unmeasured impact may hide i
 constexpr double kRested_s = 1.0;             // total duration of rest that the check of gravity's magnitude needs
 constexpr double kWrongUnitRatio = 3.0;  // minimum factor for naming a wrong unit; no scale error or bias reaches it
 
-/// Returns parameters of the rest detector that accept any specific force, even far from gravity.
 RestDetector::Params without_force_limits() {
   RestDetector::Params rests = kRests;
   rests.force_max_m_s2 = rests.force_min_m_s2;
@@ -32,9 +31,8 @@ RestDetector::Params without_force_limits() {
   return rests;
 }
 
-/// Returns parameters of the rest detector for forces in mg, cm/s^2 or counts, whose numbers (also of the noise) are
-/// larger than in m/s^2. Readings far above gravity at rest prove a wrong unit, because no robot stands still at ten
-/// times gravity.
+/// In mg, cm/s^2 or counts, forces and their noise have larger numbers than in m/s^2. Readings far above gravity at
+/// rest prove a wrong unit, because no robot stands still at ten times gravity.
 RestDetector::Params scaled_to_larger_units() {
   constexpr double kLarger = 100.0;
   RestDetector::Params rests = kRests;
@@ -44,8 +42,7 @@ RestDetector::Params scaled_to_larger_units() {
   return rests;
 }
 
-/// Returns the largest accepted angle error between two rests, if the rates have the standard deviation `sigma_rad`:
-/// imu_merge.md (I24).
+/// See imu_merge.md (I24).
 double allowed_rad(double sigma_rad) {
   return std::min(kAngleToleranceMax_rad, std::max(kAngleToleranceMin_rad, kAngleMax_sigmas * sigma_rad));
 }
@@ -106,8 +103,7 @@ void RestGravity::step(const ImuSample& sample, const RateState& rate, State& st
   state.span_angle_rad = state.variance_rad2 = state.segment_s = state.segment_rad2_s = 0.0;
 }
 
-/// Integrates the rotation of the body. A reading is the mean over its averaging window, and is valid at the window's
-/// middle: imu_merge.md (I25).
+/// See imu_merge.md (I25). A reading is the mean over its averaging window, and is valid at the window's middle.
 void RestGravity::integrate_rotation(const ImuSample& sample, const RateState& rate, double dt_s, State& state) const {
   const Eigen::Quaterniond half = so3::exp(0.5 * dt_s * rate.w_WI_I_rad_s);
   const Eigen::Vector3d& force = sample.specific_force_m_s2;
@@ -120,15 +116,13 @@ void RestGravity::integrate_rotation(const ImuSample& sample, const RateState& r
   if (at_range || (sample.device_clip_flags & kClipAccel) != 0) state.saturation_deficit_m_s += dt_s * peak;
 }
 
-/// Ends a clipped segment of readings, and adds its variance. Errors within one clipped segment are correlated:
-/// imu_merge.md (I23).
+/// Errors within one clipped segment are correlated: imu_merge.md (I23).
 void RestGravity::end_segment(State& state) const {
   state.variance_rad2 += std::max(kCorrelation_s, state.segment_s) * state.segment_rad2_s;
   state.segment_s = state.segment_rad2_s = 0.0;
 }
 
-/// Compares the specific force integrated between two rests with gravity, as measured at both rests: imu_merge.md
-/// (I25), (I26).
+/// See imu_merge.md (I25), (I26).
 void RestGravity::finish_span(State& state) const {
   end_segment(state);
   if (state.last_rest_force_m_s2.isZero(0.0) || state.span_angle_rad < kSpanRotationMin_rad ||

@@ -26,22 +26,18 @@ constexpr double kRevolutionCost = 100.0;  // limit of a revolution's jerk cost:
 constexpr double kSurroundings_s = 0.3;    // duration before and after a segment that is solved with the segment
 constexpr double kAcceptLogOdds = 3.0;     // log odds (20 to 1) for a change; the cost excludes model errors
 constexpr int kExtraRevolutionsMax = 2;    // maximum number of revolutions more or less than in the optimised solution
-// Maximum number of rounds. Each round tests all segments and solves the whole problem.
 constexpr int kRounds = 3;
 
-/// Segment is a range of nodes [first, last] in which all readings of a sensing element are clipped or unusable.
+/// range of nodes [first, last] in which all readings of a sensing element are clipped or unusable
 struct Segment {
   std::size_t element = 0, first = 0, last = 0;
 };
 
-/// Hypothesis is the solution for an assumed number of revolutions in a segment.
 struct Hypothesis {
   std::vector<Node> nodes;
   double cost = 0.0;
 };
 
-/// AlternativeSolutions contains the probable alternatives to the current solution of a segment, with their
-/// probabilities.
 struct AlternativeSolutions {
   std::size_t from = 0;
   std::vector<std::pair<double, std::vector<Node>>> others;
@@ -52,7 +48,7 @@ double revolution_cost(const Problem& problem, std::size_t steps) {
   return hand_held::revolution_cost(static_cast<double>(steps) * problem.node_s(), problem.jerk_rad_s3_sqrts());
 }
 
-/// Returns the clipped segments that may contain an additional revolution: carried.md (C28).
+/// See carried.md (C28).
 std::vector<Segment> suspect_segments(const Problem& problem) {
   std::vector<Segment> out;
   const std::size_t count = problem.nodes().size();
@@ -83,9 +79,7 @@ std::vector<Segment> suspect_segments(const Problem& problem) {
   return out;
 }
 
-/// Returns the nodes of a part with `turns` additional revolutions about `axis` between nodes a and b. The function
-/// adds a smooth bump to the rate, integrates the attitude, and distributes the remaining attitude error over the
-/// nodes.
+/// Adds `turns` revolutions about `axis` between nodes a and b as a smooth bump of the rate.
 std::vector<Node> with_more_revolutions(const Problem& part, const Vector3d& axis, double turns, std::size_t a,
                                         std::size_t b) {
   std::vector<Node> nodes(part.nodes().begin(), part.nodes().end());
@@ -101,7 +95,6 @@ std::vector<Node> with_more_revolutions(const Problem& part, const Vector3d& axi
   const Vector3d& g_W = part.gravity_W_m_s2();
   for (std::size_t i = a; i <= b; ++i) {
     nodes[i].q_WI = (nodes[i].q_WI * so3::exp(along(i) * missed)).normalized();
-    // The specific force in sensor axes must remain unchanged.
     const Node& before = part.nodes()[i];
     nodes[i].a_W_m_s2 = nodes[i].q_WI * (before.q_WI.conjugate() * (before.a_W_m_s2 - g_W)) + g_W;
   }
@@ -114,7 +107,6 @@ double angle_between(std::span<const Node> from, std::span<const Node> to, const
   return out;
 }
 
-/// Returns the optimised solution of a part, and alternatives with another number of revolutions.
 std::vector<Hypothesis> hypotheses(const Problem& whole, const Segment& segment, const Part& part) {
   const Eigen::RowVector3d m = whole.rows().row(static_cast<Eigen::Index>(segment.element));
   const Vector3d axis = whole.rows().inverse().col(static_cast<Eigen::Index>(segment.element)).normalized();
@@ -124,7 +116,6 @@ std::vector<Hypothesis> hypotheses(const Problem& whole, const Segment& segment,
     Hypothesis found{{}, problem.converge()};
     found.nodes.assign(problem.nodes().begin(), problem.nodes().end());
     if (!std::isfinite(found.cost)) return false;
-    // Discards a solution with the same number of revolutions as another hypothesis.
     for (const Hypothesis& other : out)
       if (std::abs(angle_between(other.nodes, found.nodes, m, whole.node_s())) < kPi) return false;
     const bool likely = out.empty() || found.cost < out.front().cost + 2.0 * kLogOdds;
@@ -142,14 +133,12 @@ std::vector<Hypothesis> hypotheses(const Problem& whole, const Segment& segment,
       if (!keep(other)) break;
     }
   }
-  // Removes alternatives that are improbable compared with the best solution.
   std::erase_if(out, [&](const Hypothesis& each) { return each.cost > out.front().cost + 2.0 * kLogOdds; });
   return out;
 }
 
-/// TestedSegment is the result of the test of one segment. `found` contains the solutions for the nodes from `from` on,
-/// best solution first; `held` is the index of the current solution. `another` states whether an alternative replaces
-/// the current solution.
+/// `found` contains the solutions for the nodes from `from` on, best first, and `held` is the index of the current
+/// solution.
 struct TestedSegment {
   std::size_t from = 0;
   std::vector<Hypothesis> found;
@@ -157,8 +146,7 @@ struct TestedSegment {
   bool another = false;
 };
 
-/// Returns the probabilities of all solutions of a segment, except the current solution with index `standing`:
-/// carried.md (C29).
+/// See carried.md (C29).
 AlternativeSolutions alternative_probabilities(const TestedSegment& tested, std::optional<std::size_t> standing) {
   AlternativeSolutions out{tested.from, {}};
   const double least = tested.found.front().cost;
@@ -171,8 +159,7 @@ AlternativeSolutions alternative_probabilities(const TestedSegment& tested, std:
   return out;
 }
 
-/// Returns the probable alternative solutions of all segments. `taken` is true if the best solutions have replaced the
-/// current solutions.
+/// `taken` is true if the best solutions have replaced the current solutions.
 std::vector<AlternativeSolutions> remaining_alternatives(const std::vector<TestedSegment>& tested, bool taken) {
   std::vector<AlternativeSolutions> out;
   for (const TestedSegment& each : tested) {
@@ -200,9 +187,7 @@ std::vector<Part> with_surroundings(const Problem& problem, std::span<const Segm
   return out;
 }
 
-/// Tests the number of revolutions in each segment. A clearly better solution replaces the current solution. In
-/// segments marked in `fallen`, an earlier test has excluded the current solution, so the best alternative replaces the
-/// current solution.
+/// `fallen` marks segments whose current solution an earlier test has excluded.
 std::vector<TestedSegment> test_segments(const Problem& problem, std::span<const Segment> segments,
                                          std::span<const Part> parts, std::vector<bool>& fallen) {
   std::vector<TestedSegment> out;
@@ -247,8 +232,7 @@ void test_revolutions(Problem& problem, HandHeldSmoother::Report& report, SolveA
   std::vector<Part> parts = with_surroundings(problem, segments);
   std::vector<AlternativeSolutions> open;
   std::vector<bool> fallen(parts.size(), false);
-  // The tests linearise the equations of the nodes outside a part. If a solution changes, the tests must therefore be
-  // repeated.
+  // The tests linearise the equations outside a segment, so a changed solution requires new tests.
   for (int round = 0; round < kRounds; ++round) {
     if (!problem.condense_rest(parts)) break;
     const std::vector<TestedSegment> tested = test_segments(problem, segments, parts, fallen);
@@ -271,7 +255,7 @@ void test_revolutions(Problem& problem, HandHeldSmoother::Report& report, SolveA
     report.revolutions_corrected += static_cast<int>(taken);
   }
   report.revolutions_ambiguous = static_cast<int>(open.size());
-  // Probable alternative solutions increase the covariance: carried.md (C29).
+  // See carried.md (C29).
   for (const AlternativeSolutions& segment : open) {
     for (const auto& [share, nodes] : segment.others) {
       for (std::size_t i = 0; i < nodes.size(); ++i) {

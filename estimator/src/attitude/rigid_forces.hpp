@@ -12,8 +12,8 @@
 
 namespace tumble {
 
-/// RigidForces contains the mean specific forces of several IMUs (units) on one rigid body over a window, in body axes.
-/// RigidForces finds the units whose force contradicts the common motion: imu_merge.md (I6), (I7).
+/// RigidForces contains the mean specific forces of several IMUs on one rigid body over a window, in body axes:
+/// imu_merge.md (I6), (I7).
 struct RigidForces {
   static constexpr std::size_t kUnits = ImuMergeState::kImus;
 
@@ -43,8 +43,7 @@ struct RigidForces {
            e.norm() <= hidden_force_m_s2 + uncertainty_rad_s2 * d.norm();
   }
 
-  /// Returns the IMU that agrees with most other IMUs. If several IMUs agree with equally many others, the function
-  /// returns the IMU whose force changed least.
+  /// If several IMUs agree with equally many others, the function returns the IMU whose force changed least.
   AgreeingForces most_agreed() const {
     AgreeingForces best;
     for (std::size_t k = 0; k < kUnits; ++k) {

@@ -30,7 +30,7 @@ Status Strapdown::step(const ImuSample& sample, State& state) const {
   return {};
 }
 
-/// Computes the attitude with zero heading from the specific force at rest: attitude.md (A1).
+/// See attitude.md (A1).
 Status level(const Eigen::Vector3d& specific_force_m_s2, Eigen::Quaterniond& q_WI) {
   const Eigen::Vector3d& f = specific_force_m_s2;
   if (!f.allFinite()) return {ErrorCode::non_finite, "specific_force_m_s2", f.sum(), kForceMin_m_s2};

@@ -21,8 +21,7 @@ constexpr double kDisplacementSigmaStart_m = 0.1;
 constexpr double kContradicts_sigma2 = 4.0;
 constexpr int kTilt = 0, kBias = 2, kVelocity = 5, kDisplacement = 7, kHeading = 9;
 
-/// Applies a scalar Kalman update to the state with index `index`: attitude.md (A4). `innovation` is measurement minus
-/// prediction. The variance of the heading remains unchanged: attitude.md (A9).
+/// Applies a scalar Kalman update: attitude.md (A4). The variance of the heading remains unchanged: attitude.md (A9).
 void update(int index, double innovation, double variance, TumbleAttitude::State& state) {
   const double heading = state.covariance(kHeading, kHeading);
   const Eigen::Matrix<double, TumbleAttitude::State::kStates, 1> correction =
@@ -38,8 +37,7 @@ double tilt_variance_rad2(const TumbleAttitude::State& state) {
   return state.covariance.diagonal().segment<2>(kTilt).maxCoeff();
 }
 
-/// Returns the reported tilt variance. During a coarse alignment, the reported variance is at least the variance at the
-/// start of the alignment.
+/// During a coarse alignment, the reported tilt variance is at least the variance at the start of the alignment.
 double reported_tilt_rad2(const TumbleAttitude::State& state) {
   const double filtered = tilt_variance_rad2(state);
   return state.alignment.running ? std::max(filtered, state.alignment.tilt_rad2()) : filtered;
@@ -123,7 +121,7 @@ void TumbleAttitude::process_average(State& state) const {
   if (state.node_s >= params_.expert.node_s - 0.5 * length_s) end_node(state);
 }
 
-/// Returns whether the mean rate agrees with the gyro bias, within the uncertainties of both: attitude.md (A16).
+/// See attitude.md (A16).
 bool TumbleAttitude::rotates_within_bias(const State& state) const {
   const Eigen::Array3d off_rad_s = (state.rest.mean_rate_rad_s() - state.bias_rad_s).array();
   const Eigen::Array3d variance = state.covariance.diagonal().segment<3>(kBias).array() +
@@ -139,7 +137,7 @@ void TumbleAttitude::start(State& state) const {
   state.started = true;
 }
 
-/// Integrates attitude, specific force and squared rotation over one sample: attitude.md (A5).
+/// See attitude.md (A5).
 void TumbleAttitude::integrate(const ImuSample& sample, double dt_s, State& state) const {
   Eigen::Vector3d rate = sample.angular_velocity_rad_s - state.bias_rad_s;
   if (state.at_rest) rate.setZero();
@@ -154,7 +152,7 @@ void TumbleAttitude::integrate(const ImuSample& sample, double dt_s, State& stat
   state.node_s += dt_s;
 }
 
-/// Propagates the attitude and its covariance over a gap in the readings: attitude.md (A17), (A18).
+/// See attitude.md (A17), (A18).
 void TumbleAttitude::bridge_gap(const ImuSample& after, const Eigen::Matrix3d& rate_covariance_rad2_s2, double gap_s,
                                 State& state) const {
   if (state.average.readings > 0) process_average(state);
@@ -178,10 +176,9 @@ void TumbleAttitude::bridge_gap(const ImuSample& after, const Eigen::Matrix3d& r
     state.covariance.diagonal().segment<2>(kVelocity).array() += squared(gap.velocity_walk_m_s_sqrts) * gap_s;
   }
   predict_node(state);
-  // A sphere that gripped before the gap is assumed to roll without slip after the gap. A change of velocity during the
-  // gap does not indicate slip.
+  // A sphere that gripped before the gap is assumed to roll without slip after the gap.
   if (params_.radius_m > 0.0 && !state.slipping) state.v_W_m_s = velocity_from_rotation(state);
-  // The tilt variance must be computed before the correction. The new coarse alignment replaces an earlier one.
+  // The correction changes the tilt variance, so the tilt variance is computed first.
   const double tilt = reported_tilt_rad2(state);
   state.alignment = {};
   correct_node(state);
@@ -199,7 +196,6 @@ void TumbleAttitude::end_node(State& state) const {
   clear_node(state);
 }
 
-/// Returns the expected variance of a body's velocity per axis, from its earlier motion and its rotation.
 double TumbleAttitude::body_velocity_variance_m2_s2(double power_m2_s2, const State& state) const {
   if (state.at_rest) return squared(params_.expert.at_rest.velocity_sigma_m_s);
   const double assumed = squared(params_.velocity_m_sqrts) / params_.motion_tau_s;
@@ -207,12 +203,11 @@ double TumbleAttitude::body_velocity_variance_m2_s2(double power_m2_s2, const St
   return std::max({assumed, power_m2_s2, turning});
 }
 
-/// Updates a coarse alignment after the filter has rotated the world frame W by `corrected`: attitude.md (A19), (A20).
+/// See attitude.md (A19), (A20).
 void TumbleAttitude::align(const Eigen::Quaterniond& corrected, State& state) const {
   CoarseAlignment& alignment = state.alignment;
   alignment.force_W_m_s = corrected * alignment.force_W_m_s;
-  // The alignment ignores the velocity that the filter estimated since the gap, because a wrong tilt falsifies this
-  // velocity.
+  // A wrong tilt falsifies the velocity that the filter estimated since the gap.
   const double velocity = body_velocity_variance_m2_s2(alignment.velocity_m2_s2, state);
   const double variance = alignment.variance_rad2(velocity, params_.gravity_m_s2);
   if (variance > squared(params_.expert.gap.aligned_tilt_rad)) {
@@ -226,8 +221,7 @@ void TumbleAttitude::align(const Eigen::Quaterniond& corrected, State& state) co
   alignment = {};
 }
 
-/// Restarts the filter after the coarse alignment. The function rotates the world frame W by `levelling`, sets the tilt
-/// variance to `tilt_rad2`, and resets the velocity.
+/// `levelling` is a rotation of the world frame W.
 void TumbleAttitude::restart(const Eigen::Quaterniond& levelling, double tilt_rad2, double velocity_m2_s2,
                              State& state) const {
   state.q_WI = (levelling * state.q_WI).normalized();
@@ -262,7 +256,7 @@ void TumbleAttitude::add_recovered(double dt_s, State& state) const {
   state.recovered_covariance_rad2_s2.setZero();
 }
 
-/// Predicts the filter states and their covariance from one node to the next: attitude.md (A6), (A7), (A8), (A9).
+/// See attitude.md (A6), (A7), (A8), (A9).
 void TumbleAttitude::predict_node(State& state) const {
   const double h = state.node_s;
   const double keep = std::exp(-h / params_.displacement_tau_s);
@@ -275,8 +269,7 @@ void TumbleAttitude::predict_node(State& state) const {
     F.block<2, 3>(kTilt, kBias) = -state.R_WI_s.topRows<2>();
     F.block<1, 3>(kHeading, kBias) = -state.R_WI_s.row(2);
   }
-  // The derivative of the velocity with respect to the tilt phi is the horizontal part of phi x f. The derivative with
-  // respect to the heading is omitted, because TumbleAttitude does not correct the heading.
+  // The derivative of the velocity with respect to the tilt phi is the horizontal part of phi x f.
   F(kVelocity, kTilt + 1) = state.force_integral_W_m_s.z();
   F(kVelocity + 1, kTilt) = -state.force_integral_W_m_s.z();
   F.block<2, 2>(kDisplacement, kVelocity) = h * Eigen::Matrix2d::Identity();
@@ -292,7 +285,6 @@ void TumbleAttitude::predict_node(State& state) const {
   state.covariance.diagonal().segment<2>(kVelocity).array() += squared(params_.expert.acceleration_noise_m_s_sqrts) * h;
 }
 
-/// Returns whether the sphere slips at the current node, which makes the rolling constraint unusable.
 bool TumbleAttitude::detect_slip(const Eigen::Vector2d& misfit_m_s, State& state) const {
   const double misfit = misfit_m_s.norm();
   state.slip_duration_s = state.slipping ? state.slip_duration_s + state.node_s : 0.0;
@@ -311,8 +303,7 @@ bool TumbleAttitude::detect_slip(const Eigen::Vector2d& misfit_m_s, State& state
   return state.slipping;
 }
 
-/// Returns the variance of a body's velocity or displacement per axis: attitude.md (A13). `power` is the variance at
-/// the previous node.
+/// See attitude.md (A13).
 double TumbleAttitude::motion_variance(const Eigen::Vector2d& misfit, int index, double sigma_sqrts, double power,
                                        const State& state) const {
   const double seen = 0.5 * (misfit.squaredNorm() - state.covariance.block<2, 2>(index, index).trace());
@@ -320,8 +311,7 @@ double TumbleAttitude::motion_variance(const Eigen::Vector2d& misfit, int index,
   return std::max({squared(sigma_sqrts) / params_.motion_tau_s, seen, decayed_power});
 }
 
-/// Corrects the velocity of a moving body that is not a sphere, and corrects the displacement towards zero: attitude.md
-/// (A12), (A14).
+/// See attitude.md (A12), (A14).
 void TumbleAttitude::correct_body(const Eigen::Vector2d& turned_m_s, State& state) const {
   const double memories = params_.motion_tau_s / state.node_s;
   if (!state.at_rest) {
@@ -339,15 +329,14 @@ void TumbleAttitude::correct_body(const Eigen::Vector2d& turned_m_s, State& stat
   }
 }
 
-/// Returns the horizontal velocity of the IMU due to the body's rotation: attitude.md (A11). The velocity is the sum of
-/// the centre's rolling velocity and the IMU's velocity about the centre.
+/// Returns the horizontal velocity of the IMU due to the body's rotation: attitude.md (A11).
 Eigen::Vector2d TumbleAttitude::velocity_from_rotation(const State& state) const {
   const Eigen::Vector3d w_W = state.q_WI * state.rate_rad_s;
   const Eigen::Vector3d arm_W = state.q_WI * params_.lever_arm_m + params_.radius_m * Eigen::Vector3d::UnitZ();
   return w_W.cross(arm_W).head<2>();
 }
 
-/// Corrects the velocity of a sphere or of a body at rest, and the gyro bias at rest: attitude.md (A11), (A12).
+/// See attitude.md (A11), (A12).
 void TumbleAttitude::correct_node(State& state) const {
   const double h = state.node_s;
   const Eigen::Vector2d turned = velocity_from_rotation(state);

@@ -27,7 +27,7 @@ Eigen::Vector3d by_rotation(const Eigen::Vector3d& w, const Eigen::Vector3d& a, 
 
 }  // namespace
 
-/// Adds a reading of one IMU to the sums for each alternative of signs and axis order: imu_merge.md (I9).
+/// See imu_merge.md (I9).
 void UnitSignCheck::add(const Eigen::Vector3d& force_m_s2, const Eigen::Vector3d& position_m,
                         const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& acceleration_rad_s2,
                         double length_s) {

@@ -14,12 +14,11 @@ namespace tumble {
 namespace {
 
 constexpr double kNoDirection_m_s2 = 1e-6;
-/// Within the forgetting time, the variance of the bias grows by kForgottenSigma_rad_s^2 (0.1 deg/s in the VQF
-/// publication).
+/// growth of the bias' standard deviation within the forgetting time (0.1 deg/s in the VQF publication)
 constexpr double kForgottenSigma_rad_s = 1.7453292519943295e-3;
 
-/// Returns the measurement variance for which the variance of a scalar bias filter converges to sigma^2. The random
-/// walk of the bias adds `growth` per step.
+/// Returns the measurement variance for which a scalar bias filter with random walk `growth` per step converges to
+/// sigma^2.
 double steady_noise(double sigma, double growth) {
   const double variance = sigma * sigma;
   return variance * variance / growth + variance;
@@ -66,15 +65,14 @@ void Vqf::detect_rest(const ImuSample& sample, double dt_s, State& state) const 
   state.at_rest = state.rest_s >= params_.rest_time_s && quiet;
 }
 
-/// Corrects the rotation q_WN of the inertial frame by the specific force. Returns the unit vector along the specific
-/// force (upwards), in frame W before the correction.
+/// Returns the unit vector along the specific force (upwards), in frame W before the correction.
 Eigen::Vector3d Vqf::level_inertial_frame(const Eigen::Vector3d& f_I_m_s2, double dt_s, State& state) const {
-  // Low-pass filter of the specific force: attitude.md (A3).
+  // See attitude.md (A3).
   state.f_N_m_s2.advance(state.q_NI * f_I_m_s2, params_.tau_s, dt_s, low_pass_prewarp(params_.tau_s, dt_s));
   const double length = state.f_N_m_s2.value.norm();
   if (length < kNoDirection_m_s2) return Eigen::Vector3d::UnitZ();
   const Eigen::Vector3d up_W = state.q_WN * (state.f_N_m_s2.value / length);
-  // Levelling of the inertial frame by the filtered specific force: attitude.md (A2).
+  // See attitude.md (A2).
   state.q_WN = (levelling(up_W) * state.q_WN).normalized();
   return up_W;
 }
@@ -100,8 +98,7 @@ void Vqf::estimate_bias(const Eigen::Vector3d& up_W, double dt_s, State& state) 
     noise.setConstant(steady_noise(params_.expert.bias_sigma_rest_rad_s, growth));
   } else if (params_.motion_bias_estimation) {
     H = Eigen::Map<const Eigen::Matrix3d>(state.R_WI.value.data());
-    // The correction rate of the vertical has two causes: the remaining bias, and the bias that was corrected after the
-    // force entered the low-pass filter.
+    // The correction rate of the vertical contains the remaining gyro bias and the recently corrected gyro bias.
     const Eigen::Vector2d low_passed = state.bias_W_rad_s.value;
     innovation = Eigen::Vector3d(low_passed.x() - up_W.y() / dt_s, low_passed.y() + up_W.x() / dt_s, 0.0) - H * b;
     const double motion = steady_noise(params_.expert.bias_sigma_motion_rad_s, growth);

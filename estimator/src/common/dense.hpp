@@ -3,16 +3,14 @@
 
 #include <Eigen/Core>
 
-/// dense.hpp declares decompositions of large symmetric matrices, which are compiled once for all sizes. Eigen
-/// instantiates fixed-size decompositions in each file and for each size, which would double the compile time of the
-/// files that decompose matrices. The factorisations equal Eigen's bit for bit; the eigenvalues are equal up to
-/// rounding. Each decomposition allocates memory, so call it at most once per sweep or run.
+/// Decompositions of fixed-size Eigen matrices would double the compile time, so the functions accept matrices of all
+/// sizes. The factorisations equal Eigen's bit for bit; the eigenvalues are equal up to rounding. Each decomposition
+/// allocates memory.
 namespace tumble::dense {
 
 using Symmetric = Eigen::Ref<const Eigen::MatrixXd>;  ///< only the lower triangle is read
 
-/// Cholesky factorises a positive definite matrix A and solves A X = B in place. If A is not positive definite, `ok()`
-/// returns false and the results are undefined.
+/// If the matrix A is not positive definite, `ok()` returns false and the results are undefined.
 class Cholesky {
  public:
   explicit Cholesky(const Symmetric& A);
@@ -38,7 +36,7 @@ class Cholesky {
 void solve_semidefinite(const Symmetric& A, Eigen::Ref<Eigen::MatrixXd> B);
 void solve_semidefinite_vector(const Symmetric& A, Eigen::Ref<Eigen::VectorXd> b);
 
-/// Computes the eigenvalues of a symmetric matrix in ascending order, and the eigenvectors.
+/// The eigenvalues are in ascending order.
 void decompose(const Symmetric& A, Eigen::Ref<Eigen::VectorXd> values, Eigen::Ref<Eigen::MatrixXd> vectors);
 void eigenvalues(const Symmetric& A, Eigen::Ref<Eigen::VectorXd> values);
 

@@ -30,7 +30,7 @@ Status check_stamp_order(TimeNs time_ns, TimeNs previous_ns, double gap_max_s) {
   if (time_ns <= previous_ns) {
     return {ErrorCode::time_order, "time_ns", static_cast<double>(time_ns), static_cast<double>(previous_ns)};
   }
-  // The time difference is unsigned, because the difference of two 64-bit time stamps may overflow a signed integer.
+  // The difference of two signed 64-bit time stamps may overflow.
   const std::uint64_t gap_ns = static_cast<std::uint64_t>(time_ns) - static_cast<std::uint64_t>(previous_ns);
   const double gap_s = static_cast<double>(gap_ns) * 1e-9;
   if (gap_s > gap_max_s) return {ErrorCode::gap, "time_s since the last sample", gap_s, gap_max_s};

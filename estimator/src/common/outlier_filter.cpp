@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// The section "Thresholds" of docs/maths/outliers.md justifies the thresholds of the outlier test by measurements.
+// See the section "Thresholds" of docs/maths/outliers.md.
 constexpr double kRateMin_rad_s = 1.0;                // smallest jump of a gyro reading that is an outlier
 constexpr double kForceMin_m_s2 = 30.0;               // smallest jump of an accelerometer reading that is an outlier
 constexpr double kOutlierRatio = 3.0;                 // minimum ratio of an outlier to the difference of its neighbours
@@ -22,7 +22,7 @@ constexpr double kLever_m = 10.0;                     // largest force of a robo
 constexpr double kRateJumpMax_rad_s = 50.0;           // largest plausible jump of the rate in a single sample
 constexpr double kVelocityJumpMax_m_s = 20.0;         // largest plausible jump of the velocity in a single sample
 constexpr double kNear_s = 0.1;                       // maximum time between compared neighbours
-// After a longer step between stamps, the sample is delayed, because the next stamp may be earlier.
+// After a longer step between stamps, the filter delays the sample, because the next stamp may be earlier.
 constexpr double kStampStepMax_periods = 1.75;
 
 // A reading may be saturated if it exceeds kAtRange times the stated range, or if it is large and repeated.
@@ -31,7 +31,6 @@ constexpr double kRepeats_rad_s = 1.0, kRepeats_m_s2 = 15.0;
 
 constexpr double kUnknown = std::numeric_limits<double>::infinity();
 
-/// Triad contains the thresholds of the gyro or of the accelerometer.
 struct Triad {
   Vector3d ImuSample::*reading;
   std::uint8_t clip_flags;
@@ -60,13 +59,12 @@ Triad accel_of(const OutlierFilter::Device& device) {
   return {&ImuSample::specific_force_m_s2, kClipAccel, device.accel_range_m_s2, kRepeats_m_s2};
 }
 
-/// Returns the time between the stamps of two samples, in seconds. The subtraction is unsigned, because the difference
-/// of two stamps may overflow a signed integer.
+/// The difference of two signed 64-bit time stamps may overflow.
 double step_s(const ImuSample& from, const ImuSample& to) {
   return 1e-9 * static_cast<double>(static_cast<std::uint64_t>(to.time_ns) - static_cast<std::uint64_t>(from.time_ns));
 }
 
-/// Sequence contains the last accepted samples and the samples under test, oldest first.
+/// last accepted samples and samples under test, oldest first
 struct Sequence {
   std::array<const ImuSample*, 4> samples{};
   std::size_t count = 0;
@@ -83,8 +81,7 @@ Sequence recent_sequence(const OutlierFilter::State& state) {
   return out;
 }
 
-/// Returns the largest change from one reading to the next: outliers.md (O3). Returns kUnknown if saturation may hide a
-/// change.
+/// See outliers.md (O3). Returns kUnknown if saturation may hide a change.
 double largest_step(const Sequence& sequence, const Triad& triad) {
   double out = 0.0;
   for (std::size_t k = 1; k < sequence.count; ++k) {
@@ -94,7 +91,7 @@ double largest_step(const Sequence& sequence, const Triad& triad) {
   return out;
 }
 
-/// Returns the largest difference between two consecutive steps of the readings: outliers.md (O4).
+/// See outliers.md (O4).
 double largest_bend(const Sequence& sequence, const Triad& triad) {
   double out = 0.0;
   for (std::size_t k = 1; k < sequence.count; ++k) {
@@ -106,8 +103,8 @@ double largest_bend(const Sequence& sequence, const Triad& triad) {
   return out;
 }
 
-/// Returns the distance of a reading from the closer neighbour, if the reading is above or below both neighbours;
-/// otherwise 0. The axis with the largest distance counts: outliers.md (O1).
+/// Returns the distance from the closer neighbour if the reading is above or below both neighbours, otherwise 0:
+/// outliers.md (O1).
 double distance_from_neighbours(const Vector3d& before, const Vector3d& now, const Vector3d& after) {
   double out = 0.0;
   for (int axis = 0; axis < 3; ++axis) {
@@ -117,8 +114,7 @@ double distance_from_neighbours(const Vector3d& before, const Vector3d& now, con
   return out;
 }
 
-/// Returns the distance of a reading from the last accepted reading or from the line through the last two, whichever is
-/// smaller: outliers.md (O2).
+/// See outliers.md (O2).
 double distance(const ImuSample& sample, const OutlierFilter::State& state, const Triad& triad) {
   const ImuSample &first = state.recent_inliers[0], &last = state.recent_inliers[1];
   const Vector3d step = triad.of(sample) - triad.of(last);
@@ -176,8 +172,7 @@ bool OutlierFilter::must_delay(const ImuSample& sample, State& state) const {
   return true;
 }
 
-/// Returns the larger of the nominal period and the last time step between samples. Returns infinity if no nominal
-/// period is stated.
+/// Returns infinity if no nominal period is stated.
 double OutlierFilter::period_s(const State& state) const {
   if (!(device_.period_s > 0.0)) return kUnknown;
   if (state.count < 2) return device_.period_s;
@@ -191,8 +186,7 @@ bool OutlierFilter::is_suspicious(const ImuSample& sample, const State& state) c
   return after_s > kStampStepMax_periods * period_s(state) || jumps(sample, state);
 }
 
-/// Returns whether the reading of the gyro or accelerometer jumps further than the reading of the other sensor
-/// explains: outliers.md (O5).
+/// Returns whether a reading jumps further than the reading of the other sensor explains: outliers.md (O5).
 bool OutlierFilter::jumps(const ImuSample& sample, const State& state) const {
   const double after_s = step_s(state.recent_inliers[1], sample);
   if (after_s > kNear_s) return false;
@@ -203,7 +197,7 @@ bool OutlierFilter::jumps(const ImuSample& sample, const State& state) const {
          distance(sample, state, accel_of(device_)) > accel_threshold(device_, sequence, sample, step);
 }
 
-/// Returns whether the reading `delayed` is an outlier, given the next reading: outliers.md (O6).
+/// See outliers.md (O6).
 bool OutlierFilter::is_outlier(const ImuSample& delayed, const ImuSample& after, const State& state) const {
   const ImuSample& before = state.recent_inliers[1];
   if (state.count == 0 || step_s(before, delayed) > kNear_s || step_s(delayed, after) > kNear_s) return false;

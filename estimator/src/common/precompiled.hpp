@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// precompiled.hpp includes the headers that nearly every source uses, and instantiates frequent Eigen expressions. The
-// compiler spends more time on the classes of an Eigen expression than on its machine code (docs/figures.md).
-// CMakeLists.txt adds this header to each source; the header affects only the compile time.
+// CMakeLists.txt adds precompiled.hpp to each source to reduce the compile time (docs/figures.md).
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -20,7 +18,6 @@ template <class... Expressions>
 constexpr bool known = (... && (sizeof(std::remove_cvref_t<Expressions>) > 0 &&
                                 sizeof(Eigen::internal::evaluator<std::remove_cvref_t<Expressions>>) > 0));
 
-/// `known_matrices` is always true; it instantiates the given matrix types with their constants and identities.
 template <class... Matrices>
 constexpr bool known_matrices = (... && known<Matrices, decltype(Matrices::Zero()), const Matrices>);
 template <class... Matrices>
@@ -39,17 +36,13 @@ extern const double s;
 
 static_assert(known_matrices<Real<2>, Real<3>, Real<4>, Real<5>, Real<6>, Real<9>, Real<Eigen::Dynamic>, Real<3, 6>>);
 static_assert(known_squares<Real<2, 2>, Real<3, 3>, Real<4, 4>, Real<6, 6>, Real<9, 9>>);
-// matrices with the sizes of the rate model's states
 static_assert(known_matrices<Real<20>, Real<29>, Real<3, 20>, Real<29, 29>> && known_squares<Real<20, 20>>);
-// sums, differences, multiples, norms and products of 3-vectors
 static_assert(known<decltype(a + b), decltype(a - b), decltype(s * a), decltype(a / s), decltype(a + s * b),
                     decltype(s * (a - b)), decltype(a.cwiseAbs()), decltype(a.cwiseAbs2()),
                     decltype(a.conjugate().cwiseProduct(b)), decltype(R * a), decltype(R.lazyProduct(a)),
                     decltype(a.transpose()), decltype(s * part)>);
-// comparisons and finiteness checks
 static_assert(known<decltype((a - a).array()), decltype((a - a).array() == (a - a).array()), decltype(a.cwiseEqual(b)),
                     decltype(R.cwiseNotEqual(Q.Identity()))>);
-// rows and columns of a rotation matrix, and the product of the matrix with a 3-vector
 static_assert(
     known<decltype(R.row(0)), decltype(R.col(0)), decltype(Q.row(0)), decltype(R.row(0).transpose()),
           decltype(Q.row(0).transpose()), decltype(a.col(0)), decltype(R.row(0).transpose().cwiseProduct(a.col(0)))>);

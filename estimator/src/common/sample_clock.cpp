@@ -15,8 +15,7 @@ constexpr double kOutlier = 4.0;  // largest error of an accepted stamp, in stan
 constexpr double kStray = 0.4;    // error of a stamp, in periods, above which the sample number is uncertain
 constexpr std::size_t kConsecutiveOutliersMax = 8;
 constexpr double kPeriodJitterMax = 0.25;  // maximum jitter in periods; random stamps have 0.29
-// Maximum correlation of successive errors of the fitted line; a larger correlation means that the line does not follow
-// the clock.
+// If successive residuals correlate more strongly, the fitted line does not follow the sensor's clock.
 constexpr double kErrorCorrelationMax = 0.5;
 constexpr double kStepMin_periods = 0.25;      // minimum time between two samples, in periods
 constexpr double kSampleNumberSigmaMax = 0.1;  // maximum uncertainty of the sample number after a gap, in periods
@@ -29,7 +28,6 @@ double after_ns(TimeNs later_ns, TimeNs earlier_ns) {
 }
 
 struct Line {
-  /// slope of the line; value of the line at the last stamp, relative to the first stamp
   double period_ns = 0.0, last_ns = 0.0;
   double weighted_number_sum = 0.0,
          weighted_number_squared_sum = 0.0;  ///< sums over the sample numbers, counted from the last stamp
@@ -68,7 +66,6 @@ double median_step(const Offsets& x_ns) {
   return steps[steps.size() / 2];
 }
 
-// Numbers the samples according to the time steps between their stamps.
 Numbers index_from_steps(const Offsets& x_ns, double period_ns) {
   Numbers n{};
   for (std::size_t k = 1; k < n.size(); ++k)
@@ -118,8 +115,7 @@ Status SampleClock::push(TimeNs stamp_ns, State& state, TimeNs& time_ns) const {
     const double bound_ns = 0.5 * state.period_ns;
     time_ns += std::llround(std::clamp(state.fit_residual_ns, -bound_ns, bound_ns));
   }
-  // Corrected stamps must increase, even after an uncorrected stamp or a burst of stamps. After an uncorrected stamp or
-  // a burst, the corrected stamps approach the received stamps.
+  // Corrected stamps must increase, even after an uncorrected stamp or a burst of stamps.
   if (state.stamp_ns && time_ns <= state.time_ns)
     time_ns =
         state.time_ns + std::max<TimeNs>(1, std::llround(std::min(kStepMin_periods * state.period_ns, 0.5 * step_ns)));
@@ -128,7 +124,6 @@ Status SampleClock::push(TimeNs stamp_ns, State& state, TimeNs& time_ns) const {
   return {};
 }
 
-/// Fits a line (time against sample number) to the first time stamps if the stamps are periodic.
 void SampleClock::begin(State& state) const {
   Offsets x_ns{};
   for (std::size_t k = 0; k < kFirstFitStamps; ++k) x_ns[k] = after_ns(state.start[k], state.start.front());
@@ -150,8 +145,7 @@ void SampleClock::begin(State& state) const {
   state.outliers = 0;
 }
 
-/// Updates the fitted line with a time stamp: sample_clock.md (S1), (S2), (S3). Restarts the fit if the sample number
-/// is uncertain.
+/// See sample_clock.md (S1), (S2), (S3). An uncertain sample number restarts the fit.
 void SampleClock::update_line(double step_ns, TimeNs stamp_ns, State& state) const {
   const double passed_ns = step_ns - state.fit_residual_ns;
   const double number = std::max(1.0, std::round(passed_ns / state.period_ns));

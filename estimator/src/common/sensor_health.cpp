@@ -78,10 +78,10 @@ double HealthFinding::confidence() const {
   return larger > 0.0 && std::isfinite(larger) ? 1.0 - std::min(distance, limit) / larger : 1.0;
 }
 
-/// Estimates after the end of an attitude, vertical or localisation failure are correct. The covariance or the frame of
-/// an estimate marks estimates during the failure. A tracking failure makes all later poses wrong.
+/// Estimates after the end of an attitude, vertical or localisation failure are correct. A tracking failure makes all
+/// later poses wrong.
 bool HealthFinding::invalidates_estimate() const {
-  // the scale of the gyro is suspect only until the rotation of gravity confirms the scale
+  // The rotation of gravity later confirms or corrects a suspect gyro scale.
   const bool recovers = kind == Kind::attitude_unknown || kind == Kind::vertical_unknown ||
                         kind == Kind::not_localised || kind == Kind::gyro_scale;
   return meaning(kind).invalidates && !(ended && recovers);

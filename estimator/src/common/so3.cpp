@@ -7,13 +7,13 @@ namespace tumble::so3 {
 
 namespace {
 
-// For angles below kSmallAngle, two terms of the power series are exact to rounding.
+// For angles below 1e-4, two terms of the power series are exact to rounding.
 constexpr double kSmallAngle = 1e-4;
-// For angles x below kCancellingAngle, x - sin(x) loses digits by cancellation. Six terms of the power series are exact
-// to rounding up to kCancellingAngle.
+// For angles x below 0.5, x - sin(x) loses digits by cancellation, and six terms of the power series are exact to
+// rounding.
 constexpr double kCancellingAngle = 0.5;
 
-// Returns (1 - cos x) / x^2. The half-angle formula avoids the cancellation of digits in 1 - cos x.
+// Returns (1 - cos x) / x^2 by the half-angle formula, which avoids cancellation of digits.
 double cosine_term(double angle, double angle2) {
   if (angle < kSmallAngle) return 0.5 - angle2 / 24.0;
   const double s = std::sin(0.5 * angle);
@@ -48,8 +48,8 @@ Eigen::Quaterniond exp(const Eigen::Vector3d& phi) {
 }
 
 Eigen::Vector3d log(const Eigen::Quaterniond& q) {
-  // A half turn has two rotation vectors, v and -v. The result is the vector whose first non-zero component is
-  // positive, so that q and -q have the same logarithm.
+  // A half turn has two rotation vectors, v and -v. The first non-zero component of the result is positive, so that q
+  // and -q have the same logarithm.
   double sign = q.w() < 0.0 ? -1.0 : 1.0;
   if (q.w() == 0.0) {
     const double lead = q.x() != 0.0 ? q.x() : (q.y() != 0.0 ? q.y() : q.z());
@@ -79,9 +79,8 @@ Eigen::Matrix3d left_jacobian_inverse(const Eigen::Vector3d& phi) {
 }
 
 Eigen::Quaterniond shortest_arc(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
-  // The rotation is the quaternion with real part |h| / 2 and imaginary part (from x to) / |h|, where h = from + to.
-  // The code computes from x to as from x h. For nearly opposite vectors, h is exact to rounding, so the
-  // formula is accurate up to a half turn.
+  // With h = from + to, the rotation is the quaternion (|h| / 2, (from x h) / |h|). For nearly opposite vectors, h is
+  // exact to rounding, so the formula is accurate up to a half turn.
   const Eigen::Vector3d h = from + to;
   const double length = h.norm();
   if (length < 1e-15) {

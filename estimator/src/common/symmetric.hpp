@@ -3,8 +3,7 @@
 
 namespace tumble {
 
-/// Replaces a covariance P by (P + P^T) / 2, which removes asymmetry due to rounding. The function works in place,
-/// because a copy would need too much stack.
+/// Replaces P by (P + P^T) / 2 in place, because a copy of the matrix would need too much stack.
 template <class Matrix>
 void make_symmetric(Matrix& P) {
   for (int j = 0; j < P.cols(); ++j) {

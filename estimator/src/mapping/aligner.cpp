@@ -14,12 +14,9 @@ Registration::Params full_params(const LidarInertialOdometry::Params& params) {
   return out;
 }
 
-// Maximum distance between a point and its matched map points in the coarse stage, as a multiple of the matching
-// distance.
 constexpr double kCoarseReach = 2.0;
 
-/// Returns the parameters of a coarse registration. A coarse registration has wider limits, because its result only
-/// needs to be near the solution.
+/// The result of a coarse registration only needs to be near the solution.
 Registration::Params coarse_params(const LidarInertialOdometry::Params& params) {
   const MatchingParams& matching = params.expert.matching;
   const RegistrationStagesParams& stages = params.expert.stages;
@@ -36,7 +33,7 @@ Registration::Params coarse_params(const LidarInertialOdometry::Params& params) 
   return out;
 }
 
-/// Selects at most `count` points of a sweep: every n-th point.
+/// Selects every n-th point, at most `count` points.
 void select_evenly(std::span<const SweepPoint> points, std::size_t count, std::vector<SweepPoint>& out) {
   out.clear();
   const std::size_t every = std::max<std::size_t>(1, (points.size() + count - 1) / count);
@@ -45,12 +42,11 @@ void select_evenly(std::span<const SweepPoint> points, std::size_t count, std::v
 
 void align(Registration& registration, const Registration::Prior& prior, const Scene& scene,
            std::span<const SweepPoint> points, SweepTrajectory& trajectory, Registration::Result& found) {
-  // align() cannot fail here, because add_sweep() ensures that the IMU samples cover the sweep.
+  // add_sweep() ensures that the IMU samples cover the sweep, so align() cannot fail.
   const Status status = registration.align(prior, scene.samples, scene.end_ns, points, scene.map, trajectory, found);
   if (!status.ok()) found.verdict = RegistrationVerdict::diverged;
 }
 
-/// Returns the prior of a registration that continues from the result `found`.
 Registration::Prior from(const Registration::Result& found, const Registration::Prior& prior) {
   Registration::Prior out = prior;
   out.start = found.mean.state;

@@ -9,7 +9,6 @@
 
 namespace tumble::mapping {
 
-/// Scene contains the map, the sweep and its IMU samples, as input of a registration.
 struct Scene {
   std::span<const MotionSample> samples;
   TimeNs end_ns;
@@ -17,25 +16,22 @@ struct Scene {
   const VoxelMap& map;
 };
 
-/// Aligner registers a sweep to the map in stages. `found.verdict` states whether the registration succeeded.
-/// `trajectory` is the registered motion, or the motion of a failed attempt.
+/// Aligner registers a sweep to the map in stages, from few points to all points. `trajectory` receives the registered
+/// motion, or the motion of a failed attempt.
 class Aligner {
  public:
   explicit Aligner(const LidarInertialOdometry::Params& params);
 
-  /// Registers a sweep with all points and few iterations. If the registration does not converge, stages with fewer
-  /// points continue at lower cost.
+  /// Registers a sweep with all points and few iterations, and continues with fewer points if it does not converge.
   void align_with_all_points(const Registration::Prior& prior, const Scene& scene, SweepTrajectory& trajectory,
                              Registration::Result& found);
-  /// Registers a sweep with a subset of its points until convergence, then with all points from the converged pose.
+  /// Registers a sweep with a subset of its points until convergence, then with all points.
   void align_to_convergence(const Registration::Prior& prior, const Scene& scene, SweepTrajectory& trajectory,
                             Registration::Result& found);
-  /// Registers a sweep from an initial pose that may be far from the solution, in a coarse stage with few points. After
-  /// a successful coarse stage, the registration continues to convergence.
+  /// Starts with a coarse stage, because the initial pose may be far from the solution.
   void align_coarse_to_fine(const Registration::Prior& start, const Registration::Prior& prior, const Scene& scene,
                             SweepTrajectory& trajectory, Registration::Result& found);
 
-  /// Returns the registration with all points, which also computes the variance of a lidar return.
   const Registration& registration() const { return full_; }
 
  private:

@@ -15,10 +15,9 @@ namespace u = unknowns;
 using Motion = Eigen::Matrix<double, 9, 9>;
 using Params = LidarInertialOdometry::Params;
 
-// Standard deviation and correlation time of the speed before a map exists. Robots rarely exceed kSpeed_m_s.
+// standard deviation and correlation time of the speed before a map exists
 constexpr double kSpeed_m_s = 10.0, kSpeedTime_s = 1.0;
-// Standard deviations of tilt and speed for a start in motion. The mean force over half a second is assumed to differ
-// from gravity by 1 m/s^2.
+// For a start in motion, the mean force over half a second is assumed to differ from gravity by 1 m/s^2.
 constexpr double kMovingTilt_rad = 0.1, kMovingSpeed_m_s = 2.0;
 
 StateEstimate of_motion(const MotionState& state, const SweepCalibration& calibration, const Motion& weight,
@@ -37,7 +36,7 @@ double yaw_rad(const Eigen::Quaterniond& q) {
 }
 
 /// Returns the matrix that transforms the errors of position, attitude and velocity to a frame with origin at the IMU,
-/// rotated by `turn`. The transformation includes the error of the IMU's position in the old frame.
+/// rotated by `turn`.
 Motion frame_jacobian(const Eigen::Matrix3d& turn, const Eigen::Vector3d& v_WI_m_s) {
   Motion T = Motion::Zero();
   T.block<2, 3>(3, 3) = turn.topRows<2>();
@@ -46,8 +45,8 @@ Motion frame_jacobian(const Eigen::Matrix3d& turn, const Eigen::Vector3d& v_WI_m
   return T;
 }
 
-/// Applies a Kalman update with a measured velocity of 0 and standard deviation `sigma_m_s`. The gain follows from the
-/// covariance C. The update applies to C and to the covariance E of the actual errors.
+/// Applies a Kalman update with the measured velocity 0; the gain follows from C, and E is the covariance of the actual
+/// errors.
 void bound_speed(double sigma_m_s, MotionState& state, Motion& C, Motion& E) {
   const Eigen::Matrix3d R = sigma_m_s * sigma_m_s * Eigen::Matrix3d::Identity();
   const Eigen::Matrix3d S = u::block(C, u::velocity) + R;
@@ -128,15 +127,15 @@ StateEstimate reset_origin_and_yaw(const StateEstimate& reckoned, double step_s)
   return of_motion(state, reckoned.mean.calibration, T * C * T.transpose(), T * E * T.transpose());
 }
 
-/// Returns the state estimate in the frame of the map, which is rotated by the IMU's tilt error φ. In the frame of the
-/// map, the attitude has no error, and velocity v and gravity g have the errors δv + v × φ and g × φ.
+/// In the map frame, the attitude has no error, because the frame is rotated by the tilt error φ. Velocity v and
+/// gravity g have the errors δv + v × φ and g × φ.
 StateEstimate estimate_at_first_sweep(const Params& params, const StateEstimate& reckoned) {
   MotionState start = reckoned.mean.state;
   start.covariance.setZero();
   u::variances(start.covariance, u::tilt)
       .setConstant(params.expert.start.level_sigma_rad * params.expert.start.level_sigma_rad);
   StateEstimate out = estimate_at_start(params, start);
-  // Derivative of velocity and gravity with respect to the errors of the motion.
+  // derivative of velocity and gravity with respect to the errors of the motion
   Eigen::Matrix<double, 6, 9> T = Eigen::Matrix<double, 6, 9>::Zero();
   T.block<3, 3>(0, 3) = so3::hat(start.v_WI_m_s);
   T.block<3, 3>(0, 6).setIdentity();

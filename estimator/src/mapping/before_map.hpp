@@ -4,37 +4,31 @@
 #include "state_estimate.hpp"
 #include "world_covariance.hpp"
 
-/// before_map.hpp estimates the IMU's state before the first sweep starts the map, see mapping.md, section 6.
+/// See mapping.md, section 6.
 namespace tumble::mapping {
 
-/// Returns the state estimate of an IMU before a map exists. `levelled` is the state after levelling by gravity.
 /// Gravity is exactly vertical in the world frame, so a wrong tilt is an error of the attitude.
 StateEstimate estimate_before_map(const LidarInertialOdometry::Params& params, const MotionState& levelled);
 
-/// Increases the covariance of a state that was levelled in motion, because the mean force then differs from gravity,
-/// and the velocity is unknown.
+/// The mean force of a moving body differs from gravity, and the velocity of the body is unknown.
 void widen_for_motion(MotionState& levelled);
 
 /// Returns `motion` with the position and heading of `T_WI`, and with unchanged tilt.
 MotionState moved_to(const Eigen::Isometry3d& T_WI, const MotionState& motion);
 StateEstimate moved_to(const Eigen::Isometry3d& T_WI, const StateEstimate& estimate);
 
-/// Returns the estimate with the tilt of another source. The errors of the new tilt are independent of all other
-/// errors.
+/// The errors of the new tilt are independent of all other errors.
 StateEstimate with_tilt(const LidarInertialOdometry::StartTilt& tilt, const StateEstimate& estimate);
 
-/// Returns the dead-reckoned state in a frame with origin and yaw of the IMU, `step_s` after the last call. Without a
-/// map, measurements do not determine origin and yaw. A weak prior on the speed limits the errors of tilt and velocity
-/// over minutes of motion.
+/// Returns the dead-reckoned state in a frame with origin and yaw of the IMU, `step_s` after the last call. A weak
+/// prior on the speed limits the errors of tilt and velocity over minutes of motion.
 StateEstimate reset_origin_and_yaw(const StateEstimate& reckoned, double step_s);
 
-/// Returns the state at the start of the sweep that starts the map. The lidar's pose at the start of the first sweep
-/// defines the map frame, so this pose has no error. The tilt error of dead reckoning therefore becomes an error of
-/// gravity's direction. `reckoned` is the result of reset_origin_and_yaw() or estimate_before_map().
+/// The lidar's pose at the start of the first sweep defines the map frame, and is therefore exact. The tilt error of
+/// dead reckoning therefore becomes an error of gravity's direction.
 StateEstimate estimate_at_first_sweep(const LidarInertialOdometry::Params& params, const StateEstimate& reckoned);
 
-/// Returns the covariance of the map relative to the world at the start. The map's vertical is as uncertain as the tilt
-/// of `reckoned`.
+/// The map's vertical is as uncertain as the tilt of `reckoned`.
 WorldCovariance world_at_first_sweep(const LidarInertialOdometry::Params& params, const StateEstimate& reckoned);
 
 }  // namespace tumble::mapping

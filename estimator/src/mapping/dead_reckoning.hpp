@@ -9,9 +9,8 @@
 
 namespace tumble::mapping {
 
-/// DeadReckoning predicts an alternative pose from the IMU after a relocalisation. While the relocalisation is
-/// unconfirmed, the alternative is the pose without the relocalisation. If later sweeps contradict the relocalisation,
-/// the alternative becomes the relocalised pose.
+/// While a relocalisation is unconfirmed, DeadReckoning predicts the pose without the relocalisation from the IMU. If
+/// later sweeps contradict the relocalisation, DeadReckoning predicts the relocalised pose.
 struct DeadReckoning {
   SweepBoundary boundary;
   LagWindow window;

@@ -47,15 +47,14 @@ void apply_calibration(const SweepCalibration& calibration, double later_s, std:
   }
 }
 
-/// Computes the lever arm vector u(t) of each point: the position of the point minus the contributions of start state
-/// and gravity, mapping.md (R3).
+/// See mapping.md (R3).
 void compute_lever_arm_vectors(const SweepTrajectory& trajectory, std::span<const SweepPoint> points,
                                std::vector<Eigen::Vector3f>& levers_W_m) {
   levers_W_m.resize(points.size());
   trajectory.lever_arm_vectors(points, levers_W_m);
 }
 
-/// Transforms each point of a sweep to the IMU frame at the time `target_s`: mapping.md (R12).
+/// See mapping.md (R12).
 void deskew(const SweepTrajectory& trajectory, std::span<const SweepPoint> points, double target_s,
             std::vector<Eigen::Vector3f>& positions_I_m) {
   compute_lever_arm_vectors(trajectory, points, positions_I_m);

@@ -12,7 +12,7 @@ namespace tumble {
 
 namespace {
 
-/// Returns the angular rate of a torque-free body after the time dt, from the rate w: flight_arc.md (A6).
+/// See flight_arc.md (A6).
 Eigen::Vector3d after(const FlyingBody& body, const Eigen::Vector3d& w, double dt) {
   const auto slope = [&](const Eigen::Vector3d& at) { return torque_free_acceleration(body, at); };
   const Eigen::Vector3d k1 = slope(w);
@@ -24,13 +24,13 @@ Eigen::Vector3d after(const FlyingBody& body, const Eigen::Vector3d& w, double d
 
 }  // namespace
 
-/// Returns the angular acceleration of a torque-free body: flight_arc.md (A1).
+/// See flight_arc.md (A1).
 Eigen::Vector3d torque_free_acceleration(const FlyingBody& body, const Eigen::Vector3d& w) {
   const Eigen::Vector3d momentum = body.inertia_I_kg_m2 * w;
   return body.inertia_I_kg_m2.inverse() * momentum.cross(w);
 }
 
-/// Returns the specific force at the IMU in free flight: flight_arc.md (A2).
+/// See flight_arc.md (A2).
 Eigen::Vector3d flight_force(const FlyingBody& body, const Eigen::Vector3d& w, const Eigen::Vector3d& acceleration) {
   return -(acceleration.cross(body.p_IB_I_m) + w.cross(w.cross(body.p_IB_I_m)));
 }
@@ -53,8 +53,7 @@ Status flight_arc(const FlyingBody& body, const Eigen::Vector3d& start_rad_s, Ti
     const double dt = seconds(sample.time_ns - from);
     const Eigen::Vector3d middle = after(body, w, 0.5 * dt), end = after(body, w, dt);
     sample.w_WI_I_rad_s = (w + 4.0 * middle + end) / 6.0;  // mean rate over the step: flight_arc.md (A7)
-    // The specific force is chosen such that SweepTrajectory integrates it to the velocity change of the IMU relative
-    // to the centre of mass: flight_arc.md (A9), (A10).
+    // See flight_arc.md (A9), (A10).
     const Eigen::Vector3d turned = sample.w_WI_I_rad_s * dt;
     const Eigen::Vector3d gained = w.cross(body.p_IB_I_m) - so3::exp(turned) * end.cross(body.p_IB_I_m);
     sample.f_I_m_s2 = so3::left_jacobian_inverse(turned) * gained / dt;

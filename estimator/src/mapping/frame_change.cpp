@@ -10,7 +10,6 @@ namespace tumble::mapping {
 namespace u = unknowns;
 using Matrix = Registration::Matrix;
 
-/// Returns the matrix that rotates the unknowns in world axes (for example position, velocity, gravity) from W to M.
 Matrix FrameChange::rotation() const {
   Matrix T = Matrix::Identity();
   const Eigen::Matrix3d R = T_MW.linear();

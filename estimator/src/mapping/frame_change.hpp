@@ -9,7 +9,7 @@ namespace tumble::mapping {
 /// FrameChange converts estimates from the local frame W to the frame M of a prior map.
 struct FrameChange {
   Eigen::Isometry3d T_MW;
-  /// Covariance of T_MW in axes of M: displacement and rotation of frame W about the point `sensor_M_m`.
+  /// covariance of T_MW in axes of M: displacement and rotation of frame W about the point `sensor_M_m`
   Eigen::Matrix<double, 6, 6> covariance;
   Eigen::Vector3d sensor_M_m;
 
@@ -18,7 +18,7 @@ struct FrameChange {
 
  private:
   void apply(Registration::Estimate& mean) const;
-  /// Rotates a covariance of all unknowns from W to M, and adds the error of T_MW. `mean` is the estimate in frame M.
+  /// Rotates a covariance of all unknowns from frame W to frame M, and adds the error of T_MW.
   void apply(const Registration::Estimate& mean, Registration::Matrix& of_all) const;
   Registration::Matrix rotation() const;
 };

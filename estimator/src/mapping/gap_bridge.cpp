@@ -14,7 +14,7 @@ constexpr TimeNs kStepsMax = 64;
 
 }  // namespace
 
-/// Fills a gap in the IMU data with interpolated angular rates: mapping.md (R44).
+/// See mapping.md (R44).
 void bridge_gap(const InertialNoiseParams& params, const WindowRate& before, const WindowRate& after,
                 std::vector<MotionSample>& samples) {
   const TimeNs from_ns = before.time_ns, to_ns = after.from_ns;

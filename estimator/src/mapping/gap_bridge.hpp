@@ -9,10 +9,9 @@
 
 namespace tumble::mapping {
 
-/// A time between two IMU samples above kGap_ns is a gap, because the reading does not describe the motion in between.
+/// A time step above 50 ms between IMU samples is a gap, because a reading does not describe the motion in between.
 inline constexpr TimeNs kGap_ns = 50'000'000;
 
-/// WindowRate is the mean angular rate over the averaging window of one IMU sample, with its standard deviation.
 struct WindowRate {
   Eigen::Vector3d rate_rad_s;
   Eigen::Vector3d sigma_rad_s;
@@ -21,11 +20,9 @@ struct WindowRate {
   TimeNs middle_ns() const { return from_ns + (time_ns - from_ns) / 2; }
 };
 
-/// Appends samples that fill the gap from the end of `before` to the start of `after`, see mapping.md (R44). The
-/// angular rate is interpolated linearly, with the standard deviation of a random walk whose ends are known. All axes
-/// of the appended samples count as clipped, so that a registration that estimates the saturation deficit also
-/// estimates the interpolation error. The specific force of the appended samples is unknown (`bridges_gap`). Each
-/// appended sample is 10 ms long, or longer in gaps beyond 0.64 s.
+/// Fills the gap from the end of `before` to the start of `after` with linearly interpolated rates: mapping.md (R44).
+/// All axes count as clipped, so that the registration also estimates the interpolation error. Each sample appended in
+/// a gap is 10 ms long, or longer in gaps beyond 0.64 s.
 void bridge_gap(const InertialNoiseParams& params, const WindowRate& before, const WindowRate& after,
                 std::vector<MotionSample>& samples);
 

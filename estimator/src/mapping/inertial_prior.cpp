@@ -11,7 +11,7 @@ namespace tumble::mapping {
 
 namespace u = unknowns;
 
-/// Computes the process noise of the inertial prediction of a sweep: mapping.md (R39), (R40), (R41), (R43).
+/// See mapping.md (R39), (R40), (R41), (R43).
 Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& params,
                                            const SweepTrajectory& trajectory, std::span<const MotionSample> samples,
                                            unsigned deficit_axes) {
@@ -57,7 +57,7 @@ Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& 
   return noise;
 }
 
-/// Computes the covariance of the velocity due to saturated accelerometer readings: mapping.md (R45).
+/// See mapping.md (R45).
 Eigen::Matrix3d clipped_velocity_variance(const LidarInertialOdometry::Params& params,
                                           const SweepTrajectory& trajectory, std::span<const MotionSample> samples) {
   std::size_t hint = 0;

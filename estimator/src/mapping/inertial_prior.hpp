@@ -10,28 +10,25 @@
 namespace tumble::mapping {
 
 /// Returns the covariance that inertial integration over one sweep adds to the errors of position, attitude and
-/// velocity. Rate errors come mainly from saturation, so rate errors are assumed constant over the sweep. The standard
-/// deviation of the attitude is therefore the time integral of the rate's standard deviation. The axes in
+/// velocity. Rate errors come mainly from saturation, so rate errors are assumed constant over the sweep. The axes in
 /// `deficit_axes` (bits) are excluded, because the registration estimates their saturation deficit.
 Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& params,
                                            const SweepTrajectory& trajectory, std::span<const MotionSample> samples,
                                            unsigned deficit_axes);
 
-/// Returns the covariance, in frame W, of the velocity change over a sweep due to accelerometer saturation. The
-/// saturation deficit of the specific force is assumed constant while the saturation lasts.
+/// Returns the covariance, in frame W, of the velocity change over a sweep due to accelerometer saturation.
 Eigen::Matrix3d clipped_velocity_variance(const LidarInertialOdometry::Params& params,
                                           const SweepTrajectory& trajectory, std::span<const MotionSample> samples);
 
-/// Computes the state of an IMU at rest at the start of the first sample's window, at the origin of W with yaw 0. The
+/// Computes the state of an IMU at rest, at the origin of W with yaw 0, at the start of the first averaging window. The
 /// mean specific force of the first `rest.levelling_max_s` seconds levels the attitude. Returns `degenerate` if the
 /// mean specific force is below 1 m/s^2.
 Status start_at_rest(const LidarInertialOdometry::Params& params, std::span<const MotionSample> samples,
                      MotionState& state);
-/// Computes the state of an IMU at rest from its specific force, without a time stamp.
 Status level_at_rest(const LidarInertialOdometry::Params& params, const Eigen::Vector3d& force_I_m_s2,
                      MotionState& state);
 
-/// Returns the standard deviation of a rate per axis, limited to the mapper's rate_sigma_max_rad_s.
+/// The standard deviation is limited to the mapper's rate_sigma_max_rad_s.
 Eigen::Vector3d assumed_rate_sigma(const LidarInertialOdometry::Params& params, const RateState& rate);
 
 }  // namespace tumble::mapping

@@ -16,7 +16,7 @@ using Params = LidarInertialOdometry::Params;
 
 constexpr TimeNs kArcStep_ns = 5'000'000;
 constexpr TimeNs kArcMost_ns = 10'000'000'000;  // longest bridged flight; no flight lasts longer
-// Additional tolerance [rad/s] of the rate after a flight. Impacts change the rate by more.
+// additional tolerance of the rate [rad/s] after a flight; impacts change the rate by more
 constexpr double kArcOff_rad_s = 0.5;
 
 WindowRate rate_of(const MotionSample& sample) {
@@ -36,8 +36,7 @@ std::uint8_t accel_saturated_axes(const Params& params, const ImuSample& sample)
 }  // namespace
 
 RestDetector::Params mapper_rest(const LidarInertialOdometry::Params& params) {
-  // The parameter `rate_rad_s` limits the norm of the rate at rest. The rest detector limits each axis, so the
-  // parameter is divided by sqrt(3).
+  // The parameter `rate_rad_s` limits the norm of the rate, but the rest detector limits each axis.
   return {.rate_max_rad_s = params.expert.rest.rate_rad_s,
           .rate_spread_rad_s = params.expert.rest.rate_rad_s / std::numbers::sqrt3,
           .force_min_m_s2 = std::max(params.expert.gravity_m_s2 - params.expert.rest.force_m_s2, 0.0),
@@ -91,14 +90,11 @@ void InertialTrack::fill_gap(const Params& params, bool in_flight) {
   if (!in_flight || !bridge_flight(params, *before_newest_, *newest_))
     bridge_gap(params.expert.prior, *before_newest_, *newest_, samples_);
   if (pending_rates_rad_s_.empty()) return;
-  // The rest detector averages readings. pending_rates_rad_s_ contains the rates of the samples in the incomplete
-  // average.
   for (const MotionSample& part : std::span(samples_).subspan(first))
     pending_rates_rad_s_.insert(pending_rates_rad_s_.end() - 1, part.w_WI_I_rad_s);
 }
 
-/// Fills a gap with a ballistic flight. Returns false if the rate predicted for free flight contradicts the reading
-/// after the gap: flight_arc.md (A12).
+/// Returns false if the rate predicted for free flight contradicts the reading after the gap: flight_arc.md (A12).
 bool InertialTrack::bridge_flight(const Params& params, const WindowRate& before, const WindowRate& after) {
   if (after.from_ns - before.time_ns > kArcMost_ns) return false;
   const std::size_t first = samples_.size();
@@ -118,9 +114,7 @@ bool InertialTrack::bridge_flight(const Params& params, const WindowRate& before
   return true;
 }
 
-/// Decides whether the newest sample belongs to a flight: flight_arc.md (A3), (A4), (A5). The test uses the angular
-/// rates before and after the sample. If a gap follows the sample, the rate after the sample is predicted for free
-/// flight.
+/// See flight_arc.md (A3), (A4), (A5). If a gap follows the sample, the next rate is predicted for free flight.
 bool InertialTrack::detect_flight(const Params& params, const MotionSample& next, bool after_gap) {
   MotionSample& now = samples_.back();
   if (now.in_flight) return true;
@@ -143,7 +137,6 @@ void InertialTrack::update_rest(const Params& params, const ImuSample& sample, c
   ImuSample received = sample;
   received.angular_velocity_rad_s = rate.w_WI_I_rad_s;
   const bool clipped = (rate.clipped_axes & kClipGyro) != 0;
-  // During the initial rest, the mean rate is the gyro's bias.
   const Eigen::Vector3d bias = initial_.lasts ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : initial_.gyro_bias_rad_s;
   if (clipped) rest_ = {};
   if (!clipped && rest_detector_.observe(received, rest_, bias)) next.rest_start_ns = rest_.first_ns;
@@ -166,8 +159,6 @@ void InertialTrack::update_rest(const Params& params, const ImuSample& sample, c
   pending_rates_rad_s_.clear();
 }
 
-/// Marks all samples of the last averaged reading as motion. The caller has found that no rest continues through this
-/// averaged reading.
 void InertialTrack::revoke_rest(std::optional<TimeNs> rest_start_ns) {
   const std::size_t count = std::min(pending_rates_rad_s_.size(), samples_.size());
   for (std::size_t back = 1; back <= count; ++back) {
@@ -183,7 +174,7 @@ bool InertialTrack::starts_at_rest(double lasted_s) const {
   const auto rests = [&](const MotionSample& sample) {
     return sample.at_rest || seconds(sample.from_ns - samples_.front().from_ns) >= lasted_s;
   };
-  // A rest of at least `lasted_s` has determined the gyro bias, but its first samples may have been deleted.
+  // The gyro bias shows that a long enough rest occurred, although its first samples may have been deleted.
   return !initial_.gyro_bias_rad_s.isZero(0.0) || std::all_of(samples_.begin(), samples_.end(), rests);
 }
 

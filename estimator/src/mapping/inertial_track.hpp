@@ -11,8 +11,7 @@
 
 namespace tumble::mapping {
 
-/// InertialTrack stores the IMU samples since the end of the last sweep. InertialTrack also detects the initial rest
-/// and flights, and bridges gaps in the data.
+/// InertialTrack stores the IMU samples since the end of the last sweep, detects rest and flights, and bridges gaps.
 class InertialTrack {
  public:
   using Params = LidarInertialOdometry::Params;
@@ -21,34 +20,29 @@ class InertialTrack {
 
   /// Returns `ok` if the sample is later than all earlier samples, and `time_order` otherwise.
   Status check(const ImuSample& sample) const;
-  /// Adds a sample that check() accepted, with its estimated rate.
+  /// The method check() must have accepted the sample.
   void take(const Params& params, const ImuSample& sample, const RateState& rate);
 
-  /// Returns the stored samples. The last sweep ended within the averaging window of the first stored sample.
+  /// The last sweep ended within the averaging window of the first stored sample.
   std::span<const MotionSample> samples() const { return samples_; }
-  /// Returns the samples that end after `from_ns`.
   std::span<const MotionSample> samples_from(TimeNs from_ns) const;
-  /// Returns the end time of the last sweep, or nothing before the first sweep.
   std::optional<TimeNs> border_ns() const { return boundary_ns_; }
   /// Returns the mean specific force of the current rest, if the rest lasted at least `lasted_s` up to `time_ns`.
   std::optional<Eigen::Vector3d> resting_force(TimeNs time_ns, double lasted_s) const;
-  /// Returns whether the robot was at rest during the first `lasted_s` seconds of samples, or during all samples if
-  /// there are fewer seconds of samples.
+  /// Returns whether the robot was at rest during the first `lasted_s` seconds, or during all samples of a shorter
+  /// recording.
   bool starts_at_rest(double lasted_s) const;
-  /// Returns whether the initial rest continues.
   bool has_not_moved() const { return initial_.lasts; }
   /// Returns the time of the newest sample, or the end of the last sweep if there are no samples.
   std::optional<TimeNs> last_ns() const;
-  /// Returns whether the IMU was at rest up to `end_ns`.
   bool rests_until(TimeNs end_ns) const;
   bool rests_between(TimeNs from_ns, TimeNs end_ns) const;
-  /// Marks the specific forces before `end_ns` as unknown, as in a gap. The angular rates remain.
+  /// Marks the specific forces before `end_ns` as unknown; the angular rates remain.
   void exclude_accelerometer(TimeNs end_ns);
-  /// Deletes the samples that ended by `end_ns`, the end of a sweep.
   void prune_until(TimeNs end_ns);
 
  private:
-  /// InitialRest is the rest at the start of a recording. InitialRest ends with the first motion; its results remain.
+  /// The initial rest ends with the first motion, but its results remain valid.
   struct InitialRest {
     bool lasts = true;
     std::optional<TimeNs> first_ns;  ///< first sample of the recording

@@ -14,8 +14,7 @@ struct Estimated {
   Registration::Matrix errors = Registration::Matrix::Zero();
 };
 
-/// WindowSweep is a sweep of the lag window, whose estimate later sweeps refine. The unknowns of a WindowSweep refer to
-/// the start of the sweep.
+/// The unknowns of a WindowSweep refer to the start of the sweep.
 struct WindowSweep {
   Estimated predicted;
   /// derivative of the unknowns with respect to the unknowns of the previous sweep
@@ -25,7 +24,6 @@ struct WindowSweep {
   TimeNs end_ns = 0;
   std::vector<InsertedPoint> inserted;
 
-  /// Computes the smoothed motion of the sweep. Returns the errors of SweepTrajectory::build.
   Status motion(SweepTrajectory& trajectory) const;
 };
 
@@ -35,16 +33,15 @@ class LagWindow {
   LagWindow() = default;
   explicit LagWindow(int sweeps) : length_(static_cast<std::size_t>(sweeps)) {}
 
-  /// Adds an empty sweep to the lag window. A full lag window first drops its oldest sweep.
+  /// A full lag window first drops its oldest sweep.
   WindowSweep& enter();
-  /// Returns whether the oldest sweep of the lag window has its final estimate.
+  /// The oldest sweep of a full lag window has its final estimate.
   bool is_full() const { return sweeps_.size() == length_; }
-  /// Smooths all sweeps except the newest with the data of later sweeps, see mapping.md (R63).
+  /// Smooths all sweeps except the newest: mapping.md (R63).
   void smooth();
   /// Moves the map points of all sweeps except the newest to their smoothed positions.
   void move_inserted(LocalMap& map) const;
-  /// Clears the lists of inserted points, because the point indices of the map have changed. Smoothing then no longer
-  /// moves the inserted points.
+  /// The point indices of the map have changed, so smoothing can no longer move the inserted points.
   void clear_inserted();
 
   /// Calls `change` for each sweep, oldest first.

@@ -12,7 +12,7 @@ namespace tumble::mapping {
 
 namespace {
 
-/// PoseVariance computes the variance of a map point due to the uncertain trajectory of its sweep: mapping.md (R64).
+/// See mapping.md (R64).
 class PoseVariance {
  public:
   PoseVariance(const Registration::Matrix& covariance, const SweepTrajectory& trajectory)
@@ -58,7 +58,7 @@ std::size_t LocalMap::insert(const Params& params, const SweepToInsert& sweep, c
       const Eigen::Vector3f position = levers_W_m_[i] + trajectory.common_position_m(points[i].t_s).cast<float>();
       free_space_.add(position);
       if (map_.is_occupied(position)) continue;  // most points end here
-      // Standard deviation of a point in the map: mapping.md (R64).
+      // See mapping.md (R64).
       const double sigma_m = std::sqrt(noise.point_variance_m2(points[i]) + pose_variance.at_m2(points[i]));
       if (sigma_m > sigma_max_m) continue;
       const std::uint32_t index =

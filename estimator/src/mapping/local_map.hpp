@@ -13,13 +13,11 @@
 
 namespace tumble::mapping {
 
-/// InsertedPoint identifies a map point that was inserted from a sweep.
 struct InsertedPoint {
   std::uint32_t index;  ///< index of the point in the map
   SweepPoint point;     ///< point with the calibration at insertion
 };
 
-/// SweepToInsert is a sweep whose points will be inserted into the map.
 struct SweepToInsert {
   const SweepTrajectory& trajectory;
   const Registration::Matrix& covariance;
@@ -28,8 +26,8 @@ struct SweepToInsert {
   bool pose_certain;  ///< certain pose: the sweep's free space may contradict map points
 };
 
-/// LocalMap is the map around the sensor: points, their scan lines, and the sensor positions from which the points were
-/// observed.
+/// LocalMap contains the points around the sensor, their scan lines, and the sensor positions from which the points
+/// were seen.
 class LocalMap {
  public:
   using Params = LidarInertialOdometry::Params;
@@ -39,29 +37,29 @@ class LocalMap {
   const VoxelMap& voxels() const { return map_; }
   bool empty() const { return map_.size() == 0; }
 
-  /// Adds the points of a sweep to the map, and appends the added points to `inserted`. `noise` computes the variance
-  /// of a lidar return. If the pose of the sweep is certain, the function counts the map points that the sweep saw, and
-  /// the map points that the sweep saw through. Cost: O(points of the map).
+  /// Adds the points of a sweep to the map and to the list `inserted`. Cost: O(points of the map). `noise` computes the
+  /// variance of a lidar return. If the pose of a sweep is certain, the map points that the sweep saw or saw through
+  /// are counted.
   std::size_t insert(const Params& params, const SweepToInsert& sweep, const Registration& noise,
                      std::vector<InsertedPoint>& inserted);
-  /// Moves inserted points to their positions on the refined trajectory, with `later_s` added to their times, see
+  /// Moves inserted points to their positions on the refined trajectory, with `later_s` added to their times:
   /// mapping.md (R3).
   void move(const SweepTrajectory& trajectory, const Eigen::Isometry3d& T_IL, double later_s,
             std::span<const InsertedPoint> inserted);
 
-  /// Replaces the map by the points of a prior map. Normals of map points are directed towards the sensor. The points
-  /// are therefore attributed to six distant sensor positions on the axes, which preserve the signs of the prior map's
-  /// normals. If `T_MW` is given, the points of the replaced map are also kept, transformed to the prior map's frame.
+  /// Replaces the map by a prior map. The points are attributed to six distant sensor positions on the axes, which
+  /// preserve the signs of the normals. If `T_MW` is given, the replaced points are kept, transformed to the prior
+  /// map's frame.
   void start_from(const Params& params, std::span<const MapPoint> points, const Eigen::Isometry3f* T_MW);
 
-  /// Returns the number of sweeps that have added points to the map. Each map point stores the number of its sweep.
+  /// Returns the number of sweeps that have added points to the map.
   std::uint32_t sweeps() const { return static_cast<std::uint32_t>(seen_from_W_m_.size()); }
-  /// Removes the points of `first_sweep` and all later sweeps. Cost: O(number of points). The removal changes the
-  /// indices of map points.
+  /// Removes the points of `first_sweep` and all later sweeps, which changes the indices of map points. Cost:
+  /// O(points).
   void remove_sweeps_since(std::uint32_t first_sweep);
 
-  /// Removes distant map points if the sensor has moved far enough since the last removal. Returns whether points were
-  /// removed; if so, the indices of map points have changed.
+  /// Removes distant points if the sensor has moved far enough since the last removal. Returns whether the indices of
+  /// map points have changed.
   bool prune(const Params& params, const Eigen::Vector3d& p_WI_m);
 
   std::size_t bytes() const { return map_.bytes() + seen_from_W_m_.capacity() * sizeof(Eigen::Vector3f); }

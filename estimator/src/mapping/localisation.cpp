@@ -11,8 +11,8 @@ namespace tumble {
 
 namespace {
 
-// 1.4e-4 is the probability of a larger chi-square value with nine degrees of freedom. Two of 1000 sweeps with correct
-// covariances exceed the value with a probability of 1 %.
+// The probability of a chi-square value (nine degrees of freedom) above 32.9 is 1.4e-4. Two of 1000 sweeps with correct
+// covariances exceed the limit with a probability of 1 %.
 constexpr double kContradictionChi2Min = 32.9;
 
 double innovation_max() {
@@ -50,8 +50,7 @@ Status Localisation::current_verdict() const {
           second_largest_innovation_, innovation_max()};
 }
 
-/// Returns an error if tracking failed, mapping.md (R70), or if sweeps contradict their predicted poses, mapping.md
-/// (R71).
+/// See mapping.md (R70), (R71).
 Status Localisation::verdict() const {
   if (largest_sigma_m_ > matched_m_)
     return {ErrorCode::out_of_range, "standard deviation in m of a sweep's position", largest_sigma_m_, matched_m_};

@@ -9,20 +9,18 @@ namespace tumble {
 
 namespace {
 
-// kMinSurfaceSine is sin 10 deg. Two neighbouring returns belong to one surface if the angle between their connecting
-// line and the beam exceeds 10 deg (Bogoslavskyi, Stachniss).
+// sin 10 deg: minimum angle between a beam and the line to a return on the same surface (Bogoslavskyi, Stachniss)
 constexpr float kMinSurfaceSine = 0.17365f;
-// kGrazingSine is sin 2 deg. If the angle between a beam and its surface is smaller, the surface counts as an edge. A
-// lidar 0.5 m above the ground sees the ground at 2 deg in a distance of 14 m.
+// sin 2 deg: at a smaller angle to the beam, the surface counts as an edge. A lidar 0.5 m above the ground sees the
+// ground at 2 deg in a distance of 14 m.
 constexpr float kGrazingSine = 0.0349f;
 constexpr float kBend = 0.15f;                     // relative tolerance of ranges on uneven ground
 constexpr int kNeighbours = 2;                     // number of neighbours on each side along the ring
 constexpr float kReachSteps = kNeighbours + 0.5f;  // angular steps; beams further apart are not neighbours
 constexpr float kStepMax = 0.05f;                  // rad; the rings of 16-channel lidars are 0.035 rad apart
 constexpr float kDeviations = 3.0f;
-// In clear air, at most the fraction kClearAirFraction of a sweep's returns are lone returns, which come from thin
-// objects, edges and distant ground. The measured fraction is 0.05 % at rest, 0.3 to 0.7 % in motion, and 1.6 % for a
-// thrown rig that sees little ground.
+// The measured fraction of lone returns is 0.05 % at rest, 0.3 to 0.7 % in motion, and 1.6 % for a thrown rig that sees
+// little ground.
 constexpr float kClearAirFraction = 0.02f;
 
 float square(float x) {
@@ -41,20 +39,19 @@ float LoneReturns::variance_m2(const RangeNoise& noise, const Beam& beam) {
   return square(std::max(static_cast<float>(noise.sigma_m), static_cast<float>(noise.share) * beam.range_m));
 }
 
-/// Returns whether two returns have equal ranges within noise: mapping.md (R13).
+/// See mapping.md (R13).
 bool LoneReturns::same_range(const RangeNoise& noise, const Beam& a, const Beam& b) {
   return square(a.range_m - b.range_m) <= square(kDeviations) * (variance_m2(noise, a) + variance_m2(noise, b));
 }
 
-/// Returns whether the sine of the angle between the beam and the line through two returns is at least `sine`:
-/// mapping.md (R14).
+/// See mapping.md (R14).
 bool LoneReturns::is_steep_surface(float sine, const Beam& a, const Beam& b) {
   const float farther = std::max(a.range_m, b.range_m);
   return a.point_L_m.cross(b.point_L_m).squaredNorm() >=
          square(sine * farther) * (a.point_L_m - b.point_L_m).squaredNorm();
 }
 
-/// Returns whether a return is on the line between the previous and the next return: mapping.md (R15).
+/// See mapping.md (R15).
 bool LoneReturns::between(const RangeNoise& noise, const Beam& before, const Beam& beam, const Beam& after) {
   if (!is_steep_surface(kGrazingSine, before, after)) return false;
   const float to_before = std::sqrt(sine2_between(before, beam)), to_after = std::sqrt(sine2_between(beam, after));
@@ -66,7 +63,7 @@ bool LoneReturns::between(const RangeNoise& noise, const Beam& before, const Bea
   return square(beam.range_m - expected_m) <= std::max(square(kDeviations) * variance, square(bend_m));
 }
 
-/// Beside contains the neighbours of a return on one side of its ring, nearest first.
+/// neighbours of a return on one side of its ring, nearest first
 struct LoneReturns::Beside {
   std::array<const Beam*, kNeighbours> beam;
   int count = 0;
@@ -75,7 +72,6 @@ struct LoneReturns::Beside {
   auto end() const { return beam.begin() + count; }
 };
 
-/// Returns whether two beams are neighbours on one ring. `at` and `other` are indices in ring order.
 bool LoneReturns::is_neighbour(std::size_t at, std::size_t other, float reach2) const {
   if (other >= beams_.size() || beams_[other].ring != beams_[at].ring) return false;
   const bool next = other + 1 == at || at + 1 == other;
@@ -85,8 +81,6 @@ bool LoneReturns::is_neighbour(std::size_t at, std::size_t other, float reach2) 
 
 bool LoneReturns::is_confirmed(const RangeNoise& noise, std::size_t at, float reach2) const {
   const Beam& beam = beams_[at];
-  // The previous beam usually confirms a return, so the previous beam is checked first. An index below 0 wraps around
-  // to a number beyond the end of the list.
   const bool has_before = is_neighbour(at, at - 1, reach2);
   if (has_before && is_steep_surface(kMinSurfaceSine, beam, beams_[at - 1])) return true;
   const bool has_after = is_neighbour(at, at + 1, reach2);
@@ -110,8 +104,7 @@ bool LoneReturns::is_confirmed(const RangeNoise& noise, std::size_t at, float re
   });
 }
 
-/// Sorts the points by lidar ring, and within each ring by firing time. The function modifies the start indices of the
-/// rings (ring_next_).
+/// Sorts the points by lidar ring, and within each ring by firing time.
 void LoneReturns::sort_by_ring(const std::vector<SweepPoint>& points) {
   ring_next_.assign(1, 0);
   for (const SweepPoint& point : points) {
@@ -128,8 +121,6 @@ void LoneReturns::sort_by_ring(const std::vector<SweepPoint>& points) {
   }
 }
 
-/// Computes the squared sine of the angle from each beam to the previous beam on its ring. The first beam of each ring
-/// gets the value 1.
 void LoneReturns::measure_steps() {
   steps2_.assign(beams_.size(), 1.0f);
   sorted_steps2_.clear();
@@ -140,7 +131,7 @@ void LoneReturns::measure_steps() {
   }
 }
 
-/// Returns the median of the squared angular steps along the rings, or 1 if there are no steps.
+/// Returns 1 if there are no steps.
 float LoneReturns::median_step2() {
   if (sorted_steps2_.empty()) return 1.0f;
   const auto middle = sorted_steps2_.begin() + static_cast<std::ptrdiff_t>(sorted_steps2_.size() / 2);

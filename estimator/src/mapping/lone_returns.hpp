@@ -9,31 +9,23 @@
 
 namespace tumble {
 
-/// RangeNoise describes the standard deviation of a range r: max(sigma_m, share * r).
+/// standard deviation of a range r: max(sigma_m, share * r)
 struct RangeNoise {
   double sigma_m, share;
 };
 
 /// LoneReturns detects returns that no neighbouring beam confirms, for example from dust, rain, snow, grass or birds.
 ///
-/// A real surface reflects many neighbouring beams. A neighbour on the same ring confirms a return in one of three
-/// ways, equations (R13), (R14), (R15) of mapping.md:
-/// - One of the two returns before or after has an equal range within noise.
-/// - The line to an adjacent return forms a large enough angle with the beam to be a surface (Bogoslavskyi and
-///   Stachniss, IROS 2016).
-/// - The return is on the line between an earlier and a later return, as on ground at a grazing angle.
-/// Neighbours are at most one angular step of the lidar apart, so a return without returns in the next beams is a lone
-/// return. LoneReturns keeps all returns if successive returns are too far apart for a comparison, or if there are no
-/// more lone returns than in clear air. Returns of larger moving objects (people, cars) are not lone returns.
+/// A neighbouring return on the same ring confirms a return in one of three ways: mapping.md (R13), (R14), (R15). The
+/// return has the same range as a neighbour, forms a surface with a neighbour, or lies on the line between two
+/// neighbours. LoneReturns keeps all returns of a sweep that has no more lone returns than clear air causes.
 class LoneReturns {
  public:
-  /// Removes the lone returns from `points`, and returns their number. Cost: O(number of points). The remaining points
-  /// are ordered by ring, and within each ring by firing time. The function allocates memory only for a sweep that is
-  /// larger than all earlier sweeps.
+  /// Removes the lone returns from `points`, and returns their number. Cost: O(points). The remaining points are
+  /// ordered by ring, and within each ring by firing time.
   std::size_t drop(const RangeNoise& noise, std::vector<SweepPoint>& points);
 
  private:
-  /// Beam contains a return for the comparison with its neighbours. The beams of a ring are contiguous.
   struct Beam {
     Eigen::Vector3f point_L_m;
     float range_m;

@@ -9,8 +9,7 @@ namespace {
 
 constexpr double kSameLineCosine = 0.9988;  // cosine of 0.05 rad, which is less than the angle between two rings
 constexpr int kRingBits = 16;
-// to_map_points() omits a map point if at least kSeenThrough sweeps saw through it. A single sweep may be wrong near an
-// edge.
+// A single sweep may wrongly see through a map point near an edge.
 constexpr std::uint8_t kSeenThrough = 2;
 
 }  // namespace

@@ -8,11 +8,8 @@ namespace tumble::mapping {
 
 namespace {
 
-// kChanceAgreementMax is the maximum probability that a surface point near the prior map's surfaces agrees with the
-// prior map at a wrong pose.
 constexpr double kChanceAgreementMax = 0.8;
-// The second best pose of a search is wrong. The fraction of points that agree at this pose measures agreement by
-// chance. As a margin for sampling errors, the fraction kChanceMargin of the disagreeing points is added.
+// The fraction of points that agree at the second best (wrong) pose measures agreement by chance.
 constexpr double kChanceMargin = 0.3;
 constexpr double kFalseAcceptance = 1e-6;  // maximum probability that a search accepts a wrong pose
 constexpr std::size_t kMinPoints = 100;    // minimum number of surface points for a search
@@ -20,11 +17,10 @@ constexpr double kMinCoveredRatio = 0.4;   // minimum fraction of surface points
 constexpr int kAcceptSweeps = 3;           // number of successive sweeps that accept a pose
 constexpr int kRejectSweeps = 2;           // number of successive sweeps that reject a pose
 constexpr int kSearchSweeps = 5;           // number of sweeps between two searches
-// Half size of the search region around an approximate pose, in standard deviations.
+// half size of the search region around an approximate pose, in standard deviations
 constexpr double kSigmas = 3.0;
 constexpr double kMinReach_m = 1.0, kMinReach_rad = 0.15;
 
-/// Returns the relative entropy of two Bernoulli distributions with the probabilities `share` and `chance`.
 double relative_entropy(double share, double chance) {
   double out = 0.0;
   if (share > 0.0) out += share * std::log(share / chance);
@@ -71,8 +67,6 @@ std::optional<FramePose> MapLocaliser::observe(const VoxelMap& local, const Eige
   return pose;
 }
 
-/// Searches the best and the second best pose of the local map in the prior map. The second best pose is wrong, and
-/// therefore measures how many points agree by chance.
 void MapLocaliser::propose(const std::vector<SurfacePoint>& points, const Eigen::Vector3d& p_WI_m) {
   SearchRegion region;
   if (map().T_MI) {  // the stated pose defines the local frame, so the heading of W in M is about zero
@@ -92,8 +86,8 @@ void MapLocaliser::propose(const std::vector<SurfacePoint>& points, const Eigen:
   chance_ = std::max(kChanceAgreementMax, second + kChanceMargin * (1.0 - second));
 }
 
-/// Returns whether more points agree with the prior map than chance allows. The test uses the Chernoff bound of the
-/// binomial distribution, with Bonferroni's correction for the number of compared poses.
+/// The test uses the Chernoff bound of the binomial distribution, with Bonferroni's correction for the number of
+/// compared poses.
 bool MapLocaliser::passes(const FramePose& pose) const {
   if (pose.ratio() <= chance_ || chance_ >= 1.0) return false;
   return double(pose.covered) * relative_entropy(pose.ratio(), chance_) >= std::log(compared_poses_ / kFalseAcceptance);

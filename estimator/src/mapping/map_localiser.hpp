@@ -8,10 +8,10 @@
 
 namespace tumble::mapping {
 
-/// MapLocaliser finds the pose of the current run in a prior map: mapping.md, "Localisation in a prior map".
+/// MapLocaliser finds the pose of the local frame W in the frame M of a prior map: mapping.md, "Localisation in a prior
+/// map".
 ///
-/// MapLocaliser proposes a pose of the local frame W in the frame M of the prior map. A pose is accepted if it passes a
-/// statistical test after several successive sweeps, and rejected if it fails the test twice in succession.
+/// A pose is accepted after several successive sweeps that pass a statistical test, and rejected after two failures.
 class MapLocaliser {
  public:
   MapLocaliser() = default;
@@ -20,14 +20,13 @@ class MapLocaliser {
   bool has_map() const { return scene_ != nullptr; }
   bool is_localised() const { return localised_; }
   const PriorMap& map() const { return scene_->map(); }
-  /// Restarts the localisation in the same map. The search is limited to the neighbourhood of `T_MI`, if given.
+  /// The search is limited to the neighbourhood of `T_MI`, if given.
   void restart(const std::optional<Eigen::Isometry3d>& T_MI);
 
-  /// Compares the local map with the prior map after a sweep. If the sweep completes the acceptance of a pose, the
-  /// function returns the pose of the local frame in the prior map. Cost: a few milliseconds, or about a second for
-  /// every fifth sweep while no pose is proposed.
+  /// Returns the pose of the local frame in the prior map if the sweep confirms the proposed pose. Cost: a few
+  /// milliseconds, or about a second for every fifth sweep while no pose is proposed.
   std::optional<FramePose> observe(const VoxelMap& local, const Eigen::Vector3d& p_WI_m);
-  /// Returns `ok` if there is no prior map or if the run is localised in the prior map; otherwise `degenerate`.
+  /// Returns `degenerate` if the run is not localised in its prior map.
   Status status() const;
 
  private:

@@ -12,28 +12,24 @@ struct SweepBoundary;
 struct MotionWindow;
 struct Prediction;
 
-/// motion_prior.hpp defines kinds of information about a sweep's motion, in addition to the previous sweeps.
-/// `apply_velocity_prior` replaces the velocity at the start of the sweep, before the process noise of the sweep is
-/// added. `weigh` fuses a measurement with the prediction, after the process noise has been added.
+/// `apply_velocity_prior` runs before the process noise of the sweep is added, and `weigh` afterwards.
 
-/// InertialPrior adds no information: the IMU propagates the velocity from the end of the last sweep.
+/// With InertialPrior, the IMU alone propagates the velocity from the end of the last sweep.
 struct InertialPrior {};
 
-/// KnownVelocity is the velocity at the start of the sweep, in IMU axes, with its standard deviation per axis.
-/// KnownVelocity replaces the velocity of the last sweep, for example for a rolling robot.
+/// KnownVelocity replaces the velocity at the start of the sweep, in IMU axes, for example for a rolling robot.
 struct KnownVelocity {
   Eigen::Vector3d v_WI_I_m_s = Eigen::Vector3d::Zero();
   double sigma_m_s = 0.0;
 };
 
 /// ConstantVelocity is for an absent or always saturated accelerometer. The velocity is assumed constant, with the
-/// uncertainty that impacts cause; the gyro is still used. All samples count as samples of a gap
-/// (InertialTrack::exclude_accelerometer), so neither `apply_velocity_prior` nor `weigh` exists for ConstantVelocity.
+/// uncertainty that impacts cause.
 struct ConstantVelocity {};
 
 using MotionPrior = std::variant<InertialPrior, KnownVelocity, OdometerReading, ConstantVelocity>;
 
-/// MotionNoise is the process noise covariance of position, attitude and velocity within a sweep.
+/// process noise covariance of position, attitude and velocity within a sweep
 using MotionNoise = Eigen::Matrix<double, 9, 9>;
 
 void apply_velocity_prior(const KnownVelocity& prior, Prediction& prediction);
@@ -41,9 +37,8 @@ inline void apply_velocity_prior(const MotionPrior& prior, Prediction& predictio
   if (const auto* const velocity = std::get_if<KnownVelocity>(&prior)) apply_velocity_prior(*velocity, prediction);
 }
 
-/// Updates the prediction of a sweep with an odometer reading from within the sweep, see mapping.md (R34) to (R37).
-/// `within` is the part of the process noise that arises within the sweep. Unusable readings, and readings outside of
-/// the motion window, have no effect.
+/// Updates the prediction of a sweep with an odometer reading from within the sweep: mapping.md (R34) to (R37).
+/// Readings outside of the motion window have no effect.
 void fuse_reading(const OdometerReading& reading, const SweepBoundary& boundary, const MotionWindow& window,
                   const MotionNoise& within, Prediction& prediction);
 inline void weigh(const MotionPrior& prior, const SweepBoundary& boundary, const MotionWindow& window,

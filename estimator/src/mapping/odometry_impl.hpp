@@ -21,15 +21,14 @@ namespace mapping {
 
 void require_params(const LidarInertialOdometry::Params& params);
 
-/// UpdatedSweep contains the predicted and the updated unknowns at the start of a sweep, and the updated motion.
+/// predicted and updated unknowns at the start of a sweep, and the updated motion
 struct UpdatedSweep {
   const Prediction& prediction;
   const StateEstimate& start;
   const SweepTrajectory& trajectory;
 };
 
-/// SweepScratch contains work buffers for processing a sweep, so that sweeps allocate no memory. The contents are
-/// undefined between sweeps.
+/// Reused work buffers avoid memory allocation per sweep; their contents are undefined between sweeps.
 struct SweepScratch {
   explicit SweepScratch(const LidarInertialOdometry::Params& params) : points(params), aligner(params) {}
 
@@ -40,7 +39,6 @@ struct SweepScratch {
 
 }  // namespace mapping
 
-/// Impl contains the state of the odometry between sweeps, and the processing steps of one sweep, see README.md.
 struct LidarInertialOdometry::Impl {
   explicit Impl(const Params& given);
 
@@ -51,18 +49,16 @@ struct LidarInertialOdometry::Impl {
   /// Computes the initial state from the IMU at rest, before the first sweep.
   Status level_at_first();
   Status level_start(MotionState& levelled) const;
-  /// Starts the map if the sweep has enough usable points. Otherwise the function propagates the state inertially to
-  /// the end of the sweep.
+  /// Starts the map if the sweep has enough usable points; otherwise propagates the state inertially to the end of the
+  /// sweep.
   Status start_map(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> returns, SweepReport& report);
   Status dead_reckon(TimeNs end_ns);
   bool rests(const mapping::InertialTrack& inertial, const SweepTrajectory& motion, TimeNs end_ns) const;
-  /// Registers a sweep to the map. On entry, `trajectory` is the motion that the IMU predicts from the start of the
-  /// sweep. On return, `trajectory` is the registered motion, or the motion of a failed attempt.
+  /// On entry, `trajectory` is the motion that the IMU predicts. On return, `trajectory` is the registered motion, or
+  /// the motion of a failed attempt.
   void register_to_map(const mapping::Prediction& prediction, const mapping::MotionWindow& motion,
                        mapping::SweepPoints& points, SweepTrajectory& trajectory, SweepReport& report,
                        mapping::Placed& placed);
-  /// Returns the state after the update by the registered sweep. The predicted velocity is zero if the robot is at rest
-  /// after a tracking failure.
   mapping::StateEstimate update(const mapping::MotionWindow& motion, const mapping::Placed& placed,
                                 mapping::Prediction& prediction) const;
   std::vector<mapping::InsertedPoint> insert(const mapping::UpdatedSweep& sweep, mapping::SweepPoints& points,
@@ -71,28 +67,25 @@ struct LidarInertialOdometry::Impl {
                  std::vector<mapping::InsertedPoint> inserted, SweepReport& report);
   static mapping::WindowSweep& enter_window(const mapping::UpdatedSweep& sweep, const mapping::MotionWindow& motion,
                                             const mapping::SweepBoundary& from, mapping::LagWindow& into);
-  /// Sets the predicted velocity to zero if the robot is at rest after a tracking failure. The function has no effect
-  /// if a sensor other than the IMU measures the motion.
   void predict_stationary(const mapping::MotionWindow& motion, const mapping::SweepBoundary& from,
                           mapping::Prediction& prediction) const;
   void propagate_alternative(const mapping::MotionWindow& motion, bool unconfirmed_before);
   Status continue_by_inertia(const mapping::MotionWindow& motion, bool rests, mapping::SweepBoundary& at,
                              mapping::LagWindow* into) const;
   void revert_to_inertia();
-  /// Returns the state at the sweep boundary according to a relocalisation that later sweeps contradicted. Returns null
-  /// without a contradicted relocalisation. The search after a tracking failure uses this state as an initial pose.
+  /// Returns the state according to a relocalisation that later sweeps contradicted, or null. The search after a
+  /// tracking failure uses the state of the contradicted relocalisation as an initial pose.
   const MotionState* rejected_relocalisation() const;
   void add_map_drift(const mapping::UpdatedSweep& sweep, const SweepReport& report);
   void prune_until(TimeNs end_ns);
-  /// Compares the local map with the prior map after a registered sweep. If MapLocaliser accepts a pose, the odometry
-  /// continues in the frame of the prior map, with its points.
+  /// The odometry continues in the frame of the prior map if MapLocaliser accepts a pose.
   void localise(const SweepReport& report);
   void enter_prior_map(const mapping::FramePose& pose);
   bool extends_map() const { return !localiser.is_localised() || localiser.map().extend; }
 
   PoseState pose_along(const SweepTrajectory& motion, double t_s, const Registration::Matrix& errors) const;
-  /// Returns the poses at the ends of the IMU windows; the last pose is at `end_ns`. `errors` is the covariance of the
-  /// unknowns at the start of the sweep.
+  /// Returns the poses at the ends of the IMU's averaging windows. `errors` is the covariance of the unknowns at the
+  /// start of the sweep.
   std::vector<PoseState> poses_along(const SweepTrajectory& motion, TimeNs end_ns,
                                      const Registration::Matrix& errors) const;
   std::vector<PoseState> poses_of(const mapping::WindowSweep& sweep) const;

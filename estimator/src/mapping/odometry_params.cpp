@@ -7,7 +7,7 @@ namespace tumble {
 
 namespace {
 
-/// Checks that the corners of a box are not swapped. Eigen's empty box means that no box is set.
+/// Eigen's empty box means that no box is set.
 template <class Visitor>
 void visit_corners_in_order(const Eigen::AlignedBox3d& box, Visitor& visit) {
   const Eigen::AlignedBox3d none;
@@ -17,7 +17,6 @@ void visit_corners_in_order(const Eigen::AlignedBox3d& box, Visitor& visit) {
   visit(box.sizes().z(), {"own_body_L maximum z minus minimum z", "m", 0.0, kUnbounded, ""});
 }
 
-/// Returns the first parameter that is out of bounds or contradicts another parameter.
 detail::OutOfBounds out_of_bounds(const OdometryParams& params) {
   detail::OutOfBounds found;
   detail::BoundsChecker visit(found);

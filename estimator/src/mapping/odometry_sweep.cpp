@@ -31,7 +31,6 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
   if (!mapping::has_started(tracking)) {
     if (Status status = start_map(start_ns, end_ns, returns, report); !status.ok()) return status;
   }
-  // The registration starts from the motion that the IMU predicts from the end of the last sweep.
   SweepTrajectory& trajectory = scratch.trajectory;
   const Registration::Estimate& before = boundary.state_estimate.mean;
   if (Status status = trajectory.build(before.state, track.samples(), end_ns, before.calibration.gravity_W_m_s2);
@@ -61,7 +60,6 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
   report.verdict = placed->verdict;
   report.in_prior_map = localiser.is_localised();
 
-  // The updated state determines the motion, the map update, and the start of the next sweep.
   const std::unique_ptr<const StateEstimate> start(new StateEstimate(update(motion, *placed, *prediction)));
   if (!placed->alignment) {  // a failed attempt may have changed the trajectory
     const Registration::Estimate& mean = start->mean;
@@ -70,8 +68,7 @@ Status LidarInertialOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, st
     if (!status.ok()) return status;
   }
   const UpdatedSweep sweep{*prediction, *start, trajectory};
-  // A sweep for whose registration the map has too few points is inserted at its predicted pose. LocalMap omits points
-  // whose position is too uncertain.
+  // If the map has too few points for a registration, the sweep is inserted at its predicted pose.
   std::vector<InsertedPoint> inserted;
   if (extends_map() && (placed->verdict != SweepVerdict::rejected || placed->map_too_sparse))
     inserted = insert(sweep, points, counts.has_ring_numbers, *placed, report);
@@ -92,8 +89,8 @@ Status LidarInertialOdometry::Impl::check_sweep(TimeNs start_ns, TimeNs end_ns,
   if (samples.back().time_ns < end_ns) {
     return {ErrorCode::too_few, "imu time_ns", double(samples.back().time_ns), double(end_ns)};
   }
-  // If the lidar's clock is wrong, the first sweep may start before the first IMU sample. The robot is then assumed to
-  // be at rest up to the first sample.
+  // If the lidar's clock is wrong, the first sweep may start before the first IMU sample. Before the first IMU sample,
+  // the robot is assumed to be at rest.
   const double early_s = seconds(samples.front().from_ns - start_ns);
   if (!started && early_s > (params.time_offset_s != 0.0 ? SweepTrajectory::kExtrapolation_s : 0.0)) {
     return {ErrorCode::too_few, "start_ns", double(start_ns), double(samples.front().from_ns)};
@@ -118,16 +115,14 @@ Status LidarInertialOdometry::Impl::level_at_first() {
   return {};
 }
 
-/// Levels the initial attitude by the mean specific force. If the robot moves, the covariance is larger.
 Status LidarInertialOdometry::Impl::level_start(MotionState& levelled) const {
   const Status status = mapping::start_at_rest(params, track.samples(), levelled);
   if (status.ok() && !track.starts_at_rest(params.expert.start.bias_rest_s)) mapping::widen_for_motion(levelled);
   return status;
 }
 
-/// Starts the map with the first sweep that has enough points. If the sweep begins with the first IMU sample, the state
-/// at its start is the levelled state. If the sweep begins later, dead reckoning provides the state at its start
-/// (mapping.md, "Start").
+/// If the first sweep begins after the first IMU sample, dead reckoning provides the state at its start (mapping.md,
+/// "Start").
 Status LidarInertialOdometry::Impl::start_map(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> returns,
                                               SweepReport& report) {
   const SweepCalibration calibration = boundary.state_estimate.mean.calibration;
@@ -154,8 +149,7 @@ Status LidarInertialOdometry::Impl::start_map(TimeNs start_ns, TimeNs end_ns, st
   return {ErrorCode::too_few, "points", double(points), double(params.expert.matching.matches_min)};
 }
 
-/// Propagates the state to `end_ns` by inertial integration, without a map. While the IMU is at rest, the function
-/// levels the attitude by the measured gravity.
+/// While the IMU is at rest, the measured gravity levels the attitude.
 Status LidarInertialOdometry::Impl::dead_reckon(TimeNs end_ns) {
   MotionState levelled;
   if (!track.border_ns()) {
@@ -183,7 +177,7 @@ Status LidarInertialOdometry::Impl::dead_reckon(TimeNs end_ns) {
   return {};
 }
 
-/// Returns whether the IMU is at rest, and measures only gravity in the direction that the estimated attitude predicts.
+/// A robot at rest measures only gravity, in the direction that the estimated attitude predicts.
 bool LidarInertialOdometry::Impl::rests(const mapping::InertialTrack& inertial, const SweepTrajectory& motion,
                                         TimeNs end_ns) const {
   if (!inertial.rests_until(end_ns)) return false;
@@ -219,12 +213,11 @@ void LidarInertialOdometry::Impl::register_to_map(const Prediction& prediction, 
   mapping::judge(params, tracking, scene.points.size(), prior_certain, attempt, placed);
 }
 
-/// Returns the updated state at the start of a sweep. At rest after a tracking failure, the function also corrects
-/// `prediction`, because the lag window uses it.
+/// At rest after a tracking failure, the function also corrects `prediction`, because the lag window uses the
+/// prediction.
 StateEstimate LidarInertialOdometry::Impl::update(const MotionWindow& motion, const Placed& placed,
                                                   Prediction& prediction) const {
   if (placed.alignment) return mapping::posterior(prediction, *placed.alignment);
-  // Without a registration, the motion is the inertial prediction. At rest, a velocity of zero prevents drift.
   if (mapping::is_lost(tracking)) predict_stationary(motion, boundary, prediction);
   return mapping::posterior(prediction);
 }
@@ -252,8 +245,7 @@ std::vector<InsertedPoint> LidarInertialOdometry::Impl::insert(const UpdatedSwee
   return inserted;
 }
 
-/// Updates the state that persists between sweeps. The sweep enters the lag window before boundary_after() replaces the
-/// boundary to the previous sweep, because the lag window needs this boundary.
+/// The lag window needs the boundary to the previous sweep, which boundary_after() replaces.
 void LidarInertialOdometry::Impl::propagate(const UpdatedSweep& sweep, const Placed& placed, const MotionWindow& motion,
                                             std::vector<InsertedPoint> inserted, SweepReport& report) {
   const Registration::Result* aligned = placed.alignment ? &*placed.alignment : nullptr;
@@ -273,7 +265,7 @@ void LidarInertialOdometry::Impl::propagate(const UpdatedSweep& sweep, const Pla
     window.smooth();
     window.move_inserted(map);
   }
-  // The oldest sweep leaves the lag window with the next sweep, so its pose is final.
+  // The oldest sweep leaves the lag window with the next sweep, so the pose of the oldest sweep is final.
   if (window.is_full()) report.smoothed = poses_of(window.sweeps().front());
   mapping::boundary_after(params, sweep.start, motion, sweep.trajectory, aligned, boundary);
   report.pose = boundary.state_estimate.mean.state.pose();
@@ -285,8 +277,7 @@ void LidarInertialOdometry::Impl::propagate(const UpdatedSweep& sweep, const Pla
   prune_until(motion.end_ns);
 }
 
-/// Increases the map's covariance relative to the world after a sweep, because the inserted points share the pose error
-/// of the sweep.
+/// All points inserted from a sweep share the pose error of the sweep.
 void LidarInertialOdometry::Impl::add_map_drift(const UpdatedSweep& sweep, const SweepReport& report) {
   const double inserted_fraction =
       report.points_used == 0 ? 0.0 : double(report.map_points_added) / double(report.points_used);
@@ -294,7 +285,6 @@ void LidarInertialOdometry::Impl::add_map_drift(const UpdatedSweep& sweep, const
                       boundary.state_estimate.mean.calibration.T_IL.translation());
 }
 
-/// Deletes the data that the odometry no longer needs: IMU samples up to `end_ns`, and distant map points.
 void LidarInertialOdometry::Impl::prune_until(TimeNs end_ns) {
   known = mapping::InertialPrior{};
   track.prune_until(end_ns);
@@ -303,9 +293,6 @@ void LidarInertialOdometry::Impl::prune_until(TimeNs end_ns) {
   if (map.prune(params, boundary.state_estimate.mean.state.p_WI_m)) window.clear_inserted();
 }
 
-/// Propagates the alternative pose (see DeadReckoning) by inertial prediction. While a relocalisation is unconfirmed,
-/// the alternative is the pose without the relocalisation. After a contradiction, the alternative is the relocalised
-/// pose.
 void LidarInertialOdometry::Impl::propagate_alternative(const MotionWindow& motion, bool unconfirmed_before) {
   const bool relocalisation_unconfirmed = mapping::is_unconfirmed(tracking);
   if (relocalisation_unconfirmed && !unconfirmed_before) {
@@ -323,8 +310,7 @@ void LidarInertialOdometry::Impl::propagate_alternative(const MotionWindow& moti
   if (!continue_by_inertia(motion, rests, other->boundary, &other->window).ok()) other.reset();
 }
 
-/// Propagates the state to the end of a sweep without using the points of the sweep. If `rests` is true, the velocity
-/// is 0. If `into` is not null, the sweep also enters this lag window.
+/// The points of the sweep are not used. If `into` is not null, the sweep also enters the lag window `into`.
 Status LidarInertialOdometry::Impl::continue_by_inertia(const MotionWindow& motion, bool rests,
                                                         mapping::SweepBoundary& at, mapping::LagWindow* into) const {
   const Registration::Estimate& before = at.state_estimate.mean;
@@ -345,8 +331,8 @@ Status LidarInertialOdometry::Impl::continue_by_inertia(const MotionWindow& moti
   return {};
 }
 
-/// Reverts a relocalisation that later sweeps contradict. The function removes the map points inserted since then, and
-/// continues from the inertial prediction. The relocalised pose remains an initial pose of the search.
+/// Removes the map points inserted since a relocalisation that later sweeps contradict. After a contradiction, the
+/// relocalised pose remains an initial pose of the search.
 void LidarInertialOdometry::Impl::revert_to_inertia() {
   map.remove_sweeps_since(std::exchange(other->inserted_from, 0));  // 0, because pruning changes sweep numbers
   std::swap(boundary, other->boundary);

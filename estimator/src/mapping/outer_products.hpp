@@ -9,9 +9,8 @@
 
 namespace tumble::mapping {
 
-/// OuterProducts computes the sum of the outer products v v^T of many columns v with up to `Rows` numbers. The sum
-/// equals SelfAdjointView<Lower>::rankUpdate bit for bit. Eigen's rankUpdate keeps its blocks on the stack, which needs
-/// 86 KiB for 128 columns of 28 numbers. OuterProducts keeps the blocks on the heap and calls Eigen's kernel directly.
+/// The sum of outer products equals Eigen's rankUpdate bit for bit. Eigen's rankUpdate needs 86 KiB of stack for 128
+/// columns of 28 numbers; OuterProducts uses the heap.
 template <int Rows, int Columns>
 class OuterProducts {
  public:
@@ -23,8 +22,7 @@ class OuterProducts {
 
   Eigen::Matrix<double, Rows, Columns> columns;
 
-  /// Adds the outer products of the first `count` columns, limited to their first `size` numbers, to the lower triangle
-  /// of `sum`.
+  /// Adds v v^T of the first `size` numbers of the first `count` columns v to the lower triangle of `sum`.
   void add_to(int size, int count, Matrix& sum) {
     namespace e = Eigen::internal;
     e::general_matrix_matrix_triangular_product<Eigen::Index, double, Eigen::ColMajor, false, double, Eigen::RowMajor,
@@ -43,7 +41,7 @@ class OuterProducts {
   Blocks blocks_{Rows, Rows, Columns, 1, false};
 };
 
-/// Spare is a pool of work buffers for threads. The pool grows to the number of threads that use it at the same time.
+/// The pool of work buffers grows to the number of threads that use it at the same time.
 template <class Work>
 class Spare {
  public:

@@ -11,13 +11,12 @@
 
 namespace tumble::mapping {
 
-/// PointMotion computes the derivative of a sweep point's world position with respect to the unknowns of the sweep.
 class PointMotion {
  public:
   PointMotion(const SweepTrajectory& trajectory, const SweepCalibration& calibration, const SweepPoint& point,
               std::size_t& hint);
 
-  /// Computes the derivative of the point's position along `direction_W` with respect to all unknowns, see mapping.md
+  /// Computes the derivative of the point's world position along `direction_W` with respect to all unknowns: mapping.md
   /// (R17).
   void along(const Eigen::Vector3d& direction_W, SweepUnknowns::Vector& derivative) const;
 

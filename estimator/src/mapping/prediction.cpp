@@ -19,8 +19,7 @@ namespace {
 namespace u = unknowns;
 using Params = LidarInertialOdometry::Params;
 
-/// Predicts the saturation deficit of an axis that is saturated at the boundary between two sweeps. The predicted
-/// deficit decays exponentially: mapping.md (R48).
+/// See mapping.md (R48). The saturation deficit at the boundary between two sweeps decays exponentially with time.
 void carry_deficit(const Params& params, const SweepBoundary& boundary, const SweepTrajectory& trajectory,
                    Prediction& next) {
   constexpr int kLast = SweepTrajectory::kKnots - 1;
@@ -40,21 +39,18 @@ void carry_deficit(const Params& params, const SweepBoundary& boundary, const Sw
   }
 }
 
-/// Returns the largest reported standard deviation of the rate among samples of a sweep with clipped `axis`. The result
-/// is at least `deficit_sigma_min_rad_s`.
+/// Only samples in which `axis` is clipped count.
 double deficit_sigma(const Params& params, const MotionWindow& window, const SweepTrajectory& trajectory, int axis) {
   double sigma = params.expert.rails.deficit_sigma_min_rad_s;
   for (const MotionSample& sample : window.samples) {
-    // The remaining samples belong to the next sweep.
     if (seconds(sample.from_ns - trajectory.start_ns()) >= trajectory.duration_s()) break;
     if (sample.clipped_axes >> axis & 1) sigma = std::max(sigma, sample.rate_sigma_rad_s[axis]);
   }
   return sigma;
 }
 
-/// Adds the process noise of the saturation deficit, which is a first-order Gauss-Markov process with the reported
-/// standard deviation: mapping.md (R46), (R47). If the deficit continues from the last sweep, its covariance follows
-/// from (R49).
+/// The saturation deficit is a first-order Gauss-Markov process: mapping.md (R46), (R47). If the saturation deficit
+/// continues from the last sweep, its covariance follows from mapping.md (R49).
 void add_deficit_noise(const Params& params, const MotionWindow& window, const SweepTrajectory& trajectory,
                        Prediction& next) {
   if (!params.expert.rails.estimate_deficit) return;
@@ -81,7 +77,7 @@ double knot_correlation(const Params& params, const SweepTrajectory& trajectory)
   return std::exp(-trajectory.duration_s() / (SweepTrajectory::kKnots - 1) / params.expert.rails.deficit_time_s);
 }
 
-/// Propagates the covariances from the sweep boundary over the predicted motion: mapping.md (R32).
+/// See mapping.md (R32).
 void Prediction::compose(const StateEstimate& at_boundary) {
   propagate_covariance(jacobian_boundary, at_boundary.weight, prior.covariance);
   propagate_covariance(jacobian_boundary, at_boundary.error, errors);
@@ -97,7 +93,7 @@ void Prediction::zero_velocity_update(double sigma_m_s) {
   u::variances(noise, u::velocity).setConstant(sigma_m_s * sigma_m_s);
 }
 
-/// Applies a known velocity to the prediction: mapping.md (R33).
+/// See mapping.md (R33).
 void apply_velocity_prior(const KnownVelocity& known, Prediction& prediction) {
   prediction.zero_velocity_update(known.sigma_m_s);
   const Eigen::Vector3d v_WI_m_s = prediction.prior.mean.state.q_WI * known.v_WI_I_m_s;
@@ -113,7 +109,7 @@ Prediction predict(const Params& params, const SweepBoundary& boundary, const Mo
   next.prior.mean.calibration = boundary.state_estimate.mean.calibration;
   carry_deficit(params, boundary, trajectory, next);
   if (window.samples.front().at_rest) next.zero_velocity_update(params.expert.standstill.start_sigma_m_s);
-  // The speed limit creep_max_m_s excludes constant motion, which the IMU cannot distinguish from rest.
+  // The IMU cannot distinguish constant motion from rest, so rest is only accepted up to the speed creep_max_m_s.
   const bool creeps = boundary.state_estimate.mean.state.v_WI_m_s.norm() < params.expert.standstill.creep_max_m_s;
   if (window.resting_sweeps >= params.expert.standstill.sweeps_min && !boundary.constrained && creeps)
     next.zero_velocity_update(params.expert.standstill.sigma_m_s);
@@ -122,8 +118,8 @@ Prediction predict(const Params& params, const SweepBoundary& boundary, const Mo
   MotionNoise within = inertial_noise(params, trajectory, window.samples, axes);
   const Eigen::Matrix3d clipped_force_m2_s2 = clipped_velocity_variance(params, trajectory, window.samples);
   u::block(next.noise, u::motion) += within;
-  // A force that saturates late in a sweep hardly affects the registration of the sweep. The velocity variance due to
-  // this force is therefore added to the next sweep as well.
+  // A force that saturates late in a sweep hardly affects the registration of the sweep, but changes the velocity in
+  // the next sweep.
   u::block(next.noise, u::velocity) += boundary.clipped_velocity_m2_s2 + clipped_force_m2_s2;
   u::block(within, u::velocity) += clipped_force_m2_s2;
   add_deficit_noise(params, window, trajectory, next);
@@ -156,9 +152,7 @@ StateEstimate posterior(const Prediction& prediction) {
 
 namespace {
 
-/// Computes the matrix that converts errors of the prior to errors after the registration: mapping.md (R52).
-/// prior_error_gain() is a separate function, because its matrices would otherwise enlarge the stack frame of
-/// posterior().
+/// See mapping.md (R52). A separate function keeps large matrices out of the stack frame of posterior().
 [[gnu::noinline]] void prior_error_gain(const Prediction& prediction, const Registration::Result& aligned,
                                         Registration::Matrix& out) {
   // Noise of the surface normals carries no information about the motion.
@@ -170,8 +164,7 @@ namespace {
 
 }  // namespace
 
-/// Computes the covariance of the errors after the registration, which come from the prior and from the matched
-/// surfaces: mapping.md (R52). `score_covariance` is the measured covariance of the surfaces' part of the gradient.
+/// See mapping.md (R52).
 StateEstimate posterior(const Prediction& prediction, const Registration::Result& aligned) {
   StateEstimate start{aligned.mean, aligned.covariance, Registration::Matrix::Zero()};
   const auto from_prior = std::make_unique<Registration::Matrix>();

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// prior_map_entry.cpp localises a run in a prior map.
 #include <utility>
 #include <variant>
 
@@ -32,8 +31,7 @@ const PriorMap* LidarInertialOdometry::prior_map() const {
   return impl_->localiser.has_map() ? &impl_->localiser.map() : nullptr;
 }
 
-/// After a tracking failure, and during an unconfirmed relocalisation, the local map may be wrong and is not compared
-/// with the prior map.
+/// After a tracking failure, and during an unconfirmed relocalisation, the local map may be wrong.
 void LidarInertialOdometry::Impl::localise(const SweepReport& report) {
   if (!localiser.has_map() || localiser.is_localised()) return;
   if (report.verdict != SweepVerdict::registered || !std::holds_alternative<mapping::Tracking>(tracking)) return;

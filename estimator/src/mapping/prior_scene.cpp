@@ -27,7 +27,6 @@ constexpr std::size_t kCoarsePoints = 240;  // number of surface points for a co
 constexpr std::size_t kKept = 4000, kRefined = 96;
 constexpr float kApart_m = 1.0f;  // minimum distance of two distinct poses
 constexpr double kApart_rad = 0.12;
-// Largest difference between the vertical components of the normals of an anchor and of a cell.
 constexpr float kNormalZ = 0.3f;
 
 constexpr float kCovered_m = 1.0f;  // maximum distance of a covered point from the prior map
@@ -35,14 +34,13 @@ constexpr float kNearSurface_m = 0.5f, kAgreeDistance_m = 0.12f, kAgreeNormal = 
 constexpr std::size_t kRefinePoints = 400;
 constexpr float kLastKernel_m = 0.15f;
 
-/// Returns the slope class of a surface normal. A coarse score uses equally many points of each class (normal-space
-/// sampling), because trunks and rocks determine the pose better than the ground.
+/// Each slope class contributes equally many points (normal-space sampling), because trunks and rocks determine the
+/// pose better than the ground.
 int slope_class(const Eigen::Vector3f& normal) {
   const float z = std::abs(normal.z());
   return z < 0.3f ? 0 : z < 0.6f ? 1 : z < 0.85f ? 2 : 3;
 }
 
-/// Selects points from each slope class in turn, and within each class in the order of `points`.
 std::vector<SurfacePoint> select_by_slope(const std::vector<SurfacePoint>& points, std::size_t most) {
   std::array<std::vector<std::size_t>, 4> classes;
   for (std::size_t k = 0; k < points.size(); ++k)
@@ -110,8 +108,7 @@ PriorScene::PriorScene(PriorMap map) : map_(std::move(map)), voxels_(kVoxels) {
   build_grid();
 }
 
-/// Marks the grid cells that contain surfaces, and the neighbours of these cells. The grid has a margin, so the search
-/// needs no range checks.
+/// The grid has a margin, so the search needs no range checks.
 void PriorScene::build_grid() {
   Eigen::AlignedBox3f box;
   for (std::uint32_t index = 0; index < voxels_.index_end(); ++index)
@@ -175,7 +172,7 @@ Eigen::Isometry3d PriorScene::pose_of(const Candidate& candidate, const SurfaceP
   return T_MW;
 }
 
-/// Scores every pose that moves the anchor (one surface point) to a surface cell of the prior map, with every heading.
+/// Scores every pose that moves one surface point (the anchor) to a surface cell of the prior map, with every heading.
 std::vector<PriorScene::Candidate> PriorScene::best_candidates(const std::vector<SurfacePoint>& points,
                                                                const SurfacePoint& anchor, const SearchRegion* region,
                                                                std::size_t& tried) const {

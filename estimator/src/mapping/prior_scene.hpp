@@ -8,27 +8,23 @@
 #include "tumble/mapping/detail/prior_map.hpp"
 #include "tumble/mapping/voxel_map.hpp"
 
-/// prior_scene.hpp aligns the map of the current run (frame W) with a prior map (frame M), see mapping.md,
-/// "Localisation in a prior map".
+/// See mapping.md, "Localisation in a prior map".
 namespace tumble::mapping {
 
-/// SurfacePoint is a point of the current run's map with its normal. A list of surface points has at most one point per
-/// cube of 1 m, so that the errors of the points are nearly independent.
+/// A list of surface points has at most one point per cube of 1 m, so that point errors are nearly independent.
 struct SurfacePoint {
   Eigen::Vector3f position_W_m;
   Eigen::Vector3f normal_W;
 };
 
-/// Returns the surface points of `map` within `radius_m` of a position, ordered by the distance of their cubes.
+/// The surface points are ordered by distance from `p_WI_m`.
 std::vector<SurfacePoint> surface_points(const VoxelMap& map, const Eigen::Vector3f& p_WI_m, float radius_m);
 
-/// FramePose is a possible pose of the local frame W in the prior map, with the number of surface points that support
-/// it.
 struct FramePose {
   Eigen::Isometry3d T_MW = Eigen::Isometry3d::Identity();
   std::size_t covered = 0;   ///< surface points near the prior map's surfaces
   std::size_t agreeing = 0;  ///< covered points on the prior map's surfaces, with similar normals
-  /// Covariance of the pose, in axes of M: displacement and rotation of the local frame about the sensor.
+  /// covariance of the pose in axes of the prior map's frame M: displacement and rotation about the sensor
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
 
   double ratio() const { return covered == 0 ? 0.0 : double(agreeing) / double(covered); }
@@ -41,7 +37,6 @@ struct SearchRegion {
   double reach_m = 0.0, reach_rad = 0.0;
 };
 
-/// PriorScene is a prior map with a search structure for finding the pose of a local map.
 class PriorScene {
  public:
   explicit PriorScene(PriorMap map);
@@ -81,7 +76,6 @@ class PriorScene {
   PriorMap map_;
   VoxelMap voxels_;
   std::vector<Eigen::Vector3f> normals_;  // by index of voxels_
-  // Dense grid of surface cells with a margin of the query's radius, and the list of the occupied cells.
   float cell_m_ = 0.0f;
   Eigen::Vector3f low_M_m_ = Eigen::Vector3f::Zero();
   Eigen::Vector3i size_ = Eigen::Vector3i::Zero();
@@ -89,7 +83,7 @@ class PriorScene {
   std::vector<SurfaceCell> cells_;
 };
 
-/// kQueryRadius_m is the radius around the sensor within which surface points are compared.
+/// radius around the sensor within which surface points are compared
 inline constexpr float kQueryRadius_m = 20.0f;
 
 }  // namespace tumble::mapping

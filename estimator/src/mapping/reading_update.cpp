@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// reading_update.cpp updates the prediction of a sweep with an odometer reading: mapping.md, section 3.
+// See mapping.md, section 3.
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <memory>
@@ -27,8 +27,6 @@ using MotionJacobian = Eigen::Matrix<double, Values, kMotionSize>;
 constexpr int kIterations = 6;              // two or three iterations are usually enough
 constexpr double kConvergenceLimit = 1e-9;  // convergence limit [m, rad, m/s, rad/s]
 
-/// Offsets contains the differences between update and prediction, for the unknowns at the sweep boundary and for the
-/// process noise since then.
 struct Offsets {
   Registration::Vector start = Registration::Vector::Zero();
   Eigen::Matrix<double, kMotionSize, 1> noise = Eigen::Matrix<double, kMotionSize, 1>::Zero();
@@ -41,7 +39,6 @@ struct Expected {
   Covariance variance;
 };
 
-/// MotionInstant is the motion of the IMU at one time within the sweep.
 struct MotionInstant {
   double noise_fraction = 0.0;  ///< fraction of the sweep's noise up to this time
   Eigen::Quaterniond q_WI;
@@ -58,8 +55,8 @@ class Sweep {
     return time_ns >= predicted_.state.time_ns - beyond_ns && time_ns <= window_.end_ns + beyond_ns;
   }
 
-  /// Evaluates the motion at a time within the sweep: mapping.md (R34). The standard deviation of the process noise is
-  /// proportional to the time since the boundary.
+  /// See mapping.md (R34). The standard deviation of the process noise is proportional to the time since the sweep
+  /// boundary.
   MotionInstant at(TimeNs time_ns, const Offsets& offsets) const {
     MotionInstant out;
     const double t_s = seconds(time_ns - predicted_.state.time_ns);
@@ -71,7 +68,7 @@ class Sweep {
     Registration::Estimate start = predicted_;
     start.add(moved);
     SweepTrajectory trajectory;
-    // build() cannot fail here, because add_sweep() ensures that the IMU samples cover the window.
+    // add_sweep() ensures that the IMU samples cover the window, so build() cannot fail.
     (void)trajectory.build(start.state, window_.samples, window_.end_ns, start.calibration.gravity_W_m_s2,
                            start.deficit_rad_s);
     std::size_t hint = 0;
@@ -92,8 +89,8 @@ class Sweep {
   const MotionWindow& window_;
 };
 
-/// Adds the derivatives of the predicted odometer reading with respect to the unknowns at the sweep boundary and the
-/// process noise. `by_moment` is its derivative with respect to the motion at the time of the reading.
+/// `by_moment` is the derivative of the predicted odometer reading with respect to the motion at the time of the
+/// reading.
 template <int Size>
 void add(const MotionJacobian<Size>& by_moment, const MotionInstant& moment, Expected& out) {
   const Eigen::Matrix<double, Size, kUnknowns> jacobian_start = by_moment * moment.jacobian_start;
@@ -107,7 +104,7 @@ Expected nothing() {
           Covariance::Zero(Size, Size)};
 }
 
-/// Predicts an odometer's velocity reading: mapping.md (R35).
+/// See mapping.md (R35).
 Expected expect(const VelocityReading& reading, const Sweep& sweep, const Offsets& offsets) {
   Expected out = nothing<3>();
   const MotionInstant now = sweep.at(reading.time_ns, offsets);
@@ -121,7 +118,7 @@ Expected expect(const VelocityReading& reading, const Sweep& sweep, const Offset
   return out;
 }
 
-/// Predicts an odometer's reading of relative motion: mapping.md (R36).
+/// See mapping.md (R36).
 Expected expect(const MotionReading& reading, const Sweep& sweep, const Offsets& offsets) {
   Expected out = nothing<kMost>();
   const MotionInstant from = sweep.at(reading.from_ns, offsets), to = sweep.at(reading.to_ns, offsets);
@@ -152,7 +149,7 @@ bool holds(const Sweep& sweep, const OdometerReading& reading) {
 template <int Size>
 using Gain = Eigen::Matrix<double, Size, Eigen::Dynamic, 0, Size, kMost>;
 
-/// Work contains the buffers of an update on the heap, because propagate_covariance() uses much of the stack.
+/// The buffers are on the heap, because propagate_covariance() uses much of the stack.
 struct Work {
   Matrix at_start, before, left;  ///< covariance at the start; its part due to noise; factor of the remaining errors
   Offsets offsets;
@@ -161,7 +158,7 @@ struct Work {
   Gain<kMotionSize> by_noise;      ///< Kalman gain of the process noise since the boundary
 };
 
-/// Computes the Kalman gains at the current linearisation point: mapping.md (R37).
+/// See mapping.md (R37).
 bool compute_gains(const MotionNoise& within, Work& work) {
   const Expected& expected = work.expected;
   work.jacobian_start = work.at_start * expected.jacobian_start.transpose();
@@ -175,8 +172,7 @@ bool compute_gains(const MotionNoise& within, Work& work) {
   return true;
 }
 
-/// Iterates to the unknowns that best fit the odometer reading and the prediction. Returns false if the equations have
-/// no solution.
+/// Returns false if the equations have no solution.
 [[gnu::noinline]] bool iterate_to_convergence(const OdometerReading& reading, const Sweep& sweep,
                                               const MotionNoise& within, Work& work) {
   for (int iteration = 0; iteration < kIterations; ++iteration) {
@@ -194,7 +190,7 @@ bool compute_gains(const MotionNoise& within, Work& work) {
   return true;
 }
 
-/// Applies the update to the predicted unknowns and the covariance of their errors: mapping.md (R38).
+/// See mapping.md (R38).
 [[gnu::noinline]] void move(Work& work, Prediction& prediction) {
   Registration::Vector moved = work.offsets.start;
   u::segment(moved, u::motion) += work.offsets.noise;
@@ -206,8 +202,7 @@ bool compute_gains(const MotionNoise& within, Work& work) {
   work.left.noalias() -= work.jacobian_start * work.expected.jacobian_start;
 }
 
-/// Adds the noise of the odometer reading, and the remaining process noise of the sweep, to the covariance of the
-/// errors: mapping.md (R38).
+/// See mapping.md (R38).
 [[gnu::noinline]] void add_noise(const MotionNoise& within, Work& work, Prediction& prediction) {
   const Gain<kUnknowns>& K = work.jacobian_start;
   Eigen::Matrix<double, kUnknowns, kMotionSize> left = -K * work.expected.by_noise;
@@ -226,7 +221,7 @@ void fuse_reading(const OdometerReading& reading, const SweepBoundary& boundary,
   const Sweep sweep(prediction.prior.mean, window);
   if (!holds(sweep, reading)) return;
   const auto work = std::make_unique<Work>();
-  // As in the registration, the gains follow from the covariance C: mapping.md section 6.
+  // The gains follow from the covariance C, as in the registration: mapping.md, section 6.
   propagate_covariance(prediction.jacobian_boundary, boundary.state_estimate.weight, work->at_start);
   Matrix& before = work->before;  // noise at the start: saturation deficit, earlier saturation
   before = prediction.noise;

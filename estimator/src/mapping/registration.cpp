@@ -27,8 +27,7 @@ Matrix information_of(const Matrix& covariance) {
   return dense::Cholesky(positive).inverse<Matrix>();
 }
 
-/// Adds the information and the gradient of the prior to the normal equations for all unknowns: mapping.md (R22),
-/// (R23).
+/// See mapping.md (R22), (R23).
 void add_prior(const Registration::Prior& prior, const Matrix& information, const Registration::Estimate& now,
                Matrix& H, Vector& g) {
   const auto held = std::make_unique<std::array<Matrix, 3>>();
@@ -42,8 +41,7 @@ void add_prior(const Registration::Prior& prior, const Matrix& information, cons
   g += J.transpose() * (information * away);
 }
 
-/// Returns whether the registered motion `now` agrees with the prior, within the covariance of the prior: mapping.md
-/// (R25).
+/// See mapping.md (R25).
 bool agrees(const Registration::Prior& prior, const Registration::Estimate& now) {
   constexpr int kMotionSize = Registration::kMotionSize;
   const Vector moved = now.minus(prior.mean);
@@ -189,7 +187,6 @@ RegistrationVerdict Registration::classify_result(const Problem& problem, const 
   return RegistrationVerdict::converged;
 }
 
-/// Computes mean, covariance and diagnostics of an accepted registration.
 Status Registration::finalise(const Problem& problem, const IterationState& at, SweepTrajectory& trajectory,
                               Result& result) {
   Matrix posterior = Matrix::Identity();  // posterior covariance: mapping.md (R24)
@@ -205,7 +202,7 @@ Status Registration::finalise(const Problem& problem, const IterationState& at, 
   return {};
 }
 
-/// Computes how well the surfaces constrain each direction: mapping.md (R30), (R31).
+/// See mapping.md (R30), (R31).
 void Registration::compute_eigenvalues(std::span<const SweepPoint> points, double kernel_m, const Sums& sum,
                                        Result& result) const {
   Eigen::Matrix<double, 6, 6> shape = Eigen::Matrix<double, 6, 6>::Zero();  // weighted robustly, but not by variance

@@ -73,15 +73,14 @@ void Registration::Sums::add(const Sums& other) {
   inliers += other.inliers;
 }
 
-/// Computes the variance of a point due to errors of range and deskewing: first part of mapping.md (R18).
+/// See the first part of mapping.md (R18).
 double Registration::point_variance_m2(const SweepPoint& point) const {
   const double range = std::max(params_.range_sigma_m, params_.range_sigma_ratio * point.range_m);
   const double skew = params_.skew_sigma_m_s * point.sweep_time_s;
   return range * range + skew * skew;
 }
 
-/// Computes the distance of a point from its matched plane, and the derivatives of this distance with respect to the
-/// unknowns: mapping.md (R16), (R17).
+/// See mapping.md (R16), (R17).
 double Registration::residual(const SweepTrajectory& trajectory, const SweepCalibration& calibration,
                               const SweepPoint& point, const PlaneFit& plane, std::size_t& hint, Vector& derivative) {
   const Eigen::Vector3d n = plane.normal_W.cast<double>();
@@ -97,8 +96,7 @@ void Registration::find_match(const VoxelMap& map, std::size_t point, Neighbours
   if (match.searched) {
     const float moved2 = (positions_[point] - match.search_position_W_m).squaredNorm();
     if (moved2 <= rematch2) return;
-    // The radius includes all neighbours of the previous search, and therefore the nearest neighbours of the moved
-    // point. A small margin covers rounding.
+    // The search radius includes all neighbours of the previous search, so the nearest neighbours are found.
     radius_m = std::min(radius_m, kRounding * (match.farthest_neighbour_m + std::sqrt(moved2)));
   }
   match.searched = true;
@@ -113,12 +111,11 @@ void Registration::find_match(const VoxelMap& map, std::size_t point, Neighbours
     const float sigma = map.sigma_m(found.index[k]);
     variance += sigma * sigma;
   }
-  // Variance of a match due to the map: last part of mapping.md (R18).
+  // See the last part of mapping.md (R18).
   match.map_variance_m2 = variance / static_cast<float>(found.count) + match.plane.thickness_variance_m2;
 }
 
-/// Computes the weight of a matched point: inverse variance times robust weight (Geman, McClure, 1987), mapping.md
-/// (R19), (R21).
+/// The weight is the inverse variance times the robust weight (Geman, McClure, 1987): mapping.md (R19), (R21).
 Registration::Weight Registration::compute_weight(const SweepPoint& point, const Match& match, double distance_m,
                                                   double kernel_m) const {
   const double variance = point_variance_m2(point) + match.map_variance_m2;
@@ -127,8 +124,7 @@ Registration::Weight Registration::compute_weight(const SweepPoint& point, const
   return {variance, robust, robust * params_.expert.correlation_discount / variance};
 }
 
-/// Computes for each point its world position, the plane through the nearest map points, and the distance from this
-/// plane: mapping.md (R3), (R16).
+/// See mapping.md (R3), (R16).
 void Registration::match_points(const SweepTrajectory& trajectory, std::span<const SweepPoint> points,
                                 const VoxelMap& map) {
   lever_arm_vectors_.resize(points.size());
@@ -148,7 +144,7 @@ void Registration::match_points(const SweepTrajectory& trajectory, std::span<con
   });
 }
 
-/// Computes the width of the robust kernel from the median distance between points and planes: mapping.md (R20).
+/// See mapping.md (R20).
 double Registration::kernel_width_m() {
   sorted_distances_.clear();
   for (std::size_t i = 0; i < matches_.size(); ++i) {
@@ -161,12 +157,12 @@ double Registration::kernel_width_m() {
   return std::max(params_.expert.kernel_min_m, 3.0 * 1.4826 * static_cast<double>(*middle));
 }
 
-/// Computes the sums for the normal equations over a block of consecutive points: mapping.md (R23).
+/// See mapping.md (R23).
 void Registration::accumulate_block(std::span<const SweepPoint> points, std::size_t block,
                                     const SweepTrajectory& trajectory, const SweepCalibration& calibration,
                                     const Unknowns& unknowns, double kernel_m, Products& products, Sums& sum) {
-  // Each matched point has one column: its distance, and the derivatives with respect to the free unknowns, multiplied
-  // by the square root of the match's weight.
+  // Each matched point has one column: its distance and the derivatives, multiplied by the square root of the match's
+  // weight.
   auto& rows = products.columns;
   Eigen::Matrix<double, static_cast<int>(kBlock), 1> weighted;
   const bool rigid = !unknowns.deficit && !unknowns.calibration;
@@ -217,10 +213,9 @@ void Registration::accumulate(std::span<const SweepPoint> points, const SweepTra
   sum.H = lower.selfadjointView<Eigen::Lower>();
 }
 
-/// NormalNoise is the part of the normal matrix that is due to noise of the surface normals, for all free unknowns:
-/// mapping.md (R28), (R29). If NormalNoise covered only the motion, noise would seem to determine combinations of
-/// unknowns that surfaces cannot determine, for example attitude with mounting rotation. The covariance (R52) of such
-/// combinations would then grow without bound.
+/// NormalNoise is the part of the normal matrix due to noise of the surface normals: mapping.md (R28), (R29). All free
+/// unknowns must be covered, because noise would otherwise seem to determine combinations that surfaces cannot
+/// determine.
 struct Registration::NormalNoise {
   const Unknowns& unknowns;
   using Products = mapping::OuterProducts<kUnknowns, 2 * static_cast<int>(kBlock)>;
@@ -258,8 +253,7 @@ struct Registration::NormalNoise {
   }
 };
 
-/// Pulls contains the gradient sum q of each cluster of points. The gradient sums of all clusters determine the
-/// covariance of the gradient: mapping.md (R26).
+/// The gradient sums of all clusters of points determine the covariance of the gradient: mapping.md (R26).
 struct Registration::Pulls {
   SpatialHash& cluster_of;
   std::vector<Vector>& pulls;
@@ -286,7 +280,6 @@ struct Registration::Pulls {
   }
 };
 
-/// Computes error statistics from the distances of all matched points at the registered pose.
 void Registration::compute_error_statistics(std::span<const SweepPoint> points, const SweepTrajectory& trajectory,
                                             const SweepCalibration& calibration, const Unknowns& unknowns,
                                             double kernel_m, Result& result) {

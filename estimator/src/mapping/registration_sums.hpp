@@ -8,20 +8,17 @@
 
 namespace tumble {
 
-/// Unknowns lists the free unknowns, which a registration estimates. Sums contains only the rows of free unknowns.
 struct Registration::Unknowns {
   std::array<int, kUnknowns> free{};  ///< indices of the free unknowns, ascending
   int count = 0;
   bool deficit = false, calibration = false;
 
-  /// Constructs the list from the prior covariance. The motion is always free; any other unknown is free if its prior
-  /// variance is above 0.
+  /// The motion is always free; any other unknown is free if its prior variance is above 0.
   explicit Unknowns(const Matrix& covariance);
 
-  /// Copies the sums over the free unknowns to normal equations H, g for all unknowns. The rows of fixed unknowns are
-  /// 0.
+  /// In the normal equations H, g for all unknowns, the rows of fixed unknowns are 0.
   void expand(const Sums& sum, Matrix& H, Vector& g) const;
-  /// Removes the fixed unknowns from the normal equations, so that the solution is 0 for them.
+  /// The normal equations are changed such that the solution is 0 for the fixed unknowns.
   void hold(Matrix& H, Vector& g) const;
   void clear_fixed_blocks(Matrix& M) const;
   void clear_fixed(Matrix& covariance) const;

@@ -14,31 +14,29 @@ namespace {
 
 using Params = LidarInertialOdometry::Params;
 
-// kDeficitTries lists the saturation deficits that are tried, as multiples of deficit_try_rad_s. Small deficits are the
-// most frequent, so most values are small.
+// Saturation deficits to try, as multiples of deficit_try_rad_s; small saturation deficits are the most frequent.
 constexpr double kDeficitTries[] = {1.0, 2.0, 3.0, 5.0};
 constexpr double kDeficitSigmas = 5.0;  // largest tried deficit, in standard deviations
 
 constexpr int kStartsPerRound = 12;  // number of initial poses per round: six axes, two directions
-// Distance of an initial pose from the prior, in standard deviations. The maximum distance grows with each round.
 constexpr double kStartSigmas = 1.5;
 
 bool converged(const Registration::Result& found) {
   return found.verdict == RegistrationVerdict::converged;
 }
 
-/// Returns whether enough matched points of a registration are close to their surfaces: mapping.md (R68).
+/// See mapping.md (R68).
 bool fits(const Params& params, const Registration::Result& found) {
   return double(found.inliers) >= params.expert.tracking.confirm_inlier_ratio * double(found.matches);
 }
 
-/// Registers a sweep from its prior if tracking has not failed. If the registration fails and an axis is clipped,
-/// track() tries larger saturation deficits. Saturation within one sweep may rotate the initial pose by a radian.
+/// If the registration fails and a gyro axis is clipped, larger saturation deficits are tried. Saturation within one
+/// sweep may rotate the initial pose by a radian.
 void track(const Params& params, const Registration::Prior& prior, const Scene& scene, Aligner& aligner,
            SweepTrajectory& trajectory, Registration::Result& found) {
   aligner.align_with_all_points(prior, scene, trajectory, found);
   int iterations = found.iterations, tries = 0;
-  // After an attempt that exceeds the correction limit, further attempts would also exceed this limit.
+  // If one attempt exceeds the correction limit, further attempts would also exceed the limit.
   const bool out_of_bounds = found.correction_m > params.expert.matching.correction_max_m ||
                              found.correction_rad > params.expert.matching.correction_max_rad;
   if (found.verdict == RegistrationVerdict::diverged && !out_of_bounds) {
@@ -61,9 +59,8 @@ void track(const Params& params, const Registration::Prior& prior, const Scene& 
   found.iterations = iterations;
 }
 
-/// Registers the sweep from the predicted pose and from initial poses around it, until the surfaces fit. If no pose
-/// fits, the result is the pose with the most inliers. The number of initial poses per sweep is limited, so an
-/// unsuccessful search continues with the next sweep.
+/// If no initial pose fits, the result is the pose with the most inliers. The number of initial poses per sweep is
+/// limited, so an unsuccessful search continues with the next sweep.
 void search(const Params& params, const SearchContext& from, const Scene& scene, Aligner& aligner,
             SweepTrajectory& trajectory, Registration::Result& found) {
   const RelocalisationParams& starts = params.expert.search;

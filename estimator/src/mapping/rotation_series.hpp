@@ -3,15 +3,14 @@
 
 #include <utility>
 
-/// rotation_series.hpp computes cosine and sine of half a small angle by power series. Let x be half the angle, h =
-/// x^2, and c = s = 1 initially. Each pair of ratios (a, b) updates c to 1 - h a c and s to 1 - h b s. The final c is
-/// cos(x), and the final s is sin(x) / x.
+/// Computes cosine and sine of half a small angle by power series. Let x be half the angle, h = x^2, and initially c =
+/// s = 1. Each pair of ratios (a, b) updates c to 1 - h a c and s to 1 - h b s, so that finally c = cos(x) and s =
+/// sin(x) / x.
 namespace tumble::rotation_series {
 
-/// kAngle2_rad2 is the square of the largest full angle for which the series is accurate. Larger angles would need more
-/// terms.
+/// square of the largest full angle for which the series is accurate
 inline constexpr double kAngle2_rad2 = 1.0;
-/// kRatios contains the ratios of successive terms in the series of cos(x) and of sin(x) / x, last term first.
+/// ratios of successive terms in the series of cos(x) and of sin(x) / x, last term first
 inline constexpr std::pair<double, double> kRatios[] = {
     {1.0 / 182, 1.0 / 210}, {1.0 / 132, 1.0 / 156}, {1.0 / 90, 1.0 / 110}, {1.0 / 56, 1.0 / 72},
     {1.0 / 30, 1.0 / 42},   {1.0 / 12, 1.0 / 20},   {1.0 / 2, 1.0 / 6}};

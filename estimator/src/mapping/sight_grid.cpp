@@ -9,14 +9,12 @@ namespace tumble::mapping {
 
 namespace {
 
-// FreeSpaceGrid sorts returns into bins by their direction from one position, although the sensor moves during the
-// sweep. If a return's range is at least kMinRangePerMotion times this motion, the direction error is below 0.1 rad,
-// the size of the checked bins.
+// Returns are sorted by direction from one position, although the sensor moves during the sweep. For ranges above ten
+// times the sensor's motion, the direction error is below 0.1 rad, the size of the checked bins.
 constexpr float kMinRangePerMotion = 10.0f;
 constexpr int kEmptyBinsMax = 4;  // maximum number of empty bins out of nine; rings may be further apart than bins
-// A map point counts as seen through if all returns in its direction are farther away by at least kBeyond_m +
-// kBeyondRatio * range + kDeviations * sigma. The margin covers the relative pose error of two sweeps, the noise of a
-// return, and the slope of the ground within a bin.
+// The margin of the range covers the relative pose error of two sweeps, range noise, and the slope of the ground within
+// a bin.
 constexpr float kBeyond_m = 0.3f, kBeyondRatio = 0.03f;
 constexpr float kDeviations = 3.0f;
 
@@ -28,8 +26,6 @@ void FreeSpaceGrid::start(const Eigen::Vector3f& from_W_m, float moved_m) {
   nearest_m_.assign(std::size_t{6} * kBins * kBins, std::numeric_limits<float>::infinity());
 }
 
-/// Returns the direction of a point from the ray origin. Returns nothing for the ray origin itself and for non-finite
-/// coordinates.
 std::optional<FreeSpaceGrid::Direction> FreeSpaceGrid::direction(const Eigen::Vector3f& lever_m) {
   Eigen::Index axis = 0;
   const float along = lever_m.cwiseAbs().maxCoeff(&axis);
@@ -49,8 +45,7 @@ void FreeSpaceGrid::add(const Eigen::Vector3f& return_W_m) {
   nearest_m = std::min(nearest_m, lever_m.norm());
 }
 
-/// Returns the smallest range of the returns around a direction. Returns 0 if there are too few returns, or if the
-/// direction is at an edge of the cube that contains the bins.
+/// Returns the smallest range of the returns around a direction, or 0 if the range is unknown.
 float FreeSpaceGrid::free_range_m(const Direction& towards) const {
   float nearest_m = std::numeric_limits<float>::infinity();
   int empty = 0;
@@ -68,7 +63,7 @@ float FreeSpaceGrid::free_range_m(const Direction& towards) const {
   return nearest_m;
 }
 
-/// Compares a map point with the lidar returns in its direction: mapping.md (R65).
+/// See mapping.md (R65).
 FreeSpaceGrid::Verdict FreeSpaceGrid::verdict(const Eigen::Vector3f& point_W_m, float sigma_m) const {
   const Eigen::Vector3f lever_m = point_W_m - origin_W_m_;
   const float range_m = lever_m.norm();

@@ -7,13 +7,11 @@
 
 namespace tumble::mapping {
 
-/// FreeSpaceGrid is the free space that a sweep observed: the nearest return in each direction, in bins on the faces of
-/// a cube around the sensor. A sweep saw through a map point if all returns around its direction are farther away, see
-/// mapping.md (R65). The verdict is `unknown` for directions with few returns, and for directions at an edge of the
-/// cube.
+/// FreeSpaceGrid stores the nearest return of a sweep in each direction, in bins on the faces of a cube around the
+/// sensor. A sweep saw through a map point if all returns around its direction are farther away: mapping.md (R65).
 class FreeSpaceGrid {
  public:
-  /// Sets the ray origin of the following points, and how far the sensor moved from this origin during the sweep.
+  /// `moved_m` is the distance that the sensor moved from the ray origin during the sweep.
   void start(const Eigen::Vector3f& from_W_m, float moved_m);
   void add(const Eigen::Vector3f& return_W_m);
 

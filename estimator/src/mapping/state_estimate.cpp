@@ -9,9 +9,8 @@ namespace tumble::mapping {
 
 using Matrix = Registration::Matrix;
 
-/// Returns the estimate at the start of the map: mapping.md (R54), (R55). The first pose of the lidar defines the map
-/// and is therefore exact. A wrong mounting of the lidar is therefore an error of the IMU's pose, and of gravity's
-/// direction, in the map.
+/// See mapping.md (R54), (R55). The first lidar pose defines the map, so a wrong mounting is an error of the IMU's
+/// pose, and of gravity's direction.
 StateEstimate estimate_at_start(const LidarInertialOdometry::Params& params, const MotionState& levelled) {
   namespace u = unknowns;
   StateEstimate state_estimate;
@@ -36,7 +35,7 @@ StateEstimate estimate_at_start(const LidarInertialOdometry::Params& params, con
     u::block(P, u::mounting, u::gravity) = u::block(P, u::gravity, u::mounting).transpose();
     u::block(P, u::gravity) = gravity_mounting_jacobian * mounting * gravity_mounting_jacobian.transpose();
     const double sigma2 = params.expert.gravity_sigma_m_s2 * params.expert.gravity_sigma_m_s2;
-    // the magnitude of gravity is known much better than its direction
+    // The magnitude of gravity is known much better than its direction.
     u::variances(P, u::gravity) += Eigen::Vector3d(sigma2, sigma2, 0.01 * sigma2);
     u::block(P, u::motion, u::gravity) = by_mounting * mounting * gravity_mounting_jacobian.transpose();
   }
@@ -47,7 +46,7 @@ StateEstimate estimate_at_start(const LidarInertialOdometry::Params& params, con
   return state_estimate;
 }
 
-/// Returns the transition matrix of all unknowns from the start of a trajectory to `t_s`: mapping.md (R11).
+/// See mapping.md (R11).
 Matrix unknowns_at(const SweepTrajectory& trajectory, double t_s) {
   namespace u = unknowns;
   const SweepTrajectory::Transition step = trajectory.transition(t_s);
@@ -64,8 +63,7 @@ MotionErrors motion_errors(const Matrix& F, const Matrix& errors) {
   return moved * rows.transpose();
 }
 
-/// Computes the covariance of the velocity error in IMU axes, R_IW (δv + v × φ). The velocity error δv and the attitude
-/// error φ are in frame W.
+/// Computes the covariance of R_IW (δv + v × φ), with the velocity error δv and the attitude error φ in frame W.
 Eigen::Matrix3d velocity_covariance_I(const MotionState& state, const MotionErrors& errors) {
   namespace u = unknowns;
   const Eigen::Matrix3d R_IW = state.q_WI.toRotationMatrix().transpose();
@@ -75,9 +73,8 @@ Eigen::Matrix3d velocity_covariance_I(const MotionState& state, const MotionErro
   return J * errors * J.transpose();
 }
 
-/// Computes the covariance of pose and mounting after propagation by the transition matrix F. The blocks have the size
-/// of whole SIMD packets, so the sums have the same order as in the full matrix product. The rows of F for mounting and
-/// other constants are rows of the identity: mapping.md (R11).
+/// The blocks have the size of whole SIMD packets, so sums have the same order as in the full matrix product. The rows
+/// of the transition matrix F for mounting and other constants are rows of the identity: mapping.md (R11).
 Matrix propagate_pose_and_mounting(const Matrix& F, const Matrix& errors) {
   constexpr int kSize = 8, kMounting = 16;
   static_assert(kMounting >= Registration::kMotionSize && kMounting <= Registration::kCalibrationStart &&
@@ -90,7 +87,7 @@ Matrix propagate_pose_and_mounting(const Matrix& F, const Matrix& errors) {
   return out;
 }
 
-/// Propagates the estimate from the start to the end of the sweep: mapping.md (R53).
+/// See mapping.md (R53).
 void at_end(const StateEstimate& at_start, const SweepTrajectory& trajectory, const Matrix& end_start_jacobian,
             TimeNs end_ns, StateEstimate& end) {
   end.mean = at_start.mean;

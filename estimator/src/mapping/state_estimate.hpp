@@ -7,53 +7,47 @@
 
 namespace tumble::mapping {
 
-/// StateEstimate is the estimate of all unknowns at one time. The covariances `weight` and `error` are C and E of
-/// mapping.md (section 6).
+/// The covariances `weight` and `error` are C and E of mapping.md (section 6).
 struct StateEstimate {
   Registration::Estimate mean;  ///< mean; the covariance of its state is the motion block of `weight`
-  /// Covariance that weights the mean against the next sweep. For robustness to outliers, `weight` assigns less
-  /// information to the points than independent points would have.
+  /// For robustness, `weight` assigns less information to the points than independent points would have.
   Registration::Matrix weight = Registration::Matrix::Zero();
-  /// Covariance of the actual errors of the mean; the gains of the updates follow from `weight`.
+  /// covariance of the actual errors of the mean
   Registration::Matrix error = Registration::Matrix::Zero();
 };
 
-/// Returns the estimate of an IMU levelled at rest, in a map frame that the lidar's pose defines, see mapping.md (R54),
-/// (R55).
+/// See mapping.md (R54), (R55).
 StateEstimate estimate_at_start(const LidarInertialOdometry::Params& params, const MotionState& levelled);
 
-/// Returns the derivative of the unknowns `t_s` after the start of a trajectory, with respect to the unknowns at its
+/// Returns the derivative of the unknowns `t_s` after the start of a trajectory with respect to the unknowns at its
 /// start.
 Registration::Matrix unknowns_at(const SweepTrajectory& trajectory, double t_s);
 
-/// Computes F P F^T into `out`; `out` and P must be different matrices. The function needs 32 KiB of stack, so callers
-/// should keep matrices on the heap.
+/// Computes F P F^T into `out`, which must not be P. The function needs 32 KiB of stack, so callers should keep
+/// matrices on the heap.
 void propagate_covariance(const Registration::Matrix& F, const Registration::Matrix& P, Registration::Matrix& out);
 
-/// Returns the blocks of the product F errors F^T that involve the pose or the mounting. F is the transition matrix of
-/// unknowns_at(). All other blocks of the result are zero. The returned blocks equal those of the full product bit for
-/// bit, at a third of the cost.
+/// Returns the blocks of F errors F^T that involve the pose or the mounting; all other blocks are zero. The blocks
+/// equal those of the full product bit for bit, at a third of the cost.
 Registration::Matrix propagate_pose_and_mounting(const Registration::Matrix& F, const Registration::Matrix& errors);
 
-/// MotionErrors is the covariance of the errors of position, attitude and velocity in frame W.
+/// covariance of the errors of position, attitude and velocity in frame W
 using MotionErrors = Eigen::Matrix<double, Registration::kMotionSize, Registration::kMotionSize>;
 
-/// Returns the block of the product F errors F^T for position, attitude and velocity. F is the transition matrix of
-/// unknowns_at().
+/// Returns the block of F errors F^T for position, attitude and velocity.
 MotionErrors motion_errors(const Registration::Matrix& F, const Registration::Matrix& errors);
 
-/// Returns the covariance of the error of the velocity in IMU axes, R_IW v_WI_W, which includes the attitude error.
+/// Returns the covariance of the velocity in IMU axes, R_IW v_WI_W, including the attitude error.
 Eigen::Matrix3d velocity_covariance_I(const MotionState& state, const MotionErrors& errors);
 
-/// Propagates the estimate from the start of `trajectory`, the motion of its mean, to `end_ns`.
 void at_end(const StateEstimate& at_start, const SweepTrajectory& trajectory,
             const Registration::Matrix& end_start_jacobian, TimeNs end_ns, StateEstimate& end);
 
-/// Returns the derivative of the IMU's pose error with respect to mounting errors for an exact lidar pose, at the given
-/// attitude. The derivative is the matrix K of mapping.md (R54).
+/// Returns the derivative of the IMU's pose error with respect to mounting errors for an exact lidar pose: K of
+/// mapping.md (R54).
 Eigen::Matrix<double, 6, 6> pose_mounting_jacobian(const Eigen::Quaterniond& q_WI, const Eigen::Vector3d& p_IL_m);
 
-/// Returns the covariance with small variances in place of zeros, so that the matrix is invertible.
+/// Small variances replace zeros.
 Registration::Matrix make_invertible(const Registration::Matrix& covariance);
 
 }  // namespace tumble::mapping

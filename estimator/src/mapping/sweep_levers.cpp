@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// sweep_levers.cpp evaluates SweepTrajectory::at for several points of a sweep at a time. The operations and their
-// order equal those of Eigen's quaternions, so the results are bit-identical.
+// The operations and their order equal those of Eigen's quaternions, so the results are bit-identical to
+// SweepTrajectory::at.
 #include <algorithm>
 #include <limits>
 
@@ -16,8 +16,6 @@ constexpr int kLanes = 8;
 constexpr double kNoEnd_s = std::numeric_limits<double>::infinity();
 using Lane = double[kLanes];
 
-/// Lanes contains points within one interval of the trajectory: times since the interval's start [s], positions in
-/// frame I, and results.
 struct Lanes {
   int count = 0;
   alignas(16) Lane s{}, x{}, y{}, z{};
@@ -40,8 +38,7 @@ void turn(double rate2_rad2_s2, Lanes& p) {
 
 }  // namespace
 
-/// Computes the lever arm vector of each point of a sweep: the world position minus the contributions of start state
-/// and gravity, mapping.md (R2), (R4), (R6).
+/// See mapping.md (R2), (R4), (R6).
 void SweepTrajectory::lever_arm_vectors(std::span<const SweepPoint> points,
                                         std::span<Eigen::Vector3f> levers_W_m) const {
   const double from_s = -kExtrapolation_s, to_s = duration_s_ + kExtrapolation_s;
@@ -83,10 +80,8 @@ void SweepTrajectory::lever_arm_vectors(std::span<const SweepPoint> points,
       const double s = p.s[l], x = p.x[l], y = p.y[l], z = p.z[l];
       const double half = 0.5 * s * p.sinc[l], bx = half * w.x(), by = half * w.y(), bz = half * w.z();
       const double bw = p.cosine[l];
-      // Quaternion product: attitude at the start of the interval times rotation up to the point's time.
       const double qx = (aw * bx + ay * bz) - (az * by - ax * bw), qy = (aw * by + ay * bw) + (az * bx - ax * bz);
       const double qz = (aw * bz - ay * bx) + (az * bw + ax * by), qw = (aw * bw - ay * by) - (az * bz + ax * bx);
-      // Position of the point after the rotation.
       double tx = qy * z - qz * y, ty = qz * x - qx * z, tz = qx * y - qy * x;
       tx += tx;
       ty += ty;

@@ -11,7 +11,6 @@
 
 namespace tumble::mapping {
 
-/// SweepPoints contains the usable returns of the current sweep, and the subset for the registration.
 class SweepPoints {
  public:
   using Params = LidarInertialOdometry::Params;
@@ -23,8 +22,7 @@ class SweepPoints {
     std::size_t isolated = 0;  ///< number of dropped lone returns
     bool has_ring_numbers = false;
   };
-  /// Selects the usable returns of a sweep that starts `start_s` after the start of its trajectory. Returns the errors
-  /// of check_selection().
+  /// The sweep starts `start_s` seconds after the start of its trajectory. Returns the errors of check_selection().
   Status select(const Params& params, std::span<const LidarPoint> returns, TimeNs span_ns,
                 const SweepCalibration& calibration, double start_s, Counts& counts);
   /// Selects one point per cube of the world for the registration, with the points at their predicted positions.

@@ -15,9 +15,9 @@ namespace tumble {
 namespace {
 
 constexpr double kLeast = 0.02, kScaleDeviations = 5.0;
-// kSpan_s is the duration of a time span over which velocities are compared. Over short spans, the IMU's weight in the
-// mapping hides errors of the lidar's scale. If ranges are 10 % too long, the estimated scale is 1.02 to 1.03 over 0.1
-// s, and 1.08 over 0.4 s. If ranges are correct, the estimated scale is 0.998 to 1.006.
+// Over short time spans, the IMU's weight in the mapping hides errors of the lidar's scale. If ranges are 10 % too
+// long, the estimated scale is 1.02 to 1.03 over 0.1 s, and 1.08 over 0.4 s. If ranges are correct, the estimated scale
+// is 0.998 to 1.006.
 constexpr double kSpan_s = 0.4;
 constexpr double kChange_m_s = 0.5;  // minimum change of velocity; noise dominates smaller changes
 constexpr std::size_t kChangesMin = 5, kChangesMax = 1000;
@@ -31,7 +31,6 @@ constexpr double kHuber = 1.5, kPerMedian = 1.4826;
 
 using Change = SweepScaleEstimator::Change;
 
-/// ImuMotion integrates the specific force to velocity, with the attitudes that the run has estimated.
 class ImuMotion {
  public:
   template <class Sweeps>
@@ -41,8 +40,8 @@ class ImuMotion {
       attitudes_.insert(attitudes_.end(), sweep.trajectory.begin(), sweep.trajectory.end());
   }
 
-  /// Returns the mean velocity from `middle_ns` to `to_ns`, minus the mean velocity from `from_ns` to `middle_ns`. The
-  /// function returns nothing if a force between `from_ns` and `to_ns` is saturated or missing.
+  /// Returns the mean velocity from `middle_ns` to `to_ns`, minus the mean velocity from `from_ns` to `middle_ns`.
+  /// Returns nothing if a force between `from_ns` and `to_ns` is saturated or missing.
   std::optional<Eigen::Vector3d> change(TimeNs from_ns, TimeNs middle_ns, TimeNs to_ns) const {
     if (attitudes_.empty()) return std::nullopt;
     const auto later = [](const ImuSample& sample, TimeNs time_ns) { return sample.time_ns <= time_ns; };
@@ -79,7 +78,7 @@ class ImuMotion {
   std::vector<PoseState> attitudes_;
 };
 
-/// Returns whether surfaces constrain the pose of the sweep in at least one direction.
+/// Surfaces constrain the pose of a registered or degenerate sweep in at least one direction.
 bool is_placed(const SweepReport& sweep) {
   return sweep.verdict == SweepVerdict::registered || sweep.verdict == SweepVerdict::degenerate;
 }
@@ -92,8 +91,7 @@ std::size_t sweeps_in(double span_s, const Sweeps& sweeps) {
   return static_cast<std::size_t>(std::clamp(std::round(count), 1.0, static_cast<double>(sweeps.size())));
 }
 
-/// Returns the change of velocity between the two time spans before the end of sweep `last`. Returns nothing if the
-/// change is unknown or too small.
+/// Returns nothing if the change of velocity is unknown or too small.
 template <class Sweeps>
 std::optional<Change> change_until(std::size_t last, std::size_t span, const Sweeps& sweeps,
                                    const ImuMotion& imu_motion) {
@@ -109,7 +107,7 @@ std::optional<Change> change_until(std::size_t last, std::size_t span, const Swe
                     (middle.p_WA_m - from.p_WA_m) / seconds(middle.time_ns - from.time_ns)};
 }
 
-/// Returns the number of changes that share no sweep with each other.
+/// Changes of velocity are disjoint if they share no sweep.
 template <class Changes>
 int disjoint_changes(const Changes& changes) {
   int count = 0;
@@ -122,8 +120,7 @@ int disjoint_changes(const Changes& changes) {
   return count;
 }
 
-/// Returns the variance of Σ w D·e. The residuals e of changes that share sweeps are correlated. The weights of the
-/// pairs are those of Newey and West, 1987, with equal variances of the three axes.
+/// Returns the variance of Σ w D·e with correlated residuals e (Newey and West, 1987).
 template <class Changes>
 double score_variance(const Changes& changes, const std::vector<Eigen::Vector3d>& weighted) {
   double variance = 0.0;
@@ -166,7 +163,7 @@ SweepScale fit(const Changes& changes) {
     }
     out.scale = together / squared;
     if (i + 1 < kIterations) continue;
-    // the factor of `disjoint` is the correction for the estimated scale
+    // The factor disjoint / (disjoint - 1) corrects for the estimated scale.
     const double residual = score_variance(changes, residuals) * disjoint / (disjoint - 1.0);
     out.sigma = std::sqrt(residual + kBias_m_s2 * kBias_m_s2 * by_bias.squaredNorm()) / squared;
   }

@@ -12,8 +12,7 @@ namespace tumble {
 
 namespace {
 
-/// Returns for each axis the largest standard deviation of the rate, among the samples up to `end_ns` in which this
-/// axis is clipped.
+/// Only samples up to `end_ns` in which the axis is clipped count.
 Eigen::Vector3d max_rate_sigma(std::span<const MotionSample> samples, TimeNs end_ns) {
   Eigen::Vector3d sigma = Eigen::Vector3d::Zero();
   for (const MotionSample& sample : samples) {
@@ -26,7 +25,7 @@ Eigen::Vector3d max_rate_sigma(std::span<const MotionSample> samples, TimeNs end
 }
 
 /// Returns the signed factors s_j by which the saturation deficit of each axis changes the rate of a sample: mapping.md
-/// (R8). The factors are proportional to the standard deviation of the rate.
+/// (R8).
 Eigen::Vector3d deficit_factors(const MotionSample& sample, const Eigen::Vector3d& least_known_rad_s) {
   Eigen::Vector3d share = Eigen::Vector3d::Zero();
   for (int axis = 0; axis < 3; ++axis) {
@@ -38,8 +37,7 @@ Eigen::Vector3d deficit_factors(const MotionSample& sample, const Eigen::Vector3
   return share;
 }
 
-/// Returns the interpolation weights of the knots at the fraction `share` of a sweep. The saturation deficit is linear
-/// between neighbouring knots: mapping.md (R7).
+/// See mapping.md (R7).
 Eigen::Matrix<double, SweepTrajectory::kKnots, 1> knot_weights(double share) {
   Eigen::Matrix<double, SweepTrajectory::kKnots, 1> weights;
   const double place = std::clamp(share, 0.0, 1.0) * (SweepTrajectory::kKnots - 1);
@@ -47,8 +45,7 @@ Eigen::Matrix<double, SweepTrajectory::kKnots, 1> knot_weights(double share) {
   return weights;
 }
 
-/// Returns so3::exp(rate_rad_s * s). For the small angle of each point of a sweep, the power series is fast and exact
-/// to rounding.
+/// The power series is faster than so3::exp, and exact to rounding for small angles.
 Eigen::Quaterniond rotated_by(const Eigen::Vector3d& rate_rad_s, double s) {
   const double angle2 = s * s * rate_rad_s.squaredNorm();
   if (!(angle2 <= rotation_series::kAngle2_rad2)) return so3::exp(rate_rad_s * s);
@@ -86,7 +83,7 @@ Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSa
     return {ErrorCode::too_few, "imu time_ns", samples.empty() ? 0.0 : double(samples.back().time_ns), double(end_ns)};
   }
   if (samples.front().from_ns > start.time_ns) {
-    // All errors with code `gap` report seconds.
+    // All errors with code `gap` contain seconds.
     return {ErrorCode::gap, "imu window start", seconds(samples.front().from_ns - start.time_ns), 0.0};
   }
 
@@ -110,7 +107,7 @@ Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSa
     now.length_s = dt;
     now.deficit_factor = share;
     now.knot_weight = knot_weights(duration_s_ > 0.0 ? (now.start_s + 0.5 * dt) / duration_s_ : 0.0);
-    // Rate with saturation deficit, and its integration over the interval: mapping.md (R7), (R5), (R4), (R6).
+    // See mapping.md (R7), (R5), (R4), (R6).
     now.rate_I_rad_s = sample.w_WI_I_rad_s + share.cwiseProduct(deficit_rad_s * now.knot_weight);
     const Eigen::Matrix3d R = now.q_WI.toRotationMatrix();
     const Eigen::Matrix3d mean_rotation = R * so3::left_jacobian(now.rate_I_rad_s * dt);
@@ -142,7 +139,7 @@ const SweepTrajectory::Interval& SweepTrajectory::interval_at(double t_s, std::s
   return intervals_[i];
 }
 
-/// Evaluates attitude, velocity and position within an interval of the trajectory: mapping.md (R2), (R4), (R6).
+/// See mapping.md (R2), (R4), (R6).
 SweepTrajectory::PreintegratedMotion SweepTrajectory::at(double t_s, std::size_t& hint) const {
   const double t = std::clamp(t_s, -kExtrapolation_s, duration_s_ + kExtrapolation_s);
   const Interval& now = interval_at(t, hint);
@@ -164,8 +161,7 @@ SweepTrajectory::PreintegratedMotion SweepTrajectory::at(double t_s, const Eigen
                                  (0.5 * s * s) * now.specific_force_W_m_s2};
 }
 
-/// Returns the derivative of the attitude with respect to the saturation deficit, `s` seconds after the start of an
-/// interval: mapping.md (R9).
+/// See mapping.md (R9).
 SweepTrajectory::DeficitJacobian SweepTrajectory::deficit_jacobian_within(const Interval& now, double s) {
   if (now.deficit_factor.isZero(0.0)) return DeficitJacobian::Zero();
   const Eigen::Matrix3d gained =
@@ -175,8 +171,7 @@ SweepTrajectory::DeficitJacobian SweepTrajectory::deficit_jacobian_within(const 
   return out;
 }
 
-/// Returns the derivatives of attitude, velocity and position with respect to the saturation deficit: mapping.md (R9),
-/// (R10).
+/// See mapping.md (R9), (R10).
 SweepTrajectory::DeficitDerivative SweepTrajectory::deficit_derivative(double t_s, std::size_t& hint) const {
   const double t = std::clamp(t_s, 0.0, duration_s_);
   const Interval& now = interval_at(t, hint);
@@ -207,7 +202,7 @@ MotionState SweepTrajectory::state(double t_s) const {
   return state;
 }
 
-/// Returns the transition matrix of the motion from the start of the trajectory to `t_s`: mapping.md (R11).
+/// See mapping.md (R11).
 SweepTrajectory::Transition SweepTrajectory::transition(double t_s) const {
   const double t = std::clamp(t_s, 0.0, duration_s_);
   std::size_t hint = 0;

@@ -5,13 +5,11 @@
 
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 
-/// tracking.hpp defines the tracking states of the sensor relative to the map, and the transitions between them.
 namespace tumble::mapping {
 
 struct WaitingForStart {};
 
-/// Tracking is the state in normal operation. A sweep may remain without registration if its prior is certain, or if
-/// the search was abandoned.
+/// While tracking, a sweep may remain without registration if its prior is certain, or if the search was abandoned.
 struct Tracking {
   int failed_searches = 0;  ///< consecutive sweeps with points but without registration
 };
@@ -21,8 +19,8 @@ struct Lost {
   int failed_searches = 0;
 };
 
-/// Relocalised is the state after a relocalisation that is not confirmed yet. Inertial prediction continues in parallel
-/// (DeadReckoning), and replaces a relocalisation that a sweep contradicts: mapping.md (R67), (R68).
+/// Relocalised is the state after an unconfirmed relocalisation: mapping.md (R67), (R68). Inertial prediction continues
+/// in parallel, and replaces a relocalisation that a sweep contradicts.
 struct Relocalised {
   int after_sweeps = 0;  ///< number of rejected sweeps before the relocalisation
   int failed_searches = 0;
@@ -31,7 +29,6 @@ struct Relocalised {
 
 using TrackingState = std::variant<WaitingForStart, Tracking, Lost, Relocalised>;
 
-/// RegistrationOutcome is the result of registering one sweep.
 enum class RegistrationOutcome : std::uint8_t {
   not_tried,  ///< no points, or no map yet
   failed,
@@ -41,9 +38,7 @@ enum class RegistrationOutcome : std::uint8_t {
 
 TrackingState after_sweep(const TrackingState& before, RegistrationOutcome placement, SweepVerdict verdict);
 
-/// Returns whether a sweep with the registration result `placement` contradicts an unconfirmed relocalisation.
 bool contradicts(const TrackingState& before, RegistrationOutcome placement);
-/// Returns the tracking state after a contradicted relocalisation was reverted.
 Lost after_reverted_relocalisation(const TrackingState& relocalised);
 
 bool has_started(const TrackingState& state);

@@ -3,8 +3,7 @@
 
 #include "tumble/mapping/registration.hpp"
 
-/// unknowns.hpp names the blocks of vectors and matrices over the unknowns of a sweep (docs/maths/mapping.md). The
-/// names replace indices, as in `rows(F, velocity)` for a matrix and `segment(step, velocity)` for a vector.
+/// The blocks name the unknowns of docs/maths/mapping.md, as in `rows(F, velocity)` and `segment(step, velocity)`.
 namespace tumble::mapping::unknowns {
 
 template <int First, int Size>
@@ -25,11 +24,9 @@ inline constexpr Block<Registration::kCalibrationStart + 3, 3> mounting_translat
 inline constexpr Block<Registration::kCalibrationStart + 6, 1> clock;
 inline constexpr Block<Registration::kCalibrationStart + 7, 3> gravity;
 
-/// kMinVariance is the prior variance of an exactly known unknown. kMinVariance is above 0, so that the prior
-/// covariance is invertible.
+/// A prior variance above 0 keeps the prior covariance invertible.
 inline constexpr double kMinVariance = 1e-12;
-/// A sweep's motion agrees with its prior if the squared Mahalanobis distance is at most kAgreementChi2Max: mapping.md
-/// (R25), (R71). kAgreementChi2Max is the 95 % quantile of chi-square with nine degrees of freedom.
+/// 95 % quantile of the chi-square distribution with nine degrees of freedom, used in mapping.md (R25), (R71)
 inline constexpr double kAgreementChi2Max = 16.9;
 static_assert(SweepUnknowns::kMotionSize == 9);
 

@@ -16,7 +16,7 @@ using mapping::cube_of;
 
 namespace {
 
-// Unused slots of a chunk (a block of map points) have the coordinates kFar, beyond any search radius.
+// Unused slots of a chunk (a block of map points) have coordinates beyond any search radius.
 constexpr float kFar = 1e18f;
 constexpr int kReachMax = 8;  // maximum number of cells that a search covers to each side
 
@@ -31,8 +31,7 @@ inline void keep(float distance2, std::uint32_t index, int k, Neighbours& best) 
   best.index[place] = index;
 }
 
-/// Computes the squared distances along one axis from a query point to the cells with offsets -reach to reach.
-/// `fraction` is the position of the point within its cell, in cells.
+/// `fraction` is the position of the query point within its cell, in cells.
 void axis_distances2(float fraction, float voxel_m, int reach, float* distance2) {
   for (int d = -reach; d <= reach; ++d) {
     const float cells = d > 0 ? static_cast<float>(d) - fraction : d < 0 ? fraction - static_cast<float>(d + 1) : 0.0f;
@@ -44,7 +43,7 @@ void axis_distances2(float fraction, float voxel_m, int reach, float* distance2)
 using Floats [[gnu::vector_size(16)]] = float;
 using Ints [[gnu::vector_size(16)]] = std::int32_t;
 
-/// Returns a bit mask of the values that are at most `limit`, computed without branches.
+/// The bit mask is computed without branches.
 inline std::uint32_t within(float limit, const Floats (&values)[4]) {
   constexpr Ints kFirst = {1, 2, 4, 8};
   const Floats limits = {limit, limit, limit, limit};
@@ -53,8 +52,7 @@ inline std::uint32_t within(float limit, const Floats (&values)[4]) {
   return static_cast<std::uint32_t>(bits[0] | bits[1] | bits[2] | bits[3]);
 }
 
-/// Returns element i of the sequence 0, 1, -1, 2, -2 and so on. In this order, the neighbour search visits near cells
-/// first, so that its radius shrinks early.
+/// The sequence 0, 1, -1, 2, -2 lets the neighbour search visit near cells first, so that its radius shrinks early.
 inline int alternating(int i) {
   return (i & 1) ? (i + 1) / 2 : -i / 2;
 }
@@ -80,8 +78,7 @@ inline Eigen::Vector3i VoxelMap::Group::of(const Eigen::Vector3i& cell) {
   return {cell.x() >> kBits, cell.y() >> kBits, cell.z() >> kBits};
 }
 
-/// Rows iterates over the cells of a neighbour search, row by row. Each group of cells is looked up only once, when a
-/// row first needs it.
+/// Each group of cells is looked up only once, when a row of cells first needs the group.
 class VoxelMap::Rows {
  public:
   Rows(const VoxelMap& map, const Eigen::Vector3i& cell, int reach) : map_(map), first_x_(cell.x() - reach) {
@@ -90,7 +87,7 @@ class VoxelMap::Rows {
     groups_.fill(kNotSearched);
   }
 
-  /// Returns the occupied cells of the row at (y, z) as a bit mask, starting with the smallest x.
+  /// The lowest bit of the mask belongs to the cell with the smallest x.
   std::uint32_t occupied(int y, int z) {
     const Eigen::Vector3i away = Group::of({first_x_, y, z}) - low_;
     std::uint32_t bits = 0;
@@ -123,7 +120,6 @@ class VoxelMap::Rows {
   std::array<std::uint32_t, kAcross * kAcross * kAcross> groups_;
 };
 
-/// Returns a reference to the index of a cell's first chunk (block of points), and marks the cell as occupied.
 std::uint32_t& VoxelMap::first_chunk_of(const Eigen::Vector3i& cell) {
   const std::uint32_t group =
       group_index_.insert(SpatialHash::key(Group::of(cell)), static_cast<std::uint32_t>(groups_.size()));
@@ -133,7 +129,6 @@ std::uint32_t& VoxelMap::first_chunk_of(const Eigen::Vector3i& cell) {
   return groups_[group].first[Group::cell_index_of(cell)];
 }
 
-/// Inserts an empty chunk as new first chunk of a cell, and returns its index.
 std::uint32_t VoxelMap::new_chunk(std::uint32_t& first) {
   Chunk chunk;
   chunk.x.fill(kFar);
@@ -150,8 +145,7 @@ std::uint32_t VoxelMap::new_chunk(std::uint32_t& first) {
   return first;
 }
 
-/// Returns whether a position is within the range of the map's integer coordinates, with a margin for the cells that a
-/// search visits. Returns false for NaN.
+/// Positions must be within the range of the map's integer coordinates, with a margin for the cells of a search.
 bool VoxelMap::has_room_for(const Eigen::Vector3f& position) const {
   return (position * cubes_per_m_).cwiseAbs().maxCoeff() < static_cast<float>(SpatialHash::kLimit - 2);
 }
@@ -251,8 +245,7 @@ std::size_t VoxelMap::bytes() const {
          (sweep_.capacity() + line_.capacity()) * sizeof(std::uint32_t) + seen_through_.capacity();
 }
 
-/// Updates the k nearest points of a query with the points of one cell. `worst_distance2_m2` is the square of the
-/// current search radius.
+/// `worst_distance2_m2` is the square of the current search radius.
 void VoxelMap::search(std::uint32_t first, const Eigen::Vector3f& query, int k, float& worst_distance2_m2,
                       Neighbours& found) const {
   for (std::uint32_t c = first; c != kNone; c = chunks_[c].next) {
@@ -264,7 +257,6 @@ void VoxelMap::search(std::uint32_t first, const Eigen::Vector3f& query, int k, 
     }
     Floats four[kPointsPerChunk / 4];
     std::memcpy(four, distance2, sizeof(four));
-    // Unused slots of a chunk have coordinates beyond any search radius.
     for (std::uint32_t near = within(worst_distance2_m2, four); near != 0; near &= near - 1) {
       const auto i = static_cast<std::uint32_t>(std::countr_zero(near));
       if (distance2[i] > worst_distance2_m2 || (found.count == k && distance2[i] == worst_distance2_m2)) continue;

@@ -13,11 +13,11 @@ namespace {
 
 using Pose = WorldCovariance::Pose;
 
-// kScale is the standard deviation of the map's scale. Successive sweeps share causes of errors, such as range errors,
-// so the position error grows in proportion to the distance (0.24 % in a hall with pillars).
+// Successive sweeps share errors, so the position error grows in proportion to the distance (0.24 % in a hall with
+// pillars).
 constexpr double kScale = 0.003;
 
-/// Returns the covariance of the pose error minus `by_mounting` times the mounting error: mapping.md (R57).
+/// See mapping.md (R57).
 Pose subtract_mounting(const Registration::Matrix& joint, const Pose& by_mounting) {
   Eigen::Matrix<double, 6, Registration::kUnknowns> G = Eigen::Matrix<double, 6, Registration::kUnknowns>::Zero();
   unknowns::columns(G, unknowns::pose).setIdentity();
@@ -28,8 +28,7 @@ Pose subtract_mounting(const Registration::Matrix& joint, const Pose& by_mountin
 
 }  // namespace
 
-/// Returns the derivative of the map's error at the IMU with respect to the mounting error at the start: mapping.md
-/// (R56).
+/// See mapping.md (R56).
 Pose WorldCovariance::start_mounting_jacobian(const Eigen::Vector3d& p_WI_m) const {
   Pose start = start_mounting_jacobian_;
   start.topRows<3>() -= so3::hat(p_WI_m - start_W_m_) * start_mounting_jacobian_.bottomRows<3>();
@@ -49,8 +48,7 @@ double WorldCovariance::sigma_in_map_m(const Registration::Matrix& joint, const 
   return std::sqrt(std::max(P.topLeftCorner<3, 3>().trace(), 0.0));
 }
 
-/// Returns the covariance of a pose in the world, which includes the map's error at this position and the tilt error at
-/// the start: mapping.md (R58).
+/// See mapping.md (R58).
 Pose WorldCovariance::in_world(const Registration::Matrix& joint, const Eigen::Vector3d& p_WI_m) const {
   const Eigen::Vector3d from_start_m = p_WI_m - start_W_m_;
   Eigen::Matrix<double, 6, 2> by_tilt = Eigen::Matrix<double, 6, 2>::Zero();
@@ -62,7 +60,7 @@ Pose WorldCovariance::in_world(const Registration::Matrix& joint, const Eigen::V
   return P;
 }
 
-/// Adds the drift of a sweep in the direction that the surfaces constrain least: mapping.md (R61).
+/// See mapping.md (R61).
 void WorldCovariance::add_drift(double least_constrained_sigma_m,
                                 const Eigen::Matrix<double, 6, 1>& least_constrained_direction) {
   const double sigma_m = params_.drift_ratio * std::min(least_constrained_sigma_m, params_.drift_sigma_max_m);
@@ -70,9 +68,7 @@ void WorldCovariance::add_drift(double least_constrained_sigma_m,
   drift_covariance_m2_ += (sigma_m * sigma_m) * direction * direction.transpose();
 }
 
-/// Adds the error of a sweep to the map error, at the lidar's pose in the middle of the sweep: mapping.md (R59), (R60).
-/// The pose in the middle is the most certain pose of a sweep. Mounting errors of the lidar are excluded, because they
-/// do not change the map.
+/// See mapping.md (R59), (R60). Mounting errors of the lidar do not change the map.
 void WorldCovariance::add_insertion(double inserted_fraction, const SweepTrajectory& trajectory,
                                     const Registration::Matrix& errors, const Eigen::Vector3d& p_IL_m) {
   const double middle_s = 0.5 * trajectory.duration_s();

@@ -6,14 +6,13 @@
 namespace tumble::mapping {
 
 /// WorldCovariance is the covariance of the map relative to the world, whose frame is defined by the first pose of the
-/// IMU. The covariance includes errors of mounting, initial tilt, scale, pose errors of inserted sweeps, and drift in
+/// IMU. The covariance of the map includes errors of mounting, initial tilt, scale and inserted sweeps, and drift in
 /// unconstrained directions.
 class WorldCovariance {
  public:
   using Pose = Eigen::Matrix<double, 6, 6>;
 
   WorldCovariance() = default;
-  /// Constructs the covariance at the first pose of the IMU.
   WorldCovariance(const WorldCovarianceParams& params, const Eigen::Quaterniond& q_WI, const Eigen::Vector3d& p_IL_m,
                   const Eigen::Vector3d& p_WI_m = Eigen::Vector3d::Zero())
       : params_(params),
@@ -21,25 +20,23 @@ class WorldCovariance {
         map_at_W_m_(p_WI_m),
         start_mounting_jacobian_(pose_mounting_jacobian(q_WI, p_IL_m)) {}
 
-  /// Returns the covariance of a run that is localised at a position in a prior map. The prior map is assumed exact.
+  /// The prior map is assumed exact.
   static WorldCovariance of_prior_map(const WorldCovarianceParams& params, const Eigen::Vector3d& p_WI_m);
 
-  /// Returns the covariance of a pose's error relative to the world. `joint` is the covariance of all unknowns in the
-  /// map at the time of the pose.
+  /// `joint` is the covariance of all unknowns in the map at the time of the pose.
   Pose in_world(const Registration::Matrix& joint, const Eigen::Vector3d& p_WI_m) const;
 
-  /// Returns the standard deviation of a position relative to the nearby part of the map [m].
+  /// The standard deviation is relative to the nearby part of the map.
   double sigma_in_map_m(const Registration::Matrix& joint, const Eigen::Vector3d& p_WI_m) const;
 
-  /// Adds the drift of a sweep in motion, along the direction that the surfaces constrain least (position, scaled
-  /// attitude). `least_constrained_sigma_m` is the standard deviation in this direction.
+  /// `least_constrained_direction` is the direction of motion (position, scaled attitude) that surfaces constrain
+  /// least.
   void add_drift(double least_constrained_sigma_m, const Eigen::Matrix<double, 6, 1>& least_constrained_direction);
-  /// Adds the pose error in the middle of a sweep. `inserted_fraction` is the fraction of the sweep's points that were
-  /// inserted into the map. `errors` is the covariance of the unknowns at the start of the sweep.
+  /// `inserted_fraction` is the fraction of the sweep's points that were inserted into the map. `errors` is the
+  /// covariance of the unknowns at the start of the sweep.
   void add_insertion(double inserted_fraction, const SweepTrajectory& trajectory, const Registration::Matrix& errors,
                      const Eigen::Vector3d& p_IL_m);
 
-  /// Returns the standard deviation of the map's vertical.
   double tilt_sigma_rad() const { return params_.tilt_sigma_rad; }
 
  private:

@@ -16,8 +16,7 @@ namespace tumble {
 
 namespace {
 
-// Number of ring numbers per lidar. Different lidars have different ring numbers, because LoneReturns compares returns
-// within one ring.
+// Different lidars have different ring numbers, because LoneReturns compares returns within one ring.
 constexpr std::uint16_t kRingsPerLidar = 4096;
 constexpr double kOffsetMax_s = 1.0;
 

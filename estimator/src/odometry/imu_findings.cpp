@@ -19,9 +19,9 @@ using Kind = HealthFinding::Kind;
 
 constexpr const char* kImu = "imu";
 constexpr double kSlopeTolerance = 0.02, kSlopeAgreementMin = 0.99;
-// A recording counts as hand-held if at least this fraction of its samples is classified as hand-held. The fraction was
-// at least 0.91 for hand-held motion. For thrown bodies, it was at most 0.25 with correct axes, and mostly below 0.6
-// with wrong axes.
+// A body counts as hand-held if at least this fraction of its samples is classified as hand-held. The fraction of
+// hand-held samples was at least 0.91 for hand-held motion. For thrown bodies, the fraction of hand-held samples was at
+// most 0.25 with correct axes, and mostly below 0.6 with wrong axes.
 constexpr double kRepeatedFraction = 0.8;
 
 double rate_max_so_far_rad_s(std::span<const ImuSample> samples) {
@@ -34,7 +34,7 @@ RestGravity rest_gravity(const CheckedImu& imu) {
   return RestGravity({.gravity_m_s2 = imu.gravity_m_s2, .accel_range_m_s2 = imu.accel_range_m_s2});
 }
 
-/// Adds the findings of check_readings() to `health`, and returns whether the rotation of gravity confirms the gyro.
+/// Returns whether the rotation of gravity confirms the gyro.
 bool check_readings(const CheckedImu& imu, std::span<const ImuSample> samples, SensorHealth& health) {
   const RestGravity gravity = rest_gravity(imu);
   RestGravity::MagnitudeState at_rest;
@@ -53,7 +53,6 @@ bool check_readings(const CheckedImu& imu, std::span<const ImuSample> samples, S
   return confirms_gyro(plausibility, state);
 }
 
-/// Checks the forces in flights.
 void check_flights(const CheckedImu& imu, std::span<const ImuSample> samples, std::optional<double> carried_share,
                    SensorHealth& health) {
   const bool thrown = carried_share && *carried_share < kRepeatedFraction;
@@ -65,7 +64,7 @@ void check_flights(const CheckedImu& imu, std::span<const ImuSample> samples, st
   health.add(Kind::flight_forces, sense.verdict(state), kImu);
 }
 
-/// Checks that `rates`, one per sample, rotate gravity correctly from each rest to the next rest.
+/// The estimated rates must rotate gravity correctly from each rest to the next rest.
 void check_rests(const CheckedImu& imu, std::span<const ImuSample> samples, std::span<const RateState> rates,
                  SensorHealth& health) {
   const RestGravity gravity = rest_gravity(imu);

@@ -11,13 +11,11 @@ namespace tumble {
 
 namespace {
 
-// Maximum number of additional passes until the calibration has converged.
 constexpr int kExtraPassesMax = 3;
-// A pass does not determine the calibration if more than one in kSweepsPerRejection sweeps is rejected.
 constexpr std::size_t kSweepsPerRejection = 5;
 
-/// Cuts the last sweep at the end of the IMU data, if at least half of the sweep remains; otherwise returns false.
-/// Without the cut, a small clock offset between lidar and IMU would make the whole sweep unusable.
+/// Cuts the last sweep at the end of the IMU data, if at least half of the sweep remains. A small clock offset between
+/// lidar and IMU would make the whole sweep unusable.
 bool shorten(TimeNs end_ns, WaitingSweep& sweep) {
   if (end_ns >= sweep.end_ns) return true;
   const TimeNs last_marginalised_ns = end_ns - sweep.start_ns, length_ns = sweep.end_ns - sweep.start_ns;
@@ -48,7 +46,6 @@ class Pass {
   }
 
  private:
-  /// Adds the IMU samples up to the end of the sweep, then the odometer reading and the sweep.
   void add(WaitingSweep sweep) {
     add_silence(sweep.start_ns);
     if (!out_.status.ok()) return;
@@ -62,7 +59,7 @@ class Pass {
     if (out_.status.ok()) add_points(sweep);
   }
 
-  /// Adds empty sweeps up to `to_ns` while the lidar provides no sweeps, as TumblingOdometry does live.
+  /// While the lidar provides no sweeps, TumblingOdometry adds empty sweeps, also during live operation.
   void add_silence(TimeNs to_ns) {
     while (out_.status.ok() && last_end_ns_) {
       const TimeNs silent_ns = *last_end_ns_ + offset_ns_ + static_cast<TimeNs>(1e9 * kLidarSilent_s);
@@ -74,7 +71,6 @@ class Pass {
     }
   }
 
-  /// Adds IMU samples up to the first sample at or after `to_ns`.
   void add_samples(TimeNs to_ns) {
     while (next_ < input_.samples.size() && (next_ == 0 || input_.samples[next_ - 1].time_ns < to_ns)) {
       out_.status = out_.mapper.add_imu(input_.samples[next_], input_.rates[next_]);
@@ -98,7 +94,6 @@ class Pass {
     apply_next(std::exchange(added.report.smoothed, {}));
   }
 
-  /// Replaces the trajectory of the next unsmoothed sweep by the trajectory `smoothed`.
   void apply_next(std::vector<PoseState> smoothed) {
     if (smoothed.empty()) return;
     while (smoothed_ < out_.sweeps.size() && out_.sweeps[smoothed_].report.trajectory.empty()) ++smoothed_;
@@ -117,7 +112,6 @@ class Pass {
   std::optional<TimeNs> last_end_ns_;  ///< end of the last sweep with a pose, in the lidar's clock
 };
 
-/// Returns the calibration at the start of a pass, with the stated uncertainty.
 StatedCalibration stated_calibration(const LidarInertialOdometry::Params& started,
                                      const LidarInertialOdometry::Params& given) {
   StatedCalibration out;
@@ -129,7 +123,7 @@ StatedCalibration stated_calibration(const LidarInertialOdometry::Params& starte
   return out;
 }
 
-/// Returns whether the calibration of a pass is usable. A usable pass rejected few sweeps.
+/// A pass that rejected many sweeps does not determine the calibration.
 bool determines_calibration(const MappedRecording& pass) {
   if (!pass.status.ok()) return false;
   std::size_t rejected = 0, located = 0;

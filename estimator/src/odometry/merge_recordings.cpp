@@ -18,12 +18,10 @@ namespace {
 using Kind = HealthFinding::Kind;
 
 constexpr double kSilentReported_s = 0.5;  // minimum duration without readings that is reported
-// Standard deviation of an element's cross-axis sensitivity if no saturation plane was observed. The element is then
-// assumed to be aligned with its axis. With a standard deviation of 0.03, three clipped IMUs could not determine the
-// rate.
+// Without an observed saturation plane, a sensing element is assumed to be aligned with its axis. With a standard
+// deviation of 0.03 for the cross-axis sensitivity, three clipped IMUs could not determine the rate.
 constexpr double kUnknownSlope = 0.0;
 
-/// Units contains the IMUs that provide samples, resampled to common times.
 struct Units {
   std::size_t count = 0;  ///< number of all IMUs
   std::vector<std::size_t> index;
@@ -33,7 +31,6 @@ struct Units {
   std::vector<std::vector<FrozenAxis>> frozen;
 };
 
-/// Sets the clip flags in the readings of an IMU, and estimates the directions of its sensing elements.
 void flag_clipped(const ImuSheet& sheet, std::vector<ImuSample>& samples, SensingDirections& gyro,
                   SensingDirections& accel) {
   ClippingFinder::Params params;
@@ -50,7 +47,6 @@ void flag_clipped(const ImuSheet& sheet, std::vector<ImuSample>& samples, Sensin
   accel = found.rails.rows(Triad::accelerometer, kUnknownSlope);
 }
 
-/// Resamples the readings of all IMUs to common times, and replaces `samples` by the result.
 Status align(std::vector<std::vector<ImuSample>>& samples) {
   const UnitAlignment alignment(samples.size());
   UnitAlignment::State state;
@@ -102,13 +98,11 @@ void set_units(const Units& units, ImuMerge::Params& params) {
   std::copy(units.accel_elements.begin(), units.accel_elements.end(), params.accel_elements.begin());
 }
 
-/// Removes the gaps of a recording from the time stamps, so that the calibration of ImuMerge continues after a gap.
+/// Time stamps without gaps keep the calibration of ImuMerge across a gap.
 class TimeWithoutGaps {
  public:
   explicit TimeWithoutGaps(double gap_max_s) : gap_max_s_(gap_max_s) {}
 
-  /// Returns the time of the next sample without gaps, and whether the sample follows a gap. A removed gap is replaced
-  /// by the time step before it.
   std::pair<TimeNs, bool> next(TimeNs time_ns) {
     const bool after_gap = started_ && seconds(time_ns - last_ns_) > gap_max_s_;
     if (after_gap) {
@@ -121,7 +115,6 @@ class TimeWithoutGaps {
     last_ns_ = time_ns;
     return {time_ns - removed(), after_gap};
   }
-  /// Converts a time without gaps to the time in the recording.
   TimeNs in_recording(TimeNs time_ns) const {
     TimeNs removed_ns = 0;
     for (const Gap& gap : gaps_) {
@@ -142,7 +135,7 @@ class TimeWithoutGaps {
   TimeNs last_ns_ = 0, step_ns_ = 1;
 };
 
-/// Deletes the averaging windows and the predicted motion at a gap, but keeps the calibration of the IMUs.
+/// The calibration of the IMUs remains valid after a gap.
 void delete_motion(ImuMerge::State& state) {
   for (ImuMerge::Unit& unit : state.units) unit.window = {};
   state.recovery.running = false;
@@ -180,7 +173,6 @@ std::string name(const Units& units, std::size_t k) {
   return unit_name(units.index[k], units.count);
 }
 
-/// Marks all readings of an IMU from `from_ns` to `to_ns` as absent.
 void exclude(std::vector<ImuSample>& unit, TimeNs from_ns, TimeNs to_ns = std::numeric_limits<TimeNs>::max()) {
   for (ImuSample& sample : unit) {
     if (sample.time_ns >= from_ns && sample.time_ns <= to_ns)
@@ -192,7 +184,6 @@ struct Interval {
   TimeNs from_ns = 0, to_ns = 0;
 };
 
-/// Returns the first interval without readings that is longer than kSilentReported_s.
 std::optional<Interval> silent_interval(const std::vector<ImuSample>& unit) {
   std::size_t from = unit.size();
   for (std::size_t k = 0; k <= unit.size(); ++k) {
@@ -216,7 +207,7 @@ void report_silent(const Units& units, SensorHealth& faults) {
   }
 }
 
-/// Excludes the readings of an IMU while one of its axes is frozen. Returns an error if no IMU remains.
+/// Returns an error if all IMUs are frozen.
 Status exclude_frozen(Units& units, SensorHealth& faults) {
   const std::size_t before = faults.findings.size();
   for (std::size_t unit = 0; unit < units.index.size(); ++unit) {
@@ -243,7 +234,7 @@ void erase_unit(Units& units, std::size_t unit) {
   units.accel_elements.erase(units.accel_elements.begin() + at);
 }
 
-/// Excludes the IMUs that ImuMerge classified as faulty. Returns whether ImuMerge found a faulty IMU.
+/// Returns whether ImuMerge found a faulty IMU.
 bool exclude_found(const ImuMerge::State& state, Units& units, SensorHealth& faults) {
   bool any = false;
   for (std::size_t k = units.index.size(); k-- > 0;) {

@@ -16,10 +16,8 @@ std::size_t samples_in(double time_s, const RegimeStream::Params& rate) {
   return static_cast<std::size_t>(std::ceil(time_s / rate.rate.period_s)) + 16;
 }
 
-/// Returns the angular rate for the mapper. If the rate of a clipped axis is too uncertain for the mapper, the result
-/// contains the gyro's reading, which is a lower bound. The registration then estimates the saturation deficit. With an
-/// uncertain calibration, a rate that RateStream recovers at an impact may be wrong by tens of rad/s, with a
-/// correspondingly large standard deviation.
+/// If the rate of a clipped axis is too uncertain, the mapper receives the gyro's reading, which is a lower bound. With
+/// an uncertain calibration, a rate recovered at an impact may be wrong by tens of rad/s.
 RateState limit_rate_sigma(const RateState& rate, const ImuSample& sample, double sigma_max_rad_s) {
   RateState out = rate;
   for (int axis = 0; axis < 3; ++axis) {
@@ -33,7 +31,6 @@ RateState limit_rate_sigma(const RateState& rate, const ImuSample& sample, doubl
   return out;
 }
 
-/// ClassifiedSamples returns the samples in the window of a RateStream, with clip flags on saturated specific forces.
 /// Successive calls need increasing times.
 class ClassifiedSamples {
  public:

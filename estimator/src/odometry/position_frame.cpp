@@ -20,7 +20,7 @@ constexpr double kDrift = 0.01;   // minimum assumed drift of the poses, as a fr
 
 const Eigen::Vector3d kUp = Eigen::Vector3d::UnitZ();
 
-/// Returns the IMU's pose at `time_ns` by linear interpolation of a sweep's trajectory.
+/// Interpolates the trajectory of a sweep linearly.
 PoseState pose_at(const std::vector<PoseState>& trajectory, TimeNs time_ns) {
   const auto next = std::find_if(trajectory.begin(), trajectory.end() - 1,
                                  [&](const PoseState& pose) { return pose.time_ns >= time_ns; });
@@ -113,8 +113,7 @@ void PositionAlignment::restart_fit() {
   frame_.reset();
 }
 
-/// Adds a position reading with the IMU's pose at its time. If the robot has hardly moved since the last reading, the
-/// function averages both readings.
+/// If the robot has hardly moved since the last reading, the function averages both readings.
 void PositionAlignment::add_pair(const PositionReading& reading, const PoseState& pose) {
   const double variance_m2 = reading.covariance_m2.trace() / 3.0;
   const Pair pair{pose.p_WA_m + pose.q_WA * reading.p_IA_m, reading.p_PA_m, variance_m2, path_m_, pose_variance_m2_};
@@ -130,7 +129,6 @@ void PositionAlignment::add_pair(const PositionReading& reading, const PoseState
   last.variance_m2 = share * variance_m2;
 }
 
-/// Fits PositionFrame to the stored pairs of position and pose, without outliers.
 void PositionAlignment::fit() {
   frame_.reset();
   std::deque<Pair> inliers = pairs_;

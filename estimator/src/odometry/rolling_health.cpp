@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// rolling_health.cpp implements the health checks of RollingOdometry.
 #include <algorithm>
 #include <cstddef>
 #include <string>
@@ -14,8 +13,8 @@ using Kind = HealthFinding::Kind;
 
 constexpr double kUnitSilent_s = 0.5;  // time without readings after which an IMU counts as silent
 
-/// Adds findings about IMUs whose force at rest contradicts gravity. If the forces of all IMUs do, the finding concerns
-/// the merged IMU. Otherwise each contradicting IMU gets the finding `unit_disagrees`.
+/// If the forces of all IMUs contradict gravity at rest, the finding concerns the merged IMU. Otherwise each
+/// contradicting IMU gets the finding `unit_disagrees`.
 void add_forces_at_rest(const MergedChecks& checks, std::size_t count, SensorHealth& health) {
   const auto verdict = [&](std::size_t unit) {
     return checks.rest_gravity.magnitude_verdict(checks.rest_gravity_state[unit]);
@@ -52,7 +51,7 @@ SensorHealth RollingOdometry::health() const {
   return out;
 }
 
-/// Adds findings about frozen axes. If other IMUs replace the frozen IMU, the finding is `unit_frozen`.
+/// If other IMUs replace the frozen IMU, the finding is `unit_frozen`.
 void RollingOdometry::add_frozen(const Frozen& frozen, SensorHealth& health) const {
   const std::size_t count = params_.units.size();
   const auto end = frozen.begin() + static_cast<std::ptrdiff_t>(count);

@@ -19,7 +19,6 @@ ImuSample at_time(TimeNs time_ns, ImuSample sample) {
   return sample;
 }
 
-/// Marks a sample as absent: its IMU has no reading at this time.
 void mark_absent(ImuSample& sample) {
   sample.angular_velocity_rad_s.setConstant(std::numeric_limits<double>::quiet_NaN());
 }
@@ -144,8 +143,7 @@ Status RollingOdometry::add_imu(std::size_t unit, const ImuSample& sample) {
   return add_aligned(false);
 }
 
-/// Processes the readings at all common times that UnitAlignment has completed. `ended` is true if no further readings
-/// follow.
+/// `ended` is true if no further readings follow.
 Status RollingOdometry::add_aligned(bool ended) {
   Status first;
   UnitAlignment::Readings readings;
@@ -156,7 +154,7 @@ Status RollingOdometry::add_aligned(bool ended) {
   return first;
 }
 
-/// Processes the samples that the outlier filter delayed. The next samples decide which delayed readings are outliers.
+/// The next samples decide which delayed readings are outliers.
 Status RollingOdometry::add_delayed_samples(std::span<const ImuSample> next) {
   if (!delayed_samples_) return {};
   for (std::size_t k = 0; k < next.size(); ++k) {
@@ -215,7 +213,7 @@ std::size_t RollingOdometry::rejected_readings() const {
   return out;
 }
 
-/// Sets the readings of IMUs with frozen axes to NaN. Returns an error if no IMU remains.
+/// Sets the readings of IMUs with frozen axes to NaN. Returns an error if all IMUs have a frozen axis.
 Status RollingOdometry::exclude_frozen(const Frozen& states, std::span<ImuSample> samples) const {
   bool any = false, received = false;
   for (std::size_t k = 0; k < samples.size(); ++k) {
@@ -264,7 +262,6 @@ Status RollingOdometry::finish() {
   return status;
 }
 
-/// Ends a run, and smooths the poses that are still within the lag.
 void RollingOdometry::end_run() {
   for (OutlierFilter::State& unit : outlier_filter_state_) OutlierFilter::finish(unit);
   delayed_samples_.reset();
@@ -279,7 +276,7 @@ void RollingOdometry::reset() {
   recorded_ = {};
 }
 
-/// Resets all states of a run, except the readings that UnitAlignment has not completed yet.
+/// Readings that UnitAlignment has not completed yet remain.
 void RollingOdometry::start_run() {
   sample_clock_state_ = {};
   imu_merge_state_ = std::make_unique<ImuMerge::State>();

@@ -11,12 +11,12 @@ constexpr std::size_t kRecoveringUnits = 3;  // minimum number of IMUs for recov
 constexpr double kRecoveredSigma_rad_s = 1.0;
 constexpr double kUnknownRadiusSigmaRatio =
     0.05;  // prior of an unknown radius, if a known distance determines the radius
-// Prior standard deviations for an IMU without a data sheet, at an unknown position in the sphere.
+// prior standard deviations for an IMU without a data sheet, at an unknown position in the sphere
 constexpr double kUnknownGyroBias_rad_s = 5e-3, kUnknownAccelBias_m_s2 = 0.4, kUnknownScale = 0.01,
                  kUnknownDelay_s = 5e-3, kUnknownLeverArm_m = 0.05;
 constexpr double kLevelInclinePerS = 1e-9;  // rate at which slopes begin, for a floor that is known to be level
 
-// Checks the radius, which has no default.
+// The radius has no default.
 void require_stated(RollingOdometry::Params params) {
   params.expert.rolling.filter.radius_m = params.radius_m;
   require_valid_fields(params);

@@ -5,19 +5,15 @@
 
 #include "tumble/odometry/rolling_odometry.hpp"
 
-/// rolling_odometry_params.hpp computes the parameters of ImuMerge, RollingSmoother and the filters from
-/// RollingOdometry::Params.
 namespace tumble::odometry {
 
-/// Returns the parameters of ImuMerge. Throws InvalidParams if a parameter of RollingOdometry is out of bounds.
+/// Throws InvalidParams if a parameter of RollingOdometry is out of bounds.
 ImuMerge::Params merge_params(const RollingOdometry::Params& params);
 
-/// Returns the parameters of RollingSmoother. `lever_arm_m` is the position of the virtual IMU that combines all
-/// `units` IMUs.
+/// `lever_arm_m` is the position of the virtual IMU that combines all `units` IMUs.
 RollingSmoother::Params rolling_params(const RollingOdometry::Params& params, const ImuMerge::Params& merged,
                                        std::size_t units, const Eigen::Vector3d& lever_arm_m);
 
-/// Return the data sheets, the detectors of frozen axes, and the outlier filters of all IMUs.
 std::vector<ImuSheet> sheets_of(const RollingOdometry::Params& params);
 std::vector<FrozenAxes> frozen_axis_detectors(const RollingOdometry::Params& params);
 std::vector<OutlierFilter> filters_of(const RollingOdometry::Params& params);

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// rolling_recording.cpp contains the functions of RollingOdometry that process a whole recording.
 #include <algorithm>
 #include <memory>
 #include <utility>
@@ -14,7 +13,7 @@ RollingSmoother::Params RollingOdometry::smoother_params(const Params& params, c
   return odometry::rolling_params(params, odometry::merge_params(params), merged.units.size(), merged.lever_arm_m);
 }
 
-/// Stores a reading until finish(). Non-finite readings are ignored.
+/// Non-finite readings are ignored.
 Status RollingOdometry::record(std::size_t unit, ImuSample sample) {
   if (!check_sample(sample).ok()) return {};
   std::vector<ImuSample>& samples = recorded_[unit];
@@ -48,7 +47,6 @@ Status RollingOdometry::finish_whole_recording() {
   whole->health = check_merged({.gravity_m_s2 = params_.gravity_m_s2, .merged = true}, merged);
   smoother_ = RollingSmoother(smoother_params(params_, merged));
   for (const ImuSample& sample : merged.samples) {
-    // start_run() replaces state_
     const TimeNs last_ns = state_->live.started ? state_->live.last_time_ns : sample.time_ns;
     if (seconds(sample.time_ns - last_ns) > params_.expert.rolling.filter.expert.gap.gap_max_s)
       restart_at_newest(seconds(sample.time_ns - last_ns));

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// rolling_restart.cpp implements the restarts of RollingOdometry after gaps, and the pose of a run in the world.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -12,11 +11,10 @@ namespace tumble {
 
 namespace {
 
-// Standard deviations of the motion in a gap: change of the horizontal speed, and rate about the vertical.
-// kUnknownHeading_rad applies after a long gap (uniform over a turn).
+// standard deviations of the motion in a gap: speed, rate about the vertical, heading after a long gap
 constexpr double kGapSpeed_m_s = 0.5, kGapTurn_rad_s = 1.0, kUnknownHeading_rad = 1.8;
 
-/// Returns the covariance of position and heading. The tilt is omitted, because a restart levels the attitude.
+/// A restart levels the attitude, so the covariance of the tilt is omitted.
 Eigen::Matrix<double, 6, 6> position_and_heading(Eigen::Matrix<double, 6, 6> covariance) {
   covariance.middleRows<2>(3).setZero();
   covariance.middleCols<2>(3).setZero();
@@ -25,7 +23,6 @@ Eigen::Matrix<double, 6, 6> position_and_heading(Eigen::Matrix<double, 6, 6> cov
 
 }  // namespace
 
-/// Starts a new run at the newest pose, after `gap_s` seconds without data.
 void RollingOdometry::restart_at_newest(double gap_s) {
   const std::size_t before = results_.size();
   end_run();
@@ -52,7 +49,6 @@ void RollingOdometry::restart_at_newest(double gap_s) {
   restart_ = restart;
 }
 
-/// Computes the pose of the run's frame in the world from the first pose of the run.
 void RollingOdometry::initialise_pose() {
   if (!start_ || !state_->live.started) return;
   const RollingEstimate first = RollingFilter::estimate(state_->live);
@@ -64,7 +60,6 @@ void RollingOdometry::initialise_pose() {
   start_.reset();
 }
 
-/// Converts an estimate of the filter or the smoother from the frame of the run to the world.
 RollingEstimate RollingOdometry::transform_to_world(RollingEstimate estimate) const {
   estimate.uncertain = estimate.uncertain || restart_.has_value();
   if (!T_W_run_) return estimate;

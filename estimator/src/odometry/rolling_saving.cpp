@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// rolling_saving.cpp saves and loads calibration, saturation limits and pose of RollingOdometry.
 #include <memory>
 #include <utility>
 
@@ -10,7 +9,7 @@ namespace tumble {
 
 namespace {
 
-/// SavedRolling is the contents of a saved RollingOdometry, followed by the saturation limits of each IMU.
+/// In a saved RollingOdometry, the saturation limits of each IMU follow after the members of SavedRolling.
 struct SavedRolling {
   double radius_m = 0.0;                                  ///< stated radius
   Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();  ///< stated position of the merged IMU

@@ -15,7 +15,6 @@ std::uint64_t layout_of(SavedKind kind) {
   return kind == SavedKind::map ? 0xdff8c7553cce8be4u : 2u;
 }
 
-/// Returns the numbers of the header from the start to the checksum.
 std::array<std::byte, kChecksumAt> header(SavedKind kind, std::uint64_t size) {
   std::array<std::byte, kChecksumAt> out{};
   const auto put = [&](std::uint64_t value, std::size_t at, std::size_t width) {

@@ -37,10 +37,9 @@ enum class SavedKind : std::uint32_t { tumbling = 1, rolling = 2, map = 9 };
 inline constexpr std::size_t kSavedHeader = 40;
 inline constexpr double kPositionMax_m = 1e6, kVarianceMax = 1e12;
 
-/// SavedWriter appends numbers and fixed-size arrays of numbers. SavedReader reads the numbers in the same order.
+/// SavedReader reads the numbers in the order in which SavedWriter appended them.
 class SavedWriter {
  public:
-  /// Writes a number, an Eigen matrix of fixed size, or an Eigen transform.
   template <class T>
   void operator()(const char* name, const T& value, double /*low*/ = 0.0, double /*high*/ = 0.0) {
     if constexpr (std::is_arithmetic_v<T>) {
@@ -53,7 +52,6 @@ class SavedWriter {
       for (const auto& number : value.reshaped()) (*this)(name, number);
     }
   }
-  /// Writes whether an optional has a value, and returns it.
   template <class T>
   bool present(const char* name, const std::optional<T>& value) {
     (*this)(name, value.has_value());
@@ -61,7 +59,6 @@ class SavedWriter {
   }
   void append(std::span<const std::byte> bytes) { bytes_.insert(bytes_.end(), bytes.begin(), bytes.end()); }
   void reserve(std::size_t bytes) { bytes_.reserve(kSavedHeader + bytes); }
-  /// Returns all bytes with the header.
   std::vector<std::byte> finish(SavedKind kind) &&;
 
  private:
@@ -69,14 +66,13 @@ class SavedWriter {
 };
 
 /// SavedReader reads numbers from untrusted bytes, without allocating memory. After the first error, SavedReader stops
-/// reading, and status() returns the error. The values read so far are then invalid. The errors are `too_few` (the
-/// bytes end within `field`), `non_finite` and `out_of_range`.
+/// reading, and the values read so far are invalid. The errors are `too_few` (the bytes end within `field`),
+/// `non_finite` and `out_of_range`.
 class SavedReader {
  public:
-  /// Checks the header.
   SavedReader(SavedKind kind, std::span<const std::byte> bytes);
 
-  /// Reads a number, a matrix or a transform, all of whose numbers must be within bounds.
+  /// All numbers of a matrix must be within the bounds.
   template <class T>
   void operator()(const char* name, T& value, double low = -kUnbounded, double high = kUnbounded) {
     if constexpr (std::is_arithmetic_v<T>) {
@@ -96,13 +92,12 @@ class SavedReader {
     if (there && status_.ok()) value.emplace();
     return value.has_value();
   }
-  /// Reports an error if `holds` is false.
   void require(const char* name, bool holds, double value, double bound) {
     if (status_.ok() && !holds) status_ = {ErrorCode::out_of_range, name, value, bound};
   }
   /// Reports an error unless `P` is symmetric and positive semidefinite.
   void require_covariance(const char* name, const Eigen::Ref<const Eigen::MatrixXd>& P);
-  /// Reports an error unless a parameter of the saved run equals the parameter of the object that loads the run.
+  /// A parameter of the saved run must equal the parameter of the object that loads the run.
   template <class Matrix>
   void require_equal(const char* name, const Matrix& saved, const Matrix& given) {
     for (Eigen::Index k = 0; k < saved.size(); ++k) require(name, saved(k) == given(k), saved(k), given(k));
@@ -137,7 +132,6 @@ class SavedReader {
   Status status_;
 };
 
-/// Visits time, position, attitude and covariance of a pose.
 template <class Visit, class Pose>
 void visit_pose(Visit& visit, Pose& pose) {
   visit("pose.time_ns", pose.time_ns);
@@ -145,7 +139,6 @@ void visit_pose(Visit& visit, Pose& pose) {
   visit("pose.q_WA", pose.q_WA.coeffs(), -1.0, 1.0);
   visit("pose.covariance", pose.covariance, -kVarianceMax, kVarianceMax);
 }
-/// Checks quaternion and covariance of a pose that was read.
 void check_pose(SavedReader& in, const PoseState& pose);
 
 }  // namespace tumble::odometry

@@ -10,7 +10,6 @@ namespace {
 
 constexpr std::size_t kPointBytes = 28;
 
-/// Visits the numbers of a point: three of the position, three of the normal and the standard deviation.
 template <class Visit, class Point>
 void visit_point(Visit& visit, Point& point) {
   visit("point.position_W_m", point.position_W_m);

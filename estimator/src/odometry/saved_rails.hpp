@@ -4,13 +4,11 @@
 #include "saved_bytes.hpp"
 #include "tumble/angular_velocity/clipping_finder.hpp"
 
-/// saved_rails.hpp saves the saturation limits and saturation planes that one IMU revealed.
 namespace tumble::odometry {
 
 void write_rails(const SaturationLevels& rails, SavedWriter& out);
 void read_rails(SavedReader& in, SaturationLevels& rails);
 
-/// Sets limits and planes as known from an earlier run.
 void start_from_rails(const SaturationLevels& rails, RailDetector::Params& detector, RailPlaneFinder::Params& gyro,
                       RailPlaneFinder::Params& accel);
 

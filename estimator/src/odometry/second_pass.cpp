@@ -15,11 +15,10 @@ namespace {
 constexpr double kBufferLead_s = 0.1;  // buffered time before the first sweep, because the clocks may differ
 constexpr std::size_t kSweepsPerExtraRejection =
     20;  // rejections by second pass <= rejections by first pass + sweeps / kSweepsPerExtraRejection
-// The second pass uses the estimated calibration only if at most one in kSweepsPerRejection sweeps was rejected.
+// The estimated calibration is not used if more than one in kSweepsPerRejection sweeps was rejected.
 constexpr std::size_t kSweepsPerRejection = 5;
 
-/// Initialises the stream with the saturation levels that the first pass detected. The covariances of the saturation
-/// planes are multiplied by `inflation`.
+/// `inflation` is a factor on the covariances of the detected saturation planes.
 void start_from_rails(const SaturationLevels& known, double inflation, RateStream::Params& params) {
   params.expert.planes.known = known.planes;
   params.expert.accel_planes.known = known.accel_planes;
@@ -186,7 +185,7 @@ void SecondPass::replace_first_pass(OdometryPass& first) {
       (!last_sweep_rejected_ || first_lost)) {
     first.adopt_map(std::move(*pass_));
     applied_ = true;
-    // The regular second pass later compares its number of rejected sweeps with rejected_by_first_.
+    // The second pass later compares its number of rejected sweeps with that of the first pass.
     rejected_by_first_ = rejected_;
     if (!last_sweep_rejected_) newest = SweepVerdict::registered;
   }

@@ -32,7 +32,6 @@ std::vector<LidarPoint> points_from(TimeNs from_ns, TimeNs start_ns, std::span<c
   return out;
 }
 
-/// Removes the sweeps that ended at or before `time_ns`, and returns their number.
 std::size_t drop_until(TimeNs time_ns, std::deque<WaitingSweep>& sweeps) {
   std::size_t dropped = 0;
   for (; !sweeps.empty() && sweeps.front().end_ns <= time_ns; sweeps.pop_front()) ++dropped;
@@ -213,16 +212,15 @@ void TumblingOdometry::register_sweep(TimeNs start_ns, TimeNs end_ns, std::vecto
   positions_.observe(out.report);
   out.position_frame = positions_.frame();
   second_pass_.store(start_ns, end_ns, std::move(points), reading, out.report.verdict);
-  // the second pass has no prior map, so its frame differs from the localised first pass
+  // The second pass has no prior map, so its frame differs from the localised first pass.
   if (mapper().prior_map() != nullptr && mapper().localised().ok()) second_pass_.abandon();
   const bool applied_before = second_pass_.applied();
   second_pass_.advance(pass_);
   if (second_pass_.applied() != applied_before) positions_.restart_fit();
 }
 
-/// Returns whether a sweep that ends at `end_ns` must be registered now, because its latency would exceed lag_s when
-/// the next sample arrives. In addition, newest sample - end of sweep > lag_s - 1.5 periods must hold, which delays a
-/// sweep after a gap.
+/// A sweep is due if its latency would exceed lag_s when the next sample arrives. After a gap, the condition `newest
+/// sample - end of sweep > lag_s - 1.5 periods` delays a sweep.
 bool TumblingOdometry::is_due(TimeNs end_ns) const {
   const std::optional<TimeNs> covering_ns = pass_.covering_ns(end_ns);
   if (!covering_ns) return false;
@@ -234,8 +232,8 @@ bool TumblingOdometry::is_due(TimeNs end_ns) const {
 void TumblingOdometry::register_covered_sweeps() {
   while (!waiting_.empty()) {
     const TimeNs end_ns = waiting_.front().end_ns;
-    // The sample that covers the end of a sweep may be up to one period later than the end. The rate of the covering
-    // sample is therefore reported one period before the lag is full.
+    // The sample that covers the end of a sweep may be up to one period later than the end. The rate of the sample that
+    // covers the end of a sweep is therefore reported one period before the lag is full.
     if (!pass_.covers(end_ns) && is_due(end_ns)) pass_.flush_until(pass_.oldest_needed_ns(end_ns));
     if (!pass_.covers(end_ns)) break;
     WaitingSweep sweep = std::move(waiting_.front());
@@ -265,8 +263,7 @@ void TumblingOdometry::restart_rates() {
   start_rate_estimation();
 }
 
-/// Restarts the run at its newest pose after the clock has stepped back. The sweeps with IMU samples are registered
-/// before the restart.
+/// Waiting sweeps with complete IMU samples are registered before the restart.
 void TumblingOdometry::restart_at_newest() {
   ++restart_count_;
   PoseState pose;
@@ -287,7 +284,6 @@ void TumblingOdometry::restart_at_newest() {
   if (!offset_rad_s.isZero(0.0)) set_gyro_offset(offset_rad_s);
 }
 
-/// Restarts a run whose only sample is an outlier.
 void TumblingOdometry::restart_without_first_sample() {
   const std::optional<Eigen::Isometry3d> start = mapper().start();
   std::deque<WaitingSweep> waiting = std::move(waiting_);
@@ -304,7 +300,7 @@ void TumblingOdometry::restart_without_first_sample() {
   outlier_filter_state_ = outliers;
 }
 
-/// Restarts a run that is still at rest, with the measured zero offset of the gyro as nominal bias.
+/// The measured zero offset of the gyro becomes the nominal bias.
 void TumblingOdometry::restart_with_offset(const Eigen::Vector3d& offset_rad_s) {
   const std::optional<Eigen::Isometry3d> start = mapper().start();
   early_sweeps_ += waiting_.size();
@@ -343,7 +339,7 @@ void TumblingOdometry::reset(const Eigen::Isometry3d& T_WI) {
 void TumblingOdometry::start_rate_estimation() {
   RegimeStream::Params params = rate_params(params_);
   params.rate.model.nominal.gyro_bias_rad_s = gyro_offset_rad_s();
-  // An estimated calibration that is out of bounds is unused.
+  // An estimated calibration that is out of bounds is discarded.
   if (const RigCalibration learnt = rig(); check_calibration(learnt).ok()) params.rate.model.calibration = learnt;
   pass_.start_rate_estimation(params);
 }

@@ -7,7 +7,7 @@ namespace tumble {
 
 namespace {
 
-// Standard deviation of gravity's horizontal components after levelling.
+// standard deviation of gravity's horizontal components after levelling
 constexpr double kGravitySigma_m_s2 = 0.03;
 
 }  // namespace

@@ -5,15 +5,12 @@
 #include "tumble/common/detail/outlier_filter.hpp"
 #include "tumble/odometry/tumbling_odometry.hpp"
 
-/// tumbling_odometry_params.hpp computes the parameters of rate estimation and mapping from TumblingOdometry::Params.
 namespace tumble::odometry {
 
-/// Returns the parameters of the rate estimation. Throws InvalidParams if a parameter of TumblingOdometry is out of
-/// bounds.
+/// Throws InvalidParams if a parameter of TumblingOdometry is out of bounds.
 RegimeStream::Params rate_params(const TumblingOdometry::Params& params);
 
-/// Returns the parameters of the rate estimation over a whole recording. The parameters of RegimeSmoother equal those
-/// of RegimeStream, except for larger prior standard deviations of accelerometer bias and inertia (see
+/// The prior standard deviations of accelerometer bias and inertia are larger than for RegimeStream (see
 /// RateStreamParams::model).
 RegimeSmoother::Params recording_rate_params(const TumblingOdometry::Params& params);
 

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// tumbling_recording.cpp contains the functions of TumblingOdometry that process a whole recording.
 #include <algorithm>
 #include <memory>
 #include <utility>
@@ -22,8 +21,7 @@ CheckedImu checked_imu(const TumblingOdometry::Params& params) {
           .lever_arm_I_m = params.lever_arm_I_m};
 }
 
-/// Removes outliers from the samples, and corrects the time stamps. `stamps_ns` receives the received time stamps of
-/// the remaining samples.
+/// `stamps_ns` receives the uncorrected time stamps of the inliers.
 Status select_samples(const OutlierFilter& filter, const SampleClock& clock, std::vector<ImuSample>& samples,
                       OutlierFilter::State& outliers, RecordingEstimate& out) {
   const std::vector<bool> inlier = find_inliers(filter, samples);
@@ -36,7 +34,6 @@ Status select_samples(const OutlierFilter& filter, const SampleClock& clock, std
   return {};
 }
 
-/// Estimates the angular rates of a recording, and checks whether its readings are plausible.
 Status estimate_rates(const TumblingOdometry::Params& params, std::span<const ImuSample> samples,
                       RecordingEstimate& out) {
   const RegimeSmoother smoother(odometry::recording_rate_params(params));
@@ -52,7 +49,6 @@ Status estimate_rates(const TumblingOdometry::Params& params, std::span<const Im
 
 }  // namespace
 
-/// Stores a sample until finish().
 Status TumblingOdometry::record(const ImuSample& sample) {
   if (finished_) return {ErrorCode::out_of_range, "samples after finish()", 1.0, 0.0};
   StampOrder::Verdict verdict{};

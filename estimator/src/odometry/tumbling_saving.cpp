@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// tumbling_saving.cpp saves and loads calibration, saturation limits, map and pose of TumblingOdometry.
 #include <cmath>
 #include <memory>
 #include <utility>
@@ -15,7 +14,7 @@ namespace tumble {
 
 namespace {
 
-/// SavedTumbling is the contents of a saved TumblingOdometry. The map follows in the format of save_map().
+/// In a saved TumblingOdometry, the map follows in the format of save_map().
 struct SavedTumbling {
   Eigen::Vector3d lever_arm_I_m = Eigen::Vector3d::Zero();        ///< stated lever arm
   Eigen::Isometry3d stated_T_IL = Eigen::Isometry3d::Identity();  ///< stated mounting of the lidar
@@ -71,7 +70,7 @@ std::vector<std::byte> write(const SavedTumbling& saved, std::span<const MapPoin
   return std::move(out).finish(odometry::SavedKind::tumbling);
 }
 
-/// Reads a saved run, whose stated lever arm and mounting must equal those of the object that loads the run.
+/// The stated lever arm and mounting must equal those of the object that loads the run.
 Status read(std::span<const std::byte> bytes, const Eigen::Vector3d& lever_arm_I_m, const Eigen::Isometry3d& T_IL,
             SavedTumbling& saved, std::vector<MapPoint>& map) {
   odometry::SavedReader in(odometry::SavedKind::tumbling, bytes);
@@ -96,7 +95,7 @@ Status read(std::span<const std::byte> bytes, const Eigen::Vector3d& lever_arm_I
   return load_map(in.left(), map);
 }
 
-/// Sets the start pose in the prior map, and its standard deviations, which limit the search.
+/// The standard deviations of the start pose limit the search in the prior map.
 void set_search(const PoseState& pose, PriorMap& map) {
   Eigen::Isometry3d T_MI = Eigen::Isometry3d::Identity();
   T_MI.linear() = pose.q_WA.toRotationMatrix();
@@ -106,7 +105,7 @@ void set_search(const PoseState& pose, PriorMap& map) {
   map.sigma_rad = std::sqrt(pose.covariance(5, 5));
 }
 
-/// Returns the pose to save. While a run is not localised in its prior map, its start pose relates it to this map.
+/// While a run is not localised in its prior map, the run's start pose relates the run to this map.
 std::optional<PoseState> newest_or_start(const TumblingOdometry& odometry) {
   const LidarInertialOdometry& mapper = odometry.mapper();
   const std::optional<Eigen::Isometry3d>& start = mapper.start();
@@ -166,7 +165,7 @@ Status TumblingOdometry::load(std::span<const std::byte> bytes, std::optional<Po
   RateStreamParams& rate = params.expert.rate.rate;
   if (saved.rig) {
     rate.model.nominal.gyro_bias_rad_s = saved.rig->constants.gyro_bias_rad_s;
-    // biases change at every switch-on
+    // Biases change at every switch-on.
     auto variance = saved.rig->covariance.diagonal();
     variance.segment<3>(3).array() += rate.model.gyro_bias_sigma_rad_s * rate.model.gyro_bias_sigma_rad_s;
     variance.segment<3>(6).array() += rate.model.accel_bias_sigma_m_s2 * rate.model.accel_bias_sigma_m_s2;
@@ -174,7 +173,7 @@ Status TumblingOdometry::load(std::span<const std::byte> bytes, std::optional<Po
   }
   if (saved.sensor_errors) rate.calibrated_errors = std::make_shared<KnownSensorErrors>(*saved.sensor_errors);
   odometry::start_from_rails(saved.rails, rate.rails, rate.expert.planes, rate.expert.accel_planes);
-  // the mounting of further lidars relative to the first lidar is exact
+  // The mounting of further lidars relative to the first lidar is exact.
   for (FurtherLidar& further : params.further_lidars)
     further.T_IL = saved.lidar.calibration.T_IL * params.T_IL.inverse() * further.T_IL;
   params.T_IL = saved.lidar.calibration.T_IL;

@@ -17,8 +17,7 @@ ImuSample absent(TimeNs time_ns) {
   return sample;
 }
 
-/// Returns the time of an IMU's newest reading. For an IMU without readings, the result is the time of the first
-/// reading of any IMU.
+/// Returns the time of the first reading of any IMU for an IMU without readings.
 TimeNs newest_ns(std::size_t unit, const UnitAlignment::State& state) {
   const std::vector<ImuSample>& readings = state.readings[unit];
   return readings.empty() ? *state.first_ns : readings.back().time_ns;
@@ -36,7 +35,6 @@ bool is_silent(std::size_t unit, const UnitAlignment::State& state) {
   return seconds(newest_ns(state) - newest_ns(unit, state)) > UnitAlignment::kSilentMax_s;
 }
 
-/// Returns an iterator to the first reading after the newest common time, or the end of `readings`.
 auto after_common(const std::vector<ImuSample>& readings, const UnitAlignment::State& state) {
   return std::find_if(readings.begin(), readings.end(),
                       [&](const ImuSample& reading) { return !state.common_ns || reading.time_ns > *state.common_ns; });
@@ -86,7 +84,7 @@ bool UnitAlignment::next(State& state, Readings& out, bool ended) const {
   return true;
 }
 
-/// Chooses another reference IMU if the current reference IMU provides no more readings.
+/// A silent reference IMU is replaced by another IMU.
 void UnitAlignment::choose_reference(State& state) const {
   const std::vector<ImuSample>& readings = state.readings[state.reference];
   if (after_common(readings, state) != readings.end() || !is_silent(state.reference, state)) return;

@@ -9,7 +9,7 @@ namespace tumble {
 
 namespace {
 
-// Number of stored readings per gyro or accelerometer, enough for some seconds near the largest readings.
+// A sensor stores enough readings for some seconds near its largest readings.
 constexpr int kReadings = 512;
 constexpr double kStatedMax_rad_s = 1000.0;  // maximum stated range that RailDetector uses
 
@@ -61,7 +61,6 @@ void UnitRails::observe(std::span<const ImuSample> samples, State& state) const 
     if (!check_sample(samples[k]).ok()) continue;
     StreamingClippingFinder::State& rails = state[k].rails;
     units_[k].watch.observe(samples[k], rails);
-    // classify() updates the hysteresis of the clipped axes.
     units_[k].watch.axis_aligned_rails().classify(samples[k], rails.known.axis_aligned_rails);
     state[k].before = samples[k];
   }

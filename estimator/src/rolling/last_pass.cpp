@@ -35,8 +35,7 @@ void LastPass::run(const Checkpoint& start, std::size_t cut) {
   }
 }
 
-/// Runs the filter over a segment, and stores the records for the backward pass. On return, `at` is the start of the
-/// next segment.
+/// After the call, `at` is the start of the next segment.
 void LastPass::forward(std::size_t segment, Checkpoint& at) {
   const std::size_t first = first_of(segment), end = std::min(first + length_, path_.size());
   loaded_ = segment;

@@ -11,18 +11,16 @@
 
 namespace tumble::rolling {
 
-/// LastPass is the final pass of RollingSmoother over stored samples: a Kalman filter with known contact modes runs
-/// forward, and a smoother runs backward.
+/// LastPass runs a Kalman filter with known contact modes forward, and a smoother backward.
 ///
-/// The backward pass needs more than 10 KiB per node. LastPass therefore divides the nodes into segments, and stores
-/// only the filter at each segment's start and the adjoint at its end. The data of one segment are recomputed when
-/// needed, bit for bit. A window of one segment needs one run of the filter; a longer window needs three. A LastPass
-/// contains four filters of 13 KiB, so do not create a LastPass on the stack.
+/// The backward pass needs more than 10 KiB per node, so LastPass divides the nodes into segments. LastPass stores only
+/// the filter at each segment's start and the adjoint at its end, and recomputes other data bit for bit. A window of
+/// one segment needs one run of the filter, a longer window needs three. A LastPass is too large for the stack (four
+/// filters of 13 KiB).
 class LastPass {
  public:
   static constexpr std::size_t kSegment = 128;  ///< number of nodes per segment; the backward pass needs 1.6 MiB
 
-  /// Checkpoint is the state of the filter and its position in the samples, between two nodes.
   struct Checkpoint {
     PathFilter filter;
     Readings::Cursor reading;
@@ -30,7 +28,6 @@ class LastPass {
   struct Distance {
     double distance_m = 0.0, sigma_m = 0.0;
   };
-  /// Smoothed is the smoothed estimate at one sample.
   struct Smoothed {
     const SamplePoint& point;
     const RollingNominal& nominal;
@@ -39,17 +36,16 @@ class LastPass {
     std::size_t index;
   };
 
-  /// Constructs the pass. All arguments must outlive the pass. A known `distance` is a measurement after the last
-  /// sample. `segment` is the number of nodes whose records are stored at a time. The segment length affects only
-  /// memory and computing time.
+  /// All arguments must outlive the pass. A known `distance` acts as a measurement after the last sample. `segment` is
+  /// the number of nodes whose records are stored at a time.
   LastPass(const RollingParams& params, std::span<const ImuSample> samples, std::span<const PathNode> path,
            std::optional<Distance> distance, std::size_t segment = kSegment);
 
-  /// Runs the filter forward from `start`, and then the backward pass. cut() returns the filter after `cut` nodes.
+  /// cut() returns the filter after `cut` nodes.
   void run(const Checkpoint& start, std::size_t cut);
 
   std::size_t nodes() const { return horizontal_variance_m2_.size(); }
-  /// Returns for each node the smoothed variance of the IMU's horizontal position.
+  /// smoothed variance of the IMU's horizontal position, per node
   std::span<const double> horizontal_variance_m2() const { return horizontal_variance_m2_; }
   const Checkpoint& cut() const { return cut_; }
   const PathFilter& end() const { return end_.filter; }
@@ -81,12 +77,12 @@ class LastPass {
   Checkpoint cut_, end_;
   Checkpoint again_;  ///< filter for a segment that is recomputed
   Adjoint adjoint_;   ///< state of the backward pass
-  // Index of the segment whose data are in memory.
+  // index of the segment whose data are in memory
   std::size_t loaded_ = 0;
   std::vector<NodeRecord> records_;
   std::vector<SamplePoint> points_;
   Reported smoothed_start_ = Reported::Zero();
-  /// Correction of the nominal trajectory due to the measured distance.
+  /// correction of the nominal trajectory due to the measured distance
   Reported distance_correction_ = Reported::Zero();
 };
 

@@ -64,8 +64,7 @@ void RollingFilter::start(const ImuSample& sample, const Eigen::Quaterniond& q_W
 void RollingFilter::process_average(State& state, Listener listener) const {
   const ImuAverage reading = state.average;
   state.average = {};
-  // A node is completed when the next reading arrives, because the rate at the node's end is interpolated between two
-  // readings.
+  // The rate at a node's end is interpolated between two readings, so the next reading completes the node.
   if (state.sums.node_s >= params_.expert.node_s - 0.5 * reading.length_s) {
     complete_node(reading.mean.angular_velocity_rad_s, state);
     listener.call(listener.to, state);
@@ -144,8 +143,7 @@ void RollingFilter::detect_rest(State& state) const {
   state.spins_in_place = state.at_rest && spins_in_place(state);
 }
 
-/// Returns whether a sphere at rest rotates slowly about its contact point: rolling.md (R29). The test compares the
-/// averaged rate at rest with the gyro bias.
+/// A sphere at rest may rotate slowly about its contact point: rolling.md (R29).
 bool RollingFilter::spins_in_place(const State& state) const {
   const double averaged = params_.expert.node_s / (2.0 * kSlowRateTau_s);
   const Hypothesis& best = state.hypotheses[0];
@@ -156,9 +154,7 @@ bool RollingFilter::spins_in_place(const State& state) const {
   return (off.square() > kSpinSigmas * kSpinSigmas * variance).any();
 }
 
-/// Returns the covariance of position or velocity due to the differences between the hypotheses: rolling.md (R27).
-/// `first` is the index of the position or velocity in the state. The covariance is the weighted mean of d d^T, where d
-/// is the difference between a hypothesis and the best hypothesis.
+/// See rolling.md (R27).
 Eigen::Matrix3d RollingFilter::spread(const State& state, int first) {
   const Eigen::Vector3d best = state.hypotheses[0].x.segment<3>(first);
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
@@ -194,7 +190,7 @@ void RollingFilter::weigh_modes(State& state) {
   state.bump_probability = hopping / total;
 }
 
-/// Decides whether the sphere is at rest; the reported position then remains constant until the next node.
+/// While the sphere is at rest, the reported position remains constant.
 void RollingFilter::constrain_position(State& state) const {
   const bool quiet =
       seconds(state.rest.within_bias_since_ns) >= std::min(rolling::kConstrainAfter_s, params_.expert.rest.rest_s) &&
@@ -208,8 +204,7 @@ void RollingFilter::constrain_position(State& state) const {
   state.position_constrained = stands;
 }
 
-/// Adds the estimated error of the best hypothesis to the nominal trajectory and constants. The states of all
-/// hypotheses are then relative to the best hypothesis.
+/// After the correction, the states of all hypotheses are relative to the best hypothesis.
 void RollingFilter::move_linearisation_point(bool heading_lost, State& state) const {
   const Vector x = state.hypotheses[0].x, turned = rolling::heading_effect(x);
   rolling::move_linearisation_point(x, state.nominal);
@@ -238,8 +233,7 @@ void RollingFilter::report(State& state) const {
   state.contact_velocity_m_s = state.hypotheses[0].contact_velocity_W_m_s;
 }
 
-/// Returns the most probable contact mode. Several hypotheses with a different past may have the same current mode, so
-/// the function uses the sums of their weights.
+/// Hypotheses with the same current contact mode but a different past add their weights.
 RollingMode RollingFilter::most_probable_mode(const State& state) {
   const bool event = state.slip_probability >= kEventProbability;
   if (event == may_slip(state.mode)) return state.mode;

@@ -22,23 +22,17 @@ constexpr double kPruneLogWeight = -120.0;  // minimum log weight of a hypothesi
 constexpr double kRestLogLikelihoodMin =
     -60.0;                             // smallest log likelihood at rest; limits the effect of a single bad node
 constexpr double kModeAgeMax_s = 1.0;  // maximum age of a mode; older modes count as equally old
-// Horizontal change of the contact velocity per node during slip: its density is a mixture of three Gaussians with the
-// standard deviations kPlateau_m_s, kSteady_m_s and kJump_m_s. The smallest, kPlateau_m_s, equals the standard
-// deviation of grip. With a larger value, each phase of constant slip velocity would count as grip.
+// During slip, the change of the contact velocity per node is a mixture of three Gaussians. If the smallest standard
+// deviation exceeded that of grip, each phase of constant slip velocity would count as grip.
 constexpr double kPlateau_m_s = 0.004, kSteady_m_s = 0.01, kJump_m_s = 0.08, kPlateauFraction = 0.4,
                  kSteadyFraction = 0.35;
-constexpr double kRollOverSigma_m_s = 0.03, kHitSigma_m_s = 0.3,
-                 // vertical change of the contact velocity on a bump [m/s]: standard deviations for rolling over the
-                 // bump and hitting it, and the fraction of rolling over
-    kRollOverFraction = 0.7;
+constexpr double kRollOverSigma_m_s = 0.03, kHitSigma_m_s = 0.3, kRollOverFraction = 0.7;
 constexpr std::int64_t kAgesApart = 4;
-// At least kMinDissentingHypotheses of the kept hypotheses do not share the last mode change of the best hypothesis. A
-// slip with constant spin looks like grip until its end, when a hundred hypotheses have higher weights than the correct
-// one.
+// A slip with constant spin looks like grip until its end, when a hundred hypotheses have higher weights than the
+// correct one. Some kept hypotheses therefore do not share the last mode change of the best hypothesis.
 constexpr std::size_t kMinDissentingHypotheses = 6;
-// Penalty of a rough floor on the log likelihood per node, between the residuals of a slope and of grip on a plane.
 constexpr double kRoughCost = 0.2;
-// Factor on the probability of a slope after a bump, because the foot of a ramp is a bump.
+// The foot of a ramp is a bump, so a slope is more probable after a bump.
 constexpr double kInclineAfterBump = 4.0;
 constexpr RollingMode kModes[] = {RollingMode::grip, RollingMode::slip, RollingMode::bump, RollingMode::incline,
                                   RollingMode::rough};
@@ -48,8 +42,7 @@ double log_normal(double value, double variance) {
   return -0.5 * (value * value / variance + std::log(2.0 * std::numbers::pi * variance));
 }
 
-/// Returns the log density of the vertical change of the contact velocity per node on a bump: m1 of rolling.md (R25).
-/// The density is a mixture of rolling over the bump and hitting it.
+/// See m1 of rolling.md (R25).
 double log_rise(double change) {
   const auto density = [&](double sigma) {
     return std::exp(-0.5 * change * change / (sigma * sigma)) / (sigma * std::sqrt(2.0 * std::numbers::pi));
@@ -58,8 +51,7 @@ double log_rise(double change) {
                   1e-300);
 }
 
-/// Returns the log density of the horizontal change of the contact velocity per node during slip: m2 of rolling.md
-/// (R24). The contact velocity is constant, drifts, or jumps. `square` is the squared length of the change.
+/// See m2 of rolling.md (R24).
 double log_change(double square) {
   double density = 0.0;
   for (const auto& [share, sigma] : {std::pair(kPlateauFraction, kPlateau_m_s), std::pair(kSteadyFraction, kSteady_m_s),
@@ -69,8 +61,7 @@ double log_change(double square) {
   return std::log(density + 1e-300);
 }
 
-/// Returns the log density of the contact velocity for a contact point at rest, for hypothesis `h` in the contact mode
-/// `mode`: rolling.md (R23).
+/// See rolling.md (R23).
 double log_stationary(const rolling::Contact& c, const RollingFilter::Hypothesis& h, RollingMode mode,
                       const RollingParams& params) {
   RollingFilter::Vector x = h.x;
@@ -92,8 +83,7 @@ double log_stationary(const rolling::Contact& c, const RollingFilter::Hypothesis
   Eigen::LLT<Eigen::Matrix3d> factor;
   double log_det = 0.0, cost = 0.0;
   if (mode == RollingMode::rough) {
-    // A rough floor lasts for many nodes. The density of a rough floor is normalised with the smaller standard
-    // deviation of grip, which avoids a penalty in each node.
+    // Normalisation with the smaller standard deviation of grip avoids a penalty for a rough floor in each node.
     log_det = log_det_with(rolling::contact_variance(params, c, RollingMode::grip), factor);
     cost = kRoughCost;
   }
@@ -103,8 +93,7 @@ double log_stationary(const rolling::Contact& c, const RollingFilter::Hypothesis
   return -cost - 0.5 * (square + log_det + 3.0 * std::log(2.0 * std::numbers::pi));
 }
 
-/// Returns the log density of the contact velocity `u` for a moving contact point, from the change since the last node:
-/// rolling.md (R24), (R25).
+/// See rolling.md (R24), (R25).
 double log_moving(const rolling::Contact& c, const RollingFilter::Hypothesis& h, RollingMode mode,
                   const Eigen::Vector3d& u, const RollingParams& params) {
   const Eigen::Vector3d change = u - h.contact_velocity_W_m_s;
@@ -115,7 +104,7 @@ double log_moving(const rolling::Contact& c, const RollingFilter::Hypothesis& h,
   return horizontal + log_normal(u.z(), check_vertical);
 }
 
-/// Returns the log probability of a transition between two contact modes within a node: rolling.md (R22).
+/// See rolling.md (R22).
 double log_transition(const RollingParams& params, RollingMode from, RollingMode to, double h_s) {
   const auto& modes = params.expert.modes;
   const auto rate = [&](RollingMode a, RollingMode b) {
@@ -143,8 +132,7 @@ struct Candidate {
 };
 using Candidates = std::array<Candidate, kRollingModes * RollingFilter::kHypotheses>;
 
-/// Computes all candidates (pairs of a hypothesis and a next contact mode), stores them in `out`, and returns them,
-/// most probable first.
+/// Returns all pairs of a hypothesis and a next contact mode, most probable first.
 std::span<const Candidate> propose(const RollingParams& params, const rolling::Contact& c,
                                    const RollingFilter::State& state, Candidates& out) {
   const double node_s = state.sums.node_s;
@@ -168,16 +156,15 @@ std::span<const Candidate> propose(const RollingParams& params, const rolling::C
                       mode == h.mode ? h.mode_start_node : state.node};
     }
   }
-  // std::stable_sort would allocate memory. Candidates of equal weight are therefore sorted by hypothesis and mode,
-  // which makes the order unique.
+  // std::stable_sort would allocate memory, so candidates of equal weight are sorted by hypothesis and mode.
   std::sort(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(total), [](const Candidate& a, const Candidate& b) {
     return std::tuple(-a.log_weight, a.parent, a.mode) < std::tuple(-b.log_weight, b.parent, b.mode);
   });
   return {out.data(), total};
 }
 
-/// Returns the start node of a contact mode, rounded to a multiple of a number of nodes that grows with the age of the
-/// mode. Hypotheses with similar mode starts then have equal results.
+/// The start node of a mode is rounded more coarsely with age, so that hypotheses with similar starts have equal
+/// results.
 std::int64_t beginning(std::int64_t mode_start_node, std::int64_t node, double node_s) {
   const auto mode_age_max_nodes = static_cast<std::int64_t>(kModeAgeMax_s / node_s);
   const std::int64_t age = std::min(node - mode_start_node, mode_age_max_nodes);
@@ -191,8 +178,7 @@ struct Kept {
   std::size_t count = 0;
 };
 
-/// Selects the most probable candidate for each contact mode and rounded mode start. `kMinDissentingHypotheses` places
-/// are reserved for candidates that do not share the last mode change of the best candidate.
+/// Some places are reserved for candidates that do not share the last mode change of the best candidate.
 Kept keep(std::span<const Candidate> candidates, std::int64_t node, double node_s) {
   Kept kept;
   for (const Candidate& candidate : candidates) {
@@ -211,8 +197,7 @@ Kept keep(std::span<const Candidate> candidates, std::int64_t node, double node_
 
 using Origins = std::array<std::size_t, RollingFilter::kHypotheses>;
 
-/// Replaces hypothesis k by a copy of hypothesis from[k], for the first `count` hypotheses. The function copies in
-/// place, because a second array would need 420 KiB of stack.
+/// Replaces hypothesis k by a copy of hypothesis from[k] in place, because a second array would need 420 KiB of stack.
 void rearrange(const Origins& from, std::size_t count, std::span<RollingFilter::Hypothesis> all) {
   std::array<int, RollingFilter::kHypotheses> readers{};  // number of pending copies that read from each slot
   std::array<bool, RollingFilter::kHypotheses> waits{};
@@ -220,7 +205,7 @@ void rearrange(const Origins& from, std::size_t count, std::span<RollingFilter::
     waits[k] = from[k] != k;
     readers[from[k]] += waits[k] ? 1 : 0;
   }
-  // A slot can be overwritten if no pending copy reads from it. The copy into this slot may free another slot.
+  // A hypothesis can be overwritten if no pending copy reads from it.
   for (std::size_t first = 0; first < count; ++first) {
     for (std::size_t k = first; k < count && waits[k] && readers[k] == 0; k = from[k]) {
       all[k] = all[from[k]];
@@ -228,7 +213,7 @@ void rearrange(const Origins& from, std::size_t count, std::span<RollingFilter::
       --readers[from[k]];
     }
   }
-  // The remaining pending copies form cycles of slots.
+  // The remaining pending copies form cycles.
   for (std::size_t first = 0; first < count; ++first) {
     if (!waits[first]) continue;
     const RollingFilter::Hypothesis kept = all[first];
@@ -244,8 +229,7 @@ void rearrange(const Origins& from, std::size_t count, std::span<RollingFilter::
 
 }  // namespace
 
-/// Extends each hypothesis by the next contact mode, updates the weights, and keeps the most probable hypotheses:
-/// rolling.md (R26).
+/// See rolling.md (R26).
 void RollingFilter::choose_modes(const Eigen::Vector3d& rate_I_rad_s, bool heading_lost, State& state) const {
   rolling::Contact c = rolling::contact(params_, state.nominal, rate_I_rad_s, state.sums);
   if (heading_lost) rolling::remove_heading_effect(c);
@@ -272,7 +256,7 @@ void RollingFilter::choose_modes(const Eigen::Vector3d& rate_I_rad_s, bool headi
   keep_most_probable(kept.count, state);
 }
 
-/// Keeps the first `count` hypotheses, and clears all others, so that equal estimates have equal states.
+/// Unused hypotheses are cleared, so that equal estimates have equal states.
 void RollingFilter::keep_most_probable(std::size_t count, State& state) {
   const auto begin = state.hypotheses.begin();
   const auto first = begin + static_cast<std::ptrdiff_t>(count);
@@ -280,7 +264,7 @@ void RollingFilter::keep_most_probable(std::size_t count, State& state) {
   state.count = static_cast<int>(count);
 }
 
-/// Updates each hypothesis with the measurements of a sphere at rest: rolling.md (R28).
+/// See rolling.md (R28).
 void RollingFilter::correct_at_rest(State& state) const {
   for (int k = 0; k < state.count; ++k) {
     Hypothesis& h = state.hypotheses[static_cast<std::size_t>(k)];
@@ -306,7 +290,7 @@ void RollingFilter::correct_at_rest(State& state) const {
     return std::tuple(-state.hypotheses[a].log_weight, a) < std::tuple(-state.hypotheses[b].log_weight, b);
   });
   rearrange(order, count, state.hypotheses);
-  // After some time at rest, all hypotheses agree about the present state, so one hypothesis is sufficient.
+  // After some time at rest, all hypotheses agree about the present state.
   const bool rested = seconds(state.rest.within_bias_since_ns) > kModeAgeMax_s;
   if (rested && state.count > 1) state.pruned_position_spread_m2 = spread(state, rolling::kPosition);
   const double best = state.hypotheses[0].log_weight;

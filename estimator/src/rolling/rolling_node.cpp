@@ -30,15 +30,13 @@ constexpr double kForceTilt_rad = 0.35;                           // direction e
 constexpr double kLostTilt_rad = kForceTilt_rad;  // a tilt with a larger standard deviation is levelled by the force
 constexpr double kUncertainTilt_rad = 0.1;        // limit of the tilt at rest, where the force is gravity
 constexpr double kRestTilt_rad = 5e-3;
-// If the force differs from gravity by more than kPushForceRatio * gravity, the sphere is pushed or rotates fast.
+// A sphere whose force differs more from gravity is pushed or rotates fast.
 constexpr double kPushForceRatio = 0.15;
 constexpr double kLostSpeed_m_s = 1.0;
 constexpr double kRecoveredTau_s = 0.1;  // correlation time of the error of a recovered rate
 constexpr double kFastRate_rad_s = 6.0;  // at higher rates, the force rotates too far within a node for levelling
 constexpr double kUnsureSpeed_m_s = 0.1, kSpeedWindow_s = 1.0;
 constexpr double kStartTilt_rad = 0.15;  // tilt error of a start in motion, caused by a push of 1.5 m/s^2
-// If the rates before and after a gap are below kGapRate_rad_s, the sphere was hardly pushed during the gap.
-// kGapStill_rad_s2 is the smallest standard deviation of the angular acceleration in a gap.
 constexpr double kGapRate_rad_s = 1.0, kGapStill_rad_s2 = 0.5;
 constexpr double kGapVelocityChangeRatio =
     0.5;  // unknown velocity change in a gap, as a fraction of the rolling velocity's change
@@ -46,14 +44,14 @@ constexpr double kGapTimeSigmaRatio = 0.15;  // uncertain time of a rate change 
 
 }  // namespace
 
-/// Returns the variance of the contact velocity in a contact mode: rolling.md (R18), (R19).
+/// See rolling.md (R18), (R19).
 Eigen::Vector3d contact_variance(const RollingParams& params, const Contact& c, RollingMode mode) {
   const double rough =
       mode == RollingMode::rough ? squared(params.expert.contact.rough_share * c.rolling_speed_m_s) : 0.0;
   return {c.grip_variance, c.grip_variance, squared(params.expert.contact.vertical_sigma_m_s) + rough + c.gap_variance};
 }
 
-/// Returns the velocity of the contact point: rolling.md (R17).
+/// See rolling.md (R17).
 Eigen::Vector3d Contact::velocity(const Vector& x) const {
   const Eigen::Vector2d change = x.segment<2>(kSlope);
   const double curved = upward(slope + change) - upward(slope) + slope.dot(change) / upward(slope);
@@ -82,7 +80,7 @@ RollingNominal start_nominal(const RollingParams& params, const Eigen::Quaternio
   return nominal;
 }
 
-/// Sets the prior covariance P of the error state, in the order of rolling.md (R1).
+/// The prior covariance has the order of rolling.md (R1).
 void set_prior(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s, Covariance& P) {
   P.setZero();
   auto prior = P.diagonal();
@@ -114,8 +112,8 @@ struct RailedForce {
   Eigen::Vector3d least_m_s2 = Eigen::Vector3d::Zero();  ///< components for which the reading is a lower bound
 };
 
-/// Returns the assumed specific force for a saturated reading: rolling.md (R8). The assumed force is the larger of two
-/// forces: the reading, and the force that keeps the velocity of the centre constant.
+/// For a saturated reading, the assumed force is the reading or the force that keeps the velocity of the centre
+/// constant, whichever is larger: rolling.md (R8).
 RailedForce railed_force(const ImuSample& sample, const Eigen::Vector3d& read_m_s2, const Eigen::Vector3d& kept_m_s2) {
   int largest = 0;
   sample.specific_force_m_s2.cwiseAbs().maxCoeff(&largest);
@@ -135,7 +133,7 @@ RailedForce railed_force(const ImuSample& sample, const Eigen::Vector3d& read_m_
 
 }  // namespace
 
-/// Integrates one reading of the IMU into the nominal trajectory and the sums of the node: rolling.md (R2) to (R9).
+/// See rolling.md (R2) to (R9).
 void integrate(const RollingParams& params, const ImuAverage& reading, RollingNominal& nominal, RollingIntegrals& sums,
                Force known) {
   const ImuSample& sample = reading.mean;
@@ -250,7 +248,7 @@ void integrate_gap(const RollingParams& params, const ImuAverage& piece, const G
   sums.gap_speed_variance_m2_s2 += uncertainty.speed_variance_m2_s2;
 }
 
-/// Returns the transition matrix of the motion states, minus the identity: rolling.md (R10).
+/// See rolling.md (R10).
 Moving transition(const RollingIntegrals& sums) {
   Moving B = Moving::Zero();
   B.block<3, 3>(kAttitude, kGyroBias) = -sums.rotation_integral_s;
@@ -264,7 +262,7 @@ Moving transition(const RollingIntegrals& sums) {
   return B;
 }
 
-/// Predicts the error state and its covariance over one node: rolling.md (R11) to (R14).
+/// See rolling.md (R11) to (R14).
 void predict(const RollingParams& params, const RollingIntegrals& sums, const Moving& B, Vector& x, Covariance& P) {
   const double h = sums.node_s;
   x.head<9>() += (B * x).eval();
@@ -290,7 +288,7 @@ void predict(const RollingParams& params, const RollingIntegrals& sums, const Mo
   diagonal.segment<3>(kAccelBias).array() += squared(params.expert.noise.accel_bias_walk_m_s2_sqrts) * h;
 }
 
-/// Computes the velocity of the contact point, its derivatives and its variance: rolling.md (R15), (R16), (R18).
+/// See rolling.md (R15), (R16), (R18).
 Contact contact(const RollingParams& params, const RollingNominal& nominal, const Eigen::Vector3d& rate_I_rad_s,
                 const RollingIntegrals& sums) {
   const Eigen::Matrix3d R = nominal.q_WI.toRotationMatrix();
@@ -298,8 +296,7 @@ Contact contact(const RollingParams& params, const RollingNominal& nominal, cons
   const Eigen::Vector3d arm_W = R * (params.lever_arm_m + nominal.lever_arm_error_m);
   const Eigen::Vector3d n = normal(nominal.slope);
   const double r = params.radius_m + nominal.radius_error_m;
-  // The contact velocity is u = v + w x (-arm - r n). The symbol v is the IMU's velocity, and -arm - r n is the vector
-  // from the IMU to the contact point.
+  // The contact velocity is u = v + w x (-arm - r n), with the IMU's velocity v and rate w.
   const Eigen::Matrix3d reach = so3::hat(arm_W + r * n);
   Contact out;
   out.contact_velocity_W_m_s = nominal.v_WI_m_s + reach * w_W;
@@ -335,8 +332,7 @@ Contact contact(const RollingParams& params, const RollingNominal& nominal, cons
   return out;
 }
 
-/// Returns the variance of a pseudo-measurement of zero velocity, or nothing if the velocity is certain enough:
-/// rolling.md (R20).
+/// See rolling.md (R20).
 std::optional<double> lost_velocity_variance(const RollingParams& params, double node_s, const Covariance& P) {
   if (P(kVelocity, kVelocity) + P(kVelocity + 1, kVelocity + 1) < squared(kUnsureSpeed_m_s)) return std::nullopt;
   return squared(params.expert.contact.speed_sigma_m_s) * kSpeedWindow_s / node_s;
@@ -346,7 +342,7 @@ bool resets_slope(RollingMode from, RollingMode to) {
   return from != to && !may_slip(to);
 }
 
-/// Changes the estimated slope of the floor according to the contact modes before and after a node: rolling.md (R21).
+/// See rolling.md (R21).
 void update_slope_for_mode(const RollingParams& params, RollingMode from, RollingMode to, double h_s,
                            const RollingNominal& nominal, Vector& x, Covariance& P) {
   if (from == RollingMode::incline && to == from) {
@@ -362,7 +358,7 @@ void update_slope_for_mode(const RollingParams& params, RollingMode from, Rollin
   x.segment<2>(kSlope) = -nominal.slope;
 }
 
-/// Aligns the attitude with the mean specific force if the tilt is uncertain: rolling.md (R30).
+/// See rolling.md (R30).
 bool reset_tilt(const RollingParams& params, const RollingIntegrals& sums, bool at_rest, RollingNominal& nominal,
                 Covariance& P) {
   if (sums.force_clipped_s >= sums.node_s) return false;

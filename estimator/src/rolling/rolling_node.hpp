@@ -11,8 +11,7 @@
 
 namespace tumble::rolling {
 
-/// Index of the first component of each quantity in the error state: attitude, velocity and position of the IMU in W,
-/// then sensor errors, lever arm, slope and radius.
+/// first index of each quantity in the error state
 inline constexpr int kAttitude = 0, kVelocity = 3, kPosition = 6, kGyroBias = 9, kAccelBias = 12, kAccelScale = 15,
                      kGyroScale = 24, kDelay = 33, kLeverArm = 34, kSlope = 37, kRadius = 39;
 inline constexpr int kStates = 40;
@@ -37,37 +36,31 @@ struct Contact {
   Eigen::Vector3d lift_W;          ///< derivative of u with respect to the normal's third component
   Eigen::Vector2d slope;           ///< slope of the floor on the nominal trajectory
 
-  /// Returns the contact velocity for the error state `x`. The contact velocity is linear in `x`, except for the unit
-  /// length of the normal.
+  /// The contact velocity is linear in the error state `x`, except for the unit length of the normal.
   Eigen::Vector3d velocity(const Vector& x) const;
 };
 
-/// Returns the variance of the contact velocity in a contact mode. For slip, only the vertical component of the
-/// variance is valid.
+/// For slip, only the vertical component of the variance is valid.
 Eigen::Vector3d contact_variance(const RollingParams& params, const Contact& c, RollingMode mode);
 
 bool starts_in_motion(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s);
 
-/// Returns the initial state: levelled or stated attitude, centre at the origin, and zero velocity (or rolling velocity
-/// for a start in motion).
+/// The initial state has a levelled or stated attitude, the centre at the origin, and zero or rolling velocity.
 RollingNominal start_nominal(const RollingParams& params, const Eigen::Quaterniond& q_WI,
                              const Eigen::Vector3d& rate_I_rad_s);
 void set_prior(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s, Covariance& P);
 
-/// Force states whether the specific force is measured (at least up to saturation) or unknown, as in a gap.
 enum class Force { read, unknown };
 
 void integrate(const RollingParams& params, const ImuAverage& reading, RollingNominal& nominal, RollingIntegrals& sums,
                Force known = Force::read);
 
-/// Returns the nominal trajectory, extrapolated by the mean of the unprocessed readings.
+/// Extrapolates the nominal trajectory by the mean of the unprocessed readings.
 RollingNominal extrapolate_nominal(const RollingParams& params, const ImuAverage& reading,
                                    const RollingNominal& nominal);
 
 int gap_pieces(const RollingParams& params, double gap_s);
 
-/// GapUncertainty contains the variances of one piece of a gap. In a gap, the rate is interpolated and the force is
-/// unknown.
 struct GapUncertainty {
   double rad2 = 0.0, rate_variance_rad2_s = 0.0, speed_variance_m2_s2 = 0.0;
 };
@@ -77,35 +70,33 @@ ImuAverage gap_step(const RollingParams& params, const ImuSample& before, const 
 void integrate_gap(const RollingParams& params, const ImuAverage& piece, const GapUncertainty& uncertainty,
                    RollingNominal& nominal, RollingIntegrals& sums);
 
-/// Returns the matrix B of the error state's transition over a node: B x is added to the first components of x.
+/// Returns the transition matrix B of the error state over a node: B x is added to the first components of x.
 Moving transition(const RollingIntegrals& sums);
 void predict(const RollingParams& params, const RollingIntegrals& sums, const Moving& B, Vector& x, Covariance& P);
 
-/// Computes the contact at a node. `rate_I_rad_s` is the gyro reading at the node, without correction. `sums` contains
-/// the sums over the node. A gap in the node increases the variance of the contact velocity.
+/// `rate_I_rad_s` is the gyro reading at the node, without correction. A gap in the node increases the variance of the
+/// contact velocity.
 Contact contact(const RollingParams& params, const RollingNominal& nominal, const Eigen::Vector3d& rate_I_rad_s,
                 const RollingIntegrals& sums);
 
-/// Updates the slope of the floor for a change of the contact mode. While a mode lasts, the slope is a random walk.
-/// When the contact point comes to rest, the slope is reset to level or unknown. `h_s` is the duration of the node.
+/// While a contact mode lasts, the slope is a random walk. When the contact point comes to rest, the slope is reset to
+/// level or unknown.
 void update_slope_for_mode(const RollingParams& params, RollingMode from, RollingMode to, double h_s,
                            const RollingNominal& nominal, Vector& x, Covariance& P);
 
 /// Returns the variance of a pseudo-measurement of zero velocity, or nothing if the velocity is certain enough.
 std::optional<double> lost_velocity_variance(const RollingParams& params, double node_s, const Covariance& P);
 
-/// Returns whether a contact mode change from `from` to `to` makes the slope of the floor unknown.
 bool resets_slope(RollingMode from, RollingMode to);
 
-/// Aligns an uncertain tilt with the mean specific force of the node, at rest or in motion, and resets the velocity.
-/// Returns false if the tilt is certain enough, or if the specific force of the node is unusable.
+/// Aligns an uncertain tilt with the mean specific force of the node, and resets the velocity. Returns false if the
+/// tilt is certain enough, or if the specific force is unusable.
 bool reset_tilt(const RollingParams& params, const RollingIntegrals& sums, bool at_rest, RollingNominal& nominal,
                 Covariance& P);
 
-/// Applies a Kalman update with the scalar measurement: measured = row x + noise.
+/// Applies a Kalman update with the scalar measurement `measured` = row x + noise.
 void update(const Row& row, double measured, double variance, Vector& x, Covariance& P);
 
-/// Applies a Kalman update with a measurement of a single state.
 void update(int index, double measured, double variance, Vector& x, Covariance& P);
 
 /// Returns the constants of a nominal state, in the order of the error state from the gyro bias on.

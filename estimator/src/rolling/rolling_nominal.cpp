@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// rolling_nominal.cpp converts between the error state and the nominal trajectory and constants.
 #include "rolling_node.hpp"
 #include "tumble/common/so3.hpp"
 
@@ -13,7 +12,7 @@ Eigen::Matrix<double, RollingCalibration::kSize, 1> constants_of(const RollingNo
   return out;
 }
 
-/// Adds the estimated errors x to the nominal states: rolling.md (R1).
+/// See rolling.md (R1).
 void move_linearisation_point(const Vector& x, RollingNominal& nominal) {
   nominal.q_WI = (so3::exp(x.segment<3>(kAttitude)) * nominal.q_WI).normalized();
   nominal.v_WI_m_s += x.segment<3>(kVelocity);

@@ -13,7 +13,7 @@ namespace tumble {
 
 namespace {
 
-// Maximum number of preallocated samples and nodes. With a longer lag, the memory grows during the run.
+// With a longer lag of the smoother, the memory grows during the run.
 constexpr std::size_t kPreallocatedMax = 1'000'000;
 
 RollingParams scale_noise(RollingParams params, double share) {
@@ -24,7 +24,6 @@ RollingParams scale_noise(RollingParams params, double share) {
   return params;
 }
 
-/// Returns the contact mode, of two, that constrains the contact point less.
 RollingMode less_constrained(RollingMode a, RollingMode b) {
   const auto rank = [](RollingMode mode) {
     if (may_slip(mode)) return mode == RollingMode::bump ? 3 : 2;
@@ -51,8 +50,7 @@ rolling::Readings::Cursor start_cursor(const ImuSample& sample) {
   return cursor;
 }
 
-/// Returns the covariance of the sphere's centre and attitude, computed from the covariance of a node's reported
-/// states: rolling.md (R40).
+/// See rolling.md (R40).
 Eigen::Matrix<double, 6, 6> pose_covariance(const rolling::NodeRecord& node, const Eigen::Vector3d& arm_W) {
   Eigen::Matrix<double, 6, rolling::kReported> J = Eigen::Matrix<double, 6, rolling::kReported>::Zero();
   J.block<3, 3>(0, 0) = so3::hat(arm_W);
@@ -62,7 +60,7 @@ Eigen::Matrix<double, 6, 6> pose_covariance(const rolling::NodeRecord& node, con
   return J * node.smoothed_P * J.transpose();
 }
 
-/// Keeps the position reported by the final pass constant while the sphere is at rest.
+/// While the sphere is at rest, the reported position remains constant.
 void constrain_position(const rolling::PathNode& node, RollingSmoother::FinalPassState& committed,
                         RollingEstimate& estimate) {
   const bool stands = node.stands && !may_slip(node.mode) && estimate.v_WG_m_s.norm() < rolling::kConstrainSpeed_m_s;
@@ -75,7 +73,7 @@ RollingSmoother::EstimateCallback appending(std::vector<RollingEstimate>& out) {
   return [&out](const RollingEstimate& estimate) { out.push_back(estimate); };
 }
 
-/// Sets the start of the final pass: the last node whose estimates were reported, or the first sample.
+/// The final pass starts at the last node whose estimates were reported, or at the first sample.
 void start_window(const RollingParams& filter, const RollingParams& path, const RollingSmoother::State& state,
                   rolling::LastPass::Checkpoint& start) {
   const RollingSmoother::FinalPassState& last = state.committed;
@@ -88,7 +86,7 @@ void start_window(const RollingParams& filter, const RollingParams& path, const 
   }
   const ImuSample& sample = state.samples[0];
   Eigen::Quaterniond q_WI = filter.q_WI_start.value_or(Eigen::Quaterniond::Identity());
-  // level() cannot fail, because the filter already levelled with the force of this sample.
+  // The filter has already levelled with the force of this sample, so level() cannot fail.
   if (!filter.q_WI_start) (void)level(sample.specific_force_m_s2, q_WI);
   start.filter.nominal = rolling::start_nominal(path, q_WI, sample.angular_velocity_rad_s);
   rolling::set_prior(path, sample.angular_velocity_rad_s, start.filter.P);

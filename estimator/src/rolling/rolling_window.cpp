@@ -15,8 +15,8 @@ namespace {
 constexpr double kMaxSigmas = 5.0;
 constexpr double kNoDirection_m = 0.05;  // minimum distance of two positions whose direction is defined
 
-/// Applies a scalar measurement, and stores it for the backward pass. A residual beyond kMaxSigmas standard deviations
-/// has less weight, because a large linear correction would distort the whole run: rolling.md (R37).
+/// A residual beyond kMaxSigmas standard deviations has less weight, because a large linear correction would distort
+/// the whole run: rolling.md (R37).
 void measure(const Row& H, double measured, double variance, NodeRecord& record, Vector& x, Covariance& P) {
   const auto k = static_cast<std::size_t>(record.rows++);
   const Vector PHt = P * H.transpose();
@@ -38,8 +38,7 @@ Reported reported(const Vector& x) {
   return out;
 }
 
-/// Transforms adjoint vector and matrix to the nominal state before its correction, T^T lambda and T^T Lambda T:
-/// rolling.md (R36).
+/// See rolling.md (R36).
 void transform_adjoint(const Vector& turned, Adjoint& adjoint) {
   constexpr int kHeading = kAttitude + 2;
   adjoint.lambda[kHeading] += turned.dot(adjoint.lambda);
@@ -156,7 +155,7 @@ Reported error_before_update(const NodeRecord& node) {
   return node.heading_lost ? Reported(error - node.smoothed[kAttitude + 2] * reported(node.turned)) : error;
 }
 
-/// Applies the known distance between start and end of a run as a measurement: rolling.md (R41).
+/// See rolling.md (R41).
 Reported measure_distance(const RollingParams& params, double distance_m, double sigma_m, NodeRecord& last,
                           PathFilter& filter) {
   const RollingNominal& nominal = filter.nominal;
@@ -181,7 +180,7 @@ Reported measure_distance(const RollingParams& params, double distance_m, double
   return reported(x);
 }
 
-/// Computes the smoothed states and covariances by a backward pass: rolling.md (R38), (R39).
+/// See rolling.md (R38), (R39).
 void backward_pass(Adjoint& adjoint, std::span<NodeRecord> nodes) {
   auto& [lambda, Lambda] = adjoint;
   for (std::size_t n = nodes.size(); n-- > 0;) {

@@ -18,11 +18,10 @@ struct PathNode {
   Eigen::Matrix3d position_spread_m2 = Eigen::Matrix3d::Zero();
 };
 
-/// Number of states that determine a pose: attitude, velocity, position, lever arm.
+/// number of states that determine a pose: attitude, velocity, position, lever arm
 inline constexpr int kReported = 12;
 using Reported = Eigen::Matrix<double, kReported, 1>;
 
-/// NodeRecord is a node of the final pass, with all data that the backward pass needs.
 struct NodeRecord {
   static constexpr int kRowsMax = 7;  ///< maximum number of measurements, for a node at rest with a known distance
   Moving B;
@@ -53,16 +52,15 @@ struct Reading {
   TimeNs end_ns = 0;
 };
 
-/// Readings iterates over stored samples, and returns the inputs (Reading) that the live filter received. Each step
-/// costs O(1) without allocation.
+/// Readings iterates over stored samples, and returns the inputs that the live filter received. Each step of the
+/// iteration costs O(1) without allocation.
 class Readings {
  public:
-  /// Cursor is the position of an iteration, before the next reading.
+  /// Cursor is the position of an iteration over stored samples, before the next reading.
   struct Cursor {
     TimeNs time_ns = 0;  ///< end of the last reading
     Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero();
     std::size_t next = 0;
-    // Data of the current gap.
     Eigen::Vector3d gap_rate_rad_s = Eigen::Vector3d::Zero();  ///< rate before the gap
     TimeNs gap_start_ns = 0;
     int gap_step = 0;
@@ -98,24 +96,20 @@ struct PathFilter {
 };
 
 Eigen::Matrix<double, kReported, kStates> output_covariance_rows(const Covariance& P);
-/// Returns the covariance of the reported states from their rows in the covariance of all states.
 Eigen::Matrix<double, kReported, kReported> reported_covariance(const Eigen::Matrix<double, kReported, kStates>& rows);
-/// Returns the covariance of the centre's velocity in IMU axes, from the covariance of the reported states. The product
-/// of angular velocity error and lever arm is neglected.
+/// Returns the covariance of the centre's velocity in IMU axes. The product of angular velocity error and lever arm is
+/// neglected.
 Eigen::Matrix3d velocity_covariance_I(const RollingNominal& nominal, const Eigen::Vector3d& w_WI_I_rad_s,
                                       const Eigen::Matrix<double, kReported, kReported>& reported);
 
-/// Completes a node: predicts the error state, applies the measurements, and corrects the nominal trajectory. `record`
-/// must have its initial values.
 void complete_node(const RollingParams& params, const RollingIntegrals& sums, const Eigen::Vector3d& rate_I_rad_s,
                    const PathNode& path, PathFilter& filter, NodeRecord& record);
 
 /// Returns the smoothed error at a node, relative to the nominal trajectory before the node's update.
 Reported error_before_update(const NodeRecord& node);
 
-/// Applies the known horizontal distance `distance_m` of the sphere's centre from the start, at or just after the last
-/// node. Returns the correction of the nominal trajectory, or zero if start and end are too close to define a
-/// direction.
+/// Applies the known horizontal distance of the sphere's centre from the start. Returns the correction of the nominal
+/// trajectory, or zero if start and end are too close to define a direction.
 Reported measure_distance(const RollingParams& params, double distance_m, double sigma_m, NodeRecord& last,
                           PathFilter& filter);
 
@@ -125,8 +119,8 @@ struct Adjoint {
   Covariance Lambda = Covariance::Zero();
 };
 
-/// Computes `smoothed` and `smoothed_P` of consecutive nodes by the modified Bryson-Fraser smoother. On entry,
-/// `adjoint` refers to the time after the last node. On return, `adjoint` refers to the time before the first node.
+/// Smooths the states of consecutive nodes by the modified Bryson-Fraser smoother. `adjoint` refers to the time after
+/// the last node on entry, and before the first node on return.
 void backward_pass(Adjoint& adjoint, std::span<NodeRecord> nodes);
 
 }  // namespace tumble::rolling

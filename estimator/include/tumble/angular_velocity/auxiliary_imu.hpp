@@ -14,16 +14,14 @@
 namespace tumble {
 
 /// AuxiliaryAccelerometer contains the readings of a second accelerometer on the same rigid body as the primary IMU.
-/// The readings of the second accelerometer are in the axes and at the time stamps of the primary IMU. The readings of
-/// two accelerometers on one rigid body differ only by the effect of the body's rotation.
+/// The readings are in the axes and at the time stamps of the primary IMU.
 struct AuxiliaryAccelerometer {
   Eigen::Vector3d p_I_m = Eigen::Vector3d::Zero();   ///< position relative to the primary IMU, in its axes
   std::vector<Eigen::Vector3d> specific_force_m_s2;  ///< one reading per sample of the primary IMU; NaN: no reading
 };
 
-/// AuxiliaryImu describes the mounting and accuracy of an additional IMU C on the same rigid body as the primary IMU.
-/// RateSmoother and RateStream do not estimate the biases and mounting errors of an additional IMU. These errors
-/// increase the standard deviations of its readings.
+/// AuxiliaryImu describes the mounting and accuracy of an additional IMU C on the body of the primary IMU. The biases
+/// and mounting errors of an additional IMU are not estimated, but increase the standard deviations of its readings.
 struct AuxiliaryImu {
   Eigen::Isometry3d T_IC = Eigen::Isometry3d::Identity();  ///< pose of C in the axes of the primary IMU
   double gyro_noise_density = 5.236e-4;                    ///< [rad/s/sqrt(Hz)]; allowed: [1e-9, 1]
@@ -36,24 +34,21 @@ struct AuxiliaryImu {
   SensingDirections gyro_elements = {}, accel_elements = {};  ///< sensing directions; needed if an element clips
 };
 
-/// AuxiliaryReading is the reading of an additional IMU at the time of a sample of the primary IMU. The rate and force
-/// are in the axes of the additional IMU, and NaN marks an axis without a valid reading. While a sensing element clips,
-/// the device's misalignment compensation spreads its error over all axes. AuxiliaryReading then stores components
-/// along the unsaturated sensing elements instead of the axes.
+/// AuxiliaryReading is the reading of an additional IMU at the time of a sample of the primary IMU. Rate and force are
+/// in the axes of the additional IMU; NaN marks an axis without a valid reading. While a sensing element clips,
+/// AuxiliaryReading contains components along the unsaturated sensing elements instead.
 struct AuxiliaryReading {
   Eigen::Vector3d rate_rad_s, force_m_s2;
   Eigen::Vector3d rate_sigma_rad_s, force_sigma_m_s2;
   bool rate_along_elements = false, force_along_elements = false;
-  /// Creates a reading in which all components are NaN.
   AuxiliaryReading();
   bool measures_all_rates() const { return rate_rad_s.allFinite(); }
 };
 
-/// Interpolates the readings of an additional IMU at the time stamps of the primary IMU. Cost: O(N). The function
-/// interpolates linearly between neighbouring readings that are at most `gap_max_s` apart, and excludes readings of
-/// clipped sensing elements. The argument `clippings` contains one entry of ClippingFinder per sample. Returns `ok`, an
-/// error of check_samples() other than `gap`, or `too_few` if `clippings` has fewer entries than `samples`. On error,
-/// `out` is unchanged. If `samples` is empty, all interpolated readings are NaN.
+/// Interpolates the readings of an additional IMU at the time stamps of the primary IMU. Cost: O(N). The interpolation
+/// is linear between readings at most `gap_max_s` apart, and excludes clipped readings. `clippings` contains one entry
+/// of ClippingFinder per sample. Returns `ok`, an error of check_samples() other than `gap`, or `too_few` if
+/// `clippings` has fewer entries than `samples`. On error, `out` is unchanged.
 Status align(const AuxiliaryImu& auxiliary_imu, std::span<const ImuSample> samples, std::span<const Clipping> clippings,
              std::span<const ImuSample> primary, double gap_max_s, std::vector<AuxiliaryReading>& out);
 

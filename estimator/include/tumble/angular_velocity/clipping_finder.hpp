@@ -13,7 +13,6 @@
 
 namespace tumble {
 
-/// SaturationLevels contains the detected saturation limits of the gyro and accelerometer of an IMU.
 struct SaturationLevels {
   RailDetector::State axis_aligned_rails;  ///< limits detected from equal readings, and limits from the data sheet
   RailPlanes planes;                       ///< saturation planes of the gyro's sensing elements; empty if not observed
@@ -21,53 +20,44 @@ struct SaturationLevels {
   bool gyro_clips_after_compensation = false;   ///< the gyro clips after misalignment compensation, axis by axis
   bool accel_clips_after_compensation = false;  ///< the accelerometer clips after misalignment compensation
 
-  /// Returns the saturation planes that are used to classify readings as clipped. If the device clips its output after
-  /// misalignment compensation, runs of equal readings identify the clipped samples exactly. For such a device, the
-  /// function returns planes only for sensing elements without a known saturation limit.
+  /// Returns the saturation planes that classify readings as clipped. If a device clips its output after misalignment
+  /// compensation, equal readings identify clipped samples exactly. If the device clips after compensation, planes are
+  /// returned only for sensing elements without a known saturation limit.
   RailPlanes planes_in_use(Triad triad = Triad::gyro) const;
-  /// Returns the sensing directions of the three sensing elements of the gyro or the accelerometer. The argument
   /// `unknown_sigma` is the standard deviation of a cross-axis sensitivity that no saturation plane determines.
   SensingDirections rows(Triad triad, double unknown_sigma) const;
   bool operator==(const SaturationLevels&) const = default;
 };
 
-/// ElementReading classifies the reading of one sensing element as measured, clipped or unreadable.
 enum class ElementReading : std::uint8_t {
   measured,
   clipped_high,  ///< the true component is at or above the saturation limit
   clipped_low,
   unreadable  ///< invalid reading
 };
-/// Returns whether the sensing element `axis` of a classified sample is measured, clipped or unreadable.
 ElementReading element_reading(const ImuSample& sample, const Clipping& clipping, Triad triad, int axis);
 
-/// Converts the detected clipping of a sample to ClipFlag bits.
 std::uint8_t clip_flags(const Clipping& clipping);
 
-/// ConfirmedSaturation contains the saturation limits that a frozen sensor cannot imitate, for comparing several IMUs.
-/// Slow motion and frozen sensors cause equal readings, but no saturation planes. ConfirmedSaturation therefore
-/// excludes limits that were derived only from equal readings.
+/// ConfirmedSaturation contains the saturation limits that a frozen sensor cannot imitate. Frozen sensors cause equal
+/// readings, but no saturation planes, so limits from equal readings are excluded.
 struct ConfirmedSaturation {
   RailPlanes gyro, accel;                                 ///< saturation planes used to classify readings
   double gyro_range_rad_s = 0.0, accel_range_m_s2 = 0.0;  ///< range from the data sheet; 0: unknown
-  /// Returns the clip flags of a classified sample, in addition to the clip flags that the device set.
   std::uint8_t flags(const ImuSample& sample, const Clipping& judged) const;
 };
 
-/// Finds the clipped readings of a whole recording. ClippingFinder combines the device's clip flags, saturation limits
-/// from equal readings (RailDetector) and tilted saturation planes (RailPlaneFinder).
+/// Finds the clipped readings of a recording. ClippingFinder combines the device's clip flags, saturation limits from
+/// equal readings (RailDetector) and tilted saturation planes (RailPlaneFinder).
 class ClippingFinder {
  public:
   struct Params {
     RailDetector::Params axis_aligned_rails = {};
     RailPlaneFinder::Params planes = {};  ///< if no range is stated here, the range of `axis_aligned_rails` applies
-    /// Parameters of the search for saturation planes of the accelerometer.
     RailPlaneFinder::Params accel_planes = RailPlaneFinder::Params::for_accelerometer();
-    /// If `tilted` is false, ClippingFinder detects clipping only from clip flags and equal readings, like the
-    /// published methods.
+    /// If `tilted` is false, ClippingFinder uses only clip flags and equal readings, like the published methods.
     bool tilted = true;
 
-    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("rails_", p.axis_aligned_rails);
@@ -88,8 +78,7 @@ class ClippingFinder {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit ClippingFinder(const Params& params);
 
-  /// Classifies all samples of a recording as clipped or unclipped. Cost: O(N), plus the search of RailPlaneFinder. The
-  /// samples must be finite and in time order.
+  /// The samples must be finite and in time order. Cost: O(N), plus the search of RailPlaneFinder.
   Found find(std::span<const ImuSample> samples) const;
 
   const RailDetector& axis_aligned_rails() const { return axis_aligned_rails_; }
@@ -99,8 +88,7 @@ class ClippingFinder {
                          bool& clips_after_compensation) const;
 
   RailDetector axis_aligned_rails_;
-  // The first index is 0 for the gyro and 1 for the accelerometer. The second index is 1 for readings that exceed the
-  // stated range.
+  // The first index is 0 for the gyro and 1 for the accelerometer.
   std::array<std::array<RailPlaneFinder, 2>, 2> planes_;
   bool tilted_;
 };

@@ -12,7 +12,6 @@
 
 namespace tumble {
 
-/// Clipping marks the clipped gyro and accelerometer axes of a sample.
 struct Clipping {
   std::uint8_t gyro = 0;           ///< bit j: gyro axis j is saturated; the true magnitude is at least the reading
   std::uint8_t accel = 0;          ///< bit j: accelerometer axis j is saturated
@@ -53,7 +52,6 @@ struct RailPlateauParams {
   }
 };
 
-/// RailDetectorExpertParams contains the rarely changed parameters of RailDetector.
 struct RailDetectorExpertParams {
   RailPlateauParams plateau = {};
 
@@ -63,7 +61,6 @@ struct RailDetectorExpertParams {
   }
 };
 
-/// RailDetectorParams contains the parameters of RailDetector.
 struct RailDetectorParams {
   /// Measuring range of the gyro [rad/s], in (0, 1000], and of the accelerometer [m/s^2], in (0, 1e5], according to the
   /// data sheet or the user.
@@ -76,13 +73,12 @@ struct RailDetectorParams {
   double range_contradiction_ratio = 0.02;  ///< minimum relative difference that contradicts the stated range
 
   /// Saturation limits of an earlier run of the device, in the order of RailDetector::State::channels; 0: none.
-  /// RailDetector uses known limits from the start of a run until readings exceed them.
+  /// RailDetector uses known limits from the start of a run until readings exceed the limits.
   std::array<double, 6> known = {};
 
   using Expert = RailDetectorExpertParams;
   Expert expert = {};  ///< rarely changed parameters
 
-  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.clip_enter_ratio,
@@ -105,16 +101,15 @@ struct RailDetectorParams {
 ///
 /// A plateau is a run of readings of one sign that are closer together than sensor noise allows. The readings of a
 /// plateau have the largest magnitude so far on their axis. A plateau at a low rate must be longer, and must start or
-/// end with a jump of many resolution steps. The required jump excludes an axis at rest, and the rounded maximum of a
-/// slow, coarsely quantised motion. RailDetector uses the stated range until it finds a plateau or a reading exceeds
-/// the range. RailDetector always uses the clip flags of the device. The classification has hysteresis, so that
+/// end with a jump of many resolution steps. RailDetector uses the stated range until a plateau is found or a reading
+/// exceeds the range. RailDetector always uses the clip flags of the device. The classification has hysteresis, so that
 /// slightly lower readings at the edge of a plateau also count as clipped. RailDetector assumes constant saturation
 /// limits that are equal for both signs of an axis.
 class RailDetector {
  public:
   using Params = RailDetectorParams;
 
-  /// Channel is the detection state of one IMU channel. The channels are gyro x, y, z, then accelerometer x, y, z.
+  /// The channels are gyro x, y, z, then accelerometer x, y, z.
   struct Channel {
     double rail = 0.0;  ///< saturation limit from a plateau; 0: none found
     double peak = 0.0;  ///< largest magnitude so far
@@ -135,12 +130,10 @@ class RailDetector {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit RailDetector(const Params& params);
 
-  /// Returns the state before the first sample.
   State start() const;
-  /// Updates the saturation limits with one finite sample. Cost: O(1).
+  /// The sample must be finite. Cost: O(1).
   void observe(const ImuSample& sample, State& state) const;
-  /// Returns the clipped axes of one finite sample, according to the current saturation limits. Cost: O(1). The
-  /// argument `state` also stores the hysteresis of the classification.
+  /// The sample must be finite. Cost: O(1). `state` also stores the hysteresis of the classification.
   Clipping classify(const ImuSample& sample, State& state) const;
   /// Classifies all samples of a recording with the saturation limits of the whole recording. Cost: O(N). The samples
   /// at both edges of a plateau of saturated readings count as clipped.
@@ -151,9 +144,9 @@ class RailDetector {
   void add_rising_edge(const ImuSample& sample, const ImuSample& next, const Clipping& of_next, const State& state,
                        Clipping& clipping) const;
 
-  /// Returns the saturation limit of channel c (0-5). The saturation limit comes from a plateau of channel c, or else
-  /// from the largest plateau on another axis, or else from the stated range. A saturation limit from another axis or
-  /// from the stated range applies only while all readings of channel c are below the limit.
+  /// The saturation limit of channel c (0-5) comes from a plateau of the channel, the largest plateau on another axis,
+  /// or the stated range. A limit from another axis or from the stated range applies only while all readings of channel
+  /// c are below the limit.
   std::optional<double> rail(const State& state, int c) const;
   /// Returns true if a plateau or a larger reading contradicts the stated range of channel c.
   bool disagrees(const State& state, int c) const;

@@ -46,29 +46,27 @@ struct RailPlane {
   bool operator==(const RailPlane&) const = default;
 };
 
-/// RailPlanes contains the saturation planes of the three sensing elements of a gyro or accelerometer. An entry is
-/// empty if no saturation of the sensing element was observed.
+/// An entry is empty if no saturation of the sensing element was observed.
 struct RailPlanes {
   std::array<std::optional<RailPlane>, 3> element;
   bool any() const { return element[0] || element[1] || element[2]; }
   bool operator==(const RailPlanes&) const = default;
 };
 
-/// SensingDirections contains the directions along which the sensing elements of a gyro or accelerometer measure,
-/// estimated from saturation planes. An unsaturated sensing element measures the component of the rate along its
-/// sensing direction. A clipped sensing element gives a lower bound of the component along its sensing direction.
+/// SensingDirections contains the directions along which sensing elements measure, estimated from saturation planes. An
+/// unsaturated sensing element measures the component of the rate along its sensing direction. A clipped sensing
+/// element gives a lower bound of the component along its sensing direction.
 struct SensingDirections {
   Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();
   Eigen::Vector3d slope_sigma = Eigen::Vector3d::Zero();  ///< standard deviation of both cross-axis sensitivities
   bool tilted() const { return rows != Eigen::Matrix3d::Identity(); }
   bool operator==(const SensingDirections&) const = default;
 };
-/// Returns the sensing directions of a gyro or accelerometer. A sensing element without a saturation plane has an
-/// axis-aligned sensing direction with the standard deviation `unknown_sigma`.
+/// A sensing element without a saturation plane has an axis-aligned sensing direction with the standard deviation
+/// `unknown_sigma`.
 SensingDirections sensing_directions(const RailPlanes& planes, double unknown_sigma);
 
-/// ElementClipping contains the clipping of each sensing element in a sample: -1 at the negative limit, 1 at the
-/// positive limit, 0 if unsaturated.
+/// clipping per sensing element: -1 at the negative limit, 1 at the positive limit, 0 if unsaturated
 struct ElementClipping {
   std::array<std::int8_t, 3> sign{};
   bool any() const { return sign[0] != 0 || sign[1] != 0 || sign[2] != 0; }

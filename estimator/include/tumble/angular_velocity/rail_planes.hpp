@@ -16,8 +16,8 @@ namespace tumble {
 /// Finds the tilted saturation planes of a gyro or accelerometer in a whole recording. RailPlaneFinder needs neither
 /// clip flags nor the stated range of the sensor.
 ///
-/// A saturation plane is nearly axis-aligned, limits the readings, and has many samples in a thin slab below it. Two
-/// kinds of motion look like saturation: the rounded maximum of a motion, and a constant rate (torque-free spin,
+/// A saturation plane is nearly axis-aligned, limits the readings, and has many samples in a thin slab below the plane.
+/// Two kinds of motion look like saturation: the rounded maximum of a motion, and a constant rate (torque-free spin,
 /// turntable). The readings near a rounded maximum follow a parabola, but the readings after saturation start with a
 /// kink. A constant rate has full sensor noise, has a different value each time, and starts with an impact on all axes.
 /// RailPlaneFinder sums the log likelihood ratio of saturation against rounded maxima and constant rates over all
@@ -61,7 +61,6 @@ class RailPlaneFinder {
     /// between runs. A new plane near a known plane has a higher prior probability.
     RailPlanes known = {};
 
-    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.slope_sigma, {"slope_sigma", "1", 1e-4, 0.2,
@@ -84,8 +83,7 @@ class RailPlaneFinder {
     }
   };
 
-  /// Workspace contains the buffers of a search. The search for planes allocates no memory if the buffers have room for
-  /// all readings.
+  /// With buffers for all readings, a search allocates no memory.
   struct Workspace {
     std::vector<Eigen::Vector3d> rates;
     std::vector<double> values;
@@ -100,8 +98,8 @@ class RailPlaneFinder {
   /// in time order. Cost: O(N), plus a search of some hundred cross-axis sensitivities over the samples near the
   /// extremes.
   RailPlanes find(std::span<const ImuSample> samples, Triad triad = Triad::gyro) const;
-  /// Finds the saturation planes in readings without time stamps [rad/s]. The argument `before` contains the saturation
-  /// planes that were found in a subset of the readings.
+  /// Finds the saturation planes in readings without time stamps [rad/s]. `before` contains the saturation planes that
+  /// were found in a subset of the readings.
   RailPlanes find(std::span<const Eigen::Vector3d> readings_rad_s, const RailPlanes& before,
                   Workspace& workspace) const;
 
@@ -112,10 +110,9 @@ class RailPlaneFinder {
   Params params_;
 };
 
-/// Returns which sensing elements are clipped in an IMU sample. Cost: O(1).
+/// Cost: O(1).
 ElementClipping classify(const ImuSample& sample, const RailPlanes& planes);
-/// Determines the clipped sensing elements in each sample of a recording. The output `out` must have the size of
-/// `samples`.
+/// `out` must have the size of `samples`.
 void classify(std::span<const ImuSample> samples, const RailPlanes& planes, std::span<ElementClipping> out);
 
 }  // namespace tumble

@@ -15,12 +15,11 @@
 
 namespace tumble {
 
-/// RateModelParams contains the parameters of RateSmoother and RateStream about the sensors, the body and its motion.
+/// parameters of RateSmoother and RateStream about the sensors, the body and its motion
 struct RateModelParams {
   /// Prior mean of the rig constants: lever arm, biases, inertia ratios and gyro axis directions. The inertia ratios
   /// refer to the centre of mass and to IMU axes. Set the lever arm, which has no default, or set `calibration`.
   RigConstants nominal = {.lever_arm_m = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN())};
-  /// Prior standard deviations of the rig constants in `nominal`.
   double lever_arm_sigma_m = 0.01;
   double gyro_bias_sigma_rad_s = 0.01;
   double accel_bias_sigma_m_s2 = 0.05;
@@ -42,7 +41,7 @@ struct RateModelParams {
   /// Noise density of the accelerometer [m/s^2/sqrt(Hz)]. The default, 60 ug/sqrt(Hz), is typical of an industrial MEMS
   /// accelerometer.
   double accel_noise_density = 5.9e-4;
-  /// Known sensor errors, which the estimator subtracts from the readings.
+  /// Known sensor errors are subtracted from the readings.
   SensorErrors errors = {};
   /// Largest possible angular rate and angular acceleration of the body. Both values limit the estimate while the gyro
   /// is clipped. Allowed values are [1, 1e4] rad/s for the rate and [1, 1e7] rad/s^2 for the angular acceleration.
@@ -52,7 +51,6 @@ struct RateModelParams {
   using Expert = RateModelExpertParams;
   Expert expert = {};  ///< rarely changed parameters
 
-  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.lever_arm_sigma_m,

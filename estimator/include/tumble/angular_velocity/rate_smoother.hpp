@@ -21,7 +21,6 @@
 
 namespace tumble {
 
-/// RateSmootherParams contains the parameters of RateSmoother.
 struct RateSmootherParams {
   RateModelParams model = {};
   RailDetector::Params rails = {};
@@ -38,7 +37,6 @@ struct RateSmootherParams {
   using Expert = RateSmootherExpertParams;
   Expert expert = {};  ///< rarely changed parameters
 
-  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit.group("", p.model);
@@ -57,7 +55,6 @@ struct RateSmootherParams {
   }
 };
 
-/// RateReport contains the diagnostics of a run of RateSmoother.
 struct RateReport {
   int iterations = 0;
   bool converged = false;
@@ -72,7 +69,6 @@ struct RateReport {
   std::array<bool, 6> rail_observed{};        ///< the limit was observed on this axis, not inferred from another axis
   RailPlanes planes;                          ///< saturation planes of the gyro's sensing elements, where observed
   RailPlanes accel_planes;                    ///< saturation planes of the accelerometer's sensing elements, in m/s^2
-  /// Estimated sensor errors and the covariance of the estimate.
   KnownSensorErrors sensor_errors;
   double data_sheet_probability = 1.0, synchronous_probability = 1.0;  ///< see SensorErrorFit
   /// Standard deviation of a delay common to gyro and accelerometer [s]. The value is zero if the device agrees with
@@ -103,24 +99,20 @@ struct RateReport {
 /// The normal equations have an arrow matrix, so an iteration costs O(N), including the covariance. The initial values
 /// come from the published method (Saave), extended by the lower bounds of clipped readings.
 ///
-/// The contact force at the centre of mass is the part of the measured force that the equations of flight do not
-/// explain. A force through one point of the robot's cage has no torque about the direction of the force. RateSmoother
-/// therefore keeps the component of Euler's equation along the contact force. The size of the cage determines the
-/// uncertainty of the other two components of Euler's equation (RateContactParams::lever_rad_m). RateSmoother does not
-/// estimate the contact point, because several bars of a cage touch the ground within 10 ms. The equations of
-/// RateSmoother are in docs/maths/rate_smoother.md.
+/// A force through one point has no torque about the direction of the force, so Euler's equation about this direction
+/// also holds during contact. RateSmoother does not estimate the contact point, because several bars of a cage touch
+/// the ground within 10 ms. The equations of RateSmoother are in docs/maths/rate_smoother.md.
 ///
 /// RateSmoother also estimates SensorErrors: scale, misalignment, g-sensitivity, and the accelerometer's delay and
-/// window. RateSmoother corrects the readings with the estimated sensor errors and repeats the optimisation. The
-/// function fit_sensor_errors() chooses the prior magnitude of the sensor errors that fits the readings. The
-/// covariances of rates and rig constants include the remaining uncertainty of the sensor errors, as consider
-/// parameters (Schmidt, 1966). Otherwise, the covariance would treat constant sensor errors as independent noise. If
-/// gyro and accelerometer are not synchronous, RateSmoother assumes that the later of the two sensors is delayed.
+/// window. The optimisation is repeated with readings corrected by the estimated sensor errors. The function
+/// fit_sensor_errors() chooses the prior magnitude of the sensor errors that fits the readings. The covariances of
+/// rates and rig constants include the remaining uncertainty of the sensor errors, as consider parameters (Schmidt,
+/// 1966). If gyro and accelerometer are not synchronous, RateSmoother assumes that the later of the two sensors is
+/// delayed.
 ///
 /// The sensing elements of a gyro clip along their own axes, which are not quite orthogonal. The device's misalignment
-/// compensation then mixes the clipped values into all output axes (RailPlaneFinder). While a sensing element clips,
-/// RateSmoother therefore processes the gyro element by element. Unsaturated sensing elements measure a component of
-/// the rate, and clipped sensing elements give a lower bound. RateSmoother estimates the sensing directions as
+/// compensation mixes the clipped values into all output axes (RailPlaneFinder). While a sensing element clips,
+/// RateSmoother therefore processes the gyro element by element. RateSmoother estimates the sensing directions as
 /// constants of the run, from saturation planes and from flight. If the device clips its output after misalignment
 /// compensation, RateSmoother processes the gyro axis by axis.
 ///
@@ -133,16 +125,15 @@ class RateSmoother {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit RateSmoother(const Params& params);
 
-  /// Computes one RateState per sample, and the diagnostics of the run. On error, the outputs are unchanged. The
-  /// returned Status contains the faulty field, its value and its bound. The kind of error is `empty`, `too_few` (less
-  /// than two samples), `non_finite`, `time_order` or `diverged`. RateSmoother keeps the calibration across a gap in
-  /// the samples. Due to the white angular jerk, the rate after a gap is independent of the rate before the gap.
+  /// On error, the outputs are unchanged. The errors are `empty`, `too_few` (less than two samples), `non_finite`,
+  /// `time_order` or `diverged`. The calibration is kept across a gap in the samples, but the rate after a gap is
+  /// independent of the rate before.
   Status estimate(std::span<const ImuSample> samples, std::vector<RateState>& out, RateReport& report) const {
     return estimate(samples, {}, out, report);
   }
-  /// Estimates the rates with additional IMUs on the body. The argument `auxiliary_imus` contains one list of readings
-  /// per entry of RateModelParams::auxiliary_imus. The function align() computes such a list, with one reading per
-  /// sample. Returns `too_few` if the number of lists or of readings is wrong.
+  /// Estimates the rates with additional IMUs on the body. `auxiliary_imus` contains one list of readings per entry of
+  /// RateModelParams::auxiliary_imus. The function align() computes the list of readings of an additional IMU, with one
+  /// reading per sample. Returns `too_few` if the number of lists or of readings is wrong.
   Status estimate(std::span<const ImuSample> samples, std::span<const std::vector<AuxiliaryReading>> auxiliary_imus,
                   std::vector<RateState>& out, RateReport& report) const;
 

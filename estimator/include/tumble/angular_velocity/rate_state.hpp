@@ -8,7 +8,6 @@
 
 namespace tumble {
 
-/// RateSource states how an angular velocity was estimated.
 enum class RateSource : std::uint8_t {
   measured,           ///< no gyro axis is clipped or suspect
   recovered_flight,   ///< clipped; recovered from the centripetal force in free flight
@@ -16,7 +15,6 @@ enum class RateSource : std::uint8_t {
   bounded_only,       ///< clipped or suspect; limited only by a lower bound and by smooth motion
 };
 
-/// Returns the name of a rate source as used in tables, for example "recovered_flight".
 const char* to_string(RateSource source);
 
 /// RateState is the angular velocity of an IMU relative to the world, in IMU axes, at the time of an IMU sample.

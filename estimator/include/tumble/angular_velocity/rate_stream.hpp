@@ -28,20 +28,18 @@ namespace tumble {
 /// sample, or one step every 5 ms if samples are closer together. When a sample leaves the window, RateStream
 /// marginalises the sample into a Gaussian prior on the next sample and on the rig constants.
 ///
-/// The function push() returns the estimate of a sample that is `lag_s` old. The function newest() returns a
-/// provisional estimate of the newest sample. A step costs O(window). The cost per second is proportional to the sample
-/// rate above 200 Hz, and to the square of the sample rate below 200 Hz. RateStream allocates no memory after the State
-/// is created.
+/// push() returns the estimate of a sample that is `lag_s` old. newest() returns a provisional estimate of the newest
+/// sample. A step costs O(window). The cost per second is proportional to the sample rate above 200 Hz, and to the
+/// square of the sample rate below 200 Hz. RateStream allocates no memory after the State is created.
 ///
 /// StreamingClippingFinder detects saturation limits and saturation planes from the readings. After the detection of a
 /// new saturation limit, RateStream classifies the samples in the window again. RateStream mistakes a clipped sample
 /// for a measurement only if the sample left the window before the detection of the saturation limit. With the
 /// calibration of an earlier run, the rate error of RateStream is 1.1 times the rate error of RateSmoother, and 99 % of
 /// the errors are within three standard deviations. If RateStream estimates the calibration during the tumble, the rate
-/// error is 1.6 times the error of RateSmoother, or 1.2 times with a lag of
-/// 0.5 s. The measured error ratios are in docs/maths/rate_stream.md. The rate errors during one flight are correlated.
-/// RateStream increases the covariance of calibration and rates until enough flight samples are processed. The
-/// limitations of RateSmoother also apply to RateStream.
+/// error is 1.6 times the error of RateSmoother, or 1.2 times with a lag of 0.5 s. The rate errors during one flight
+/// are correlated. RateStream increases the covariance of calibration and rates until enough flight samples are
+/// processed. The limitations of RateSmoother also apply to RateStream.
 class RateStream {
  public:
   using Params = RateStreamParams;
@@ -54,14 +52,13 @@ class RateStream {
   /// Returns the state before the first sample, and allocates all memory that push() needs.
   State start() const;
 
-  /// Processes one sample. The output `out` is the estimate of the sample that is `lag_s` old, and is empty while the
-  /// window fills. On error (`non_finite`, `time_order`, `gap`), the state is unchanged and `out` is empty.
+  /// The output `out` is the estimate of the sample that is `lag_s` old, and is empty while the window fills. On error
+  /// (`non_finite`, `time_order`, `gap`), the state is unchanged and `out` is empty.
   Status push(const ImuSample& sample, State& state, std::optional<RateState>& out) const {
     return push(sample, {}, state, out);
   }
-  /// Processes one sample together with the readings of additional IMUs at the time of the sample. The argument
-  /// `auxiliary_imus` must be empty or contain one reading per entry of RateModelParams::auxiliary_imus; otherwise
-  /// push() returns `too_few`.
+  /// The readings of additional IMUs refer to the time of the sample. `auxiliary_imus` must be empty or contain one
+  /// reading per entry of RateModelParams::auxiliary_imus; otherwise push() returns `too_few`.
   Status push(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus, State& state,
               std::optional<RateState>& out) const;
 
@@ -76,7 +73,6 @@ class RateStream {
   /// so far as standard deviation.
   SensorHealth health(const State& state) const;
 
-  /// Returns the estimated rig constants and their covariance.
   RigCalibration calibration(const State& state) const { return {state.rig, inflated(state)}; }
 
   /// Returns the sensor errors that RateStream currently corrects, with their covariance. RateStream detects a delayed

@@ -17,8 +17,6 @@ namespace tumble {
 /// depend on the sample rate. White noise of density n [unit/sqrt(Hz)] has the standard deviation n / sqrt(reading_s)
 /// after averaging. Set each spread parameter to at least five standard deviations of the averaged noise. A steady
 /// rotation about the vertical slower than `rate_max_rad_s` also counts as rest.
-///
-/// Each class that uses RestDetector has separate default parameters.
 class RestDetector {
  public:
   struct Params {
@@ -31,7 +29,6 @@ class RestDetector {
     double reading_s = 0.01;          ///< averaging time of a reading; 0: each sample
     double memory_s = 600.0;          ///< time constant of the mean, which follows a drifting bias
 
-    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.rate_max_rad_s,
@@ -52,8 +49,7 @@ class RestDetector {
     }
   };
   struct State {
-    // State contains the current run of readings that stay close to their mean. RestDetector detects rest if the run
-    // lasts long enough.
+    // The current run of readings stays close to its mean.
     Eigen::Vector3d rate_sum_rad_s = Eigen::Vector3d::Zero();
     Eigen::Vector3d force_sum_m_s2 = Eigen::Vector3d::Zero();
     double weight = 0.0;              ///< number of readings in the sums; older readings count less
@@ -61,7 +57,7 @@ class RestDetector {
     TimeNs last_mean_ns = 0;          ///< time of the last reading
     TimeNs within_bias_since_ns = 0;  ///< start of the time in which the mean rate is within the bias bound
     bool rests = false;               ///< true if the IMU is at rest, up to the last reading
-    // Sums of the samples since the last averaged reading.
+    // sums of the samples since the last averaged reading
     Eigen::Vector3d pending_rate_rad_s = Eigen::Vector3d::Zero();
     Eigen::Vector3d pending_force_m_s2 = Eigen::Vector3d::Zero();
     std::size_t pending_samples = 0;
@@ -69,7 +65,7 @@ class RestDetector {
     bool started = false;
     bool operator==(const State&) const = default;
 
-    /// Returns the mean rate of the current run of readings, or zero before the first reading.
+    /// The mean is zero before the first reading.
     Eigen::Vector3d mean_rate_rad_s() const;
     Eigen::Vector3d mean_force_m_s2() const;
   };
@@ -77,8 +73,8 @@ class RestDetector {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit RestDetector(const Params& params);
 
-  /// Processes the next finite sample and returns whether the IMU is at rest up to the last averaged reading. The
-  /// argument `bias_rad_s` is the known gyro bias [rad/s]. Cost: O(1), no allocation.
+  /// Processes the next finite sample and returns whether the IMU is at rest up to the last averaged reading.
+  /// `bias_rad_s` is the known gyro bias [rad/s]. Cost: O(1), no allocation.
   bool observe(const ImuSample& sample, State& state,
                const Eigen::Vector3d& bias_rad_s = Eigen::Vector3d::Zero()) const;
 

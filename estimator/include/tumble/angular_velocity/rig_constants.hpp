@@ -27,13 +27,11 @@ struct RigConstants {
   /// clips.
   Eigen::Matrix<double, 6, 1> elements = Eigen::Matrix<double, 6, 1>::Zero();
 
-  /// Returns the row m_j, which is the sensing direction of sensing element j.
   Eigen::Vector3d sensing_direction(int j) const;
-  /// Returns the normalised inertia matrix J, with trace 3.
+  /// The inertia matrix is normalised to trace 3.
   Eigen::Matrix3d inertia_matrix() const;
   /// Returns the coordinates `inertia` of a symmetric inertia matrix of any positive scale.
   static Eigen::Matrix<double, 5, 1> inertia_coordinates(const Eigen::Matrix3d& inertia);
-  /// Returns the matrix S_i of the inertia basis, with i in 0..4.
   static const Eigen::Matrix3d& inertia_basis(int i);
 
   Vector vector() const;
@@ -41,8 +39,8 @@ struct RigConstants {
   bool operator==(const RigConstants&) const = default;
 };
 
-/// RigCalibration contains the rig constants that one run estimated, with their covariance. A later run can use them as
-/// prior.
+/// RigCalibration contains the rig constants that one run estimated, with their covariance. A later run can use the
+/// calibration as prior.
 struct RigCalibration {
   RigConstants constants;
   RigConstants::Matrix covariance = RigConstants::Matrix::Identity();

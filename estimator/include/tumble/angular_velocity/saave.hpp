@@ -43,14 +43,13 @@ class Saave {
     /// Variance of a recovered rate [(rad/s)^2]. The published code uses the variance 0.2741, and the paper prints
     /// 3.648.
     double variance_estimated_rad2_s2 = 0.2741;
-    /// Variance of a clipped axis whose rate Saave cannot recover [(rad/s)^2].
+    /// variance of a clipped axis whose rate Saave cannot recover [(rad/s)^2]
     double variance_rejected_rad2_s2 = 1e6;
-    /// Power spectral density of the white angular jerk [rad^2/s^5].
+    /// power spectral density of the white angular jerk [rad^2/s^5]
     double jerk_psd_rad2_s5 = 1e6;
-    /// Maximum time between two samples [s].
+    /// maximum time between two samples [s]
     double gap_max_s = 1.0;
 
-    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.lever_arm_m, {"lever_arm_m", "m", -10.0, 10.0,
@@ -75,7 +74,6 @@ class Saave {
     }
   };
 
-  /// State contains the values that the recursive stage keeps between samples.
   struct State {
     Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< direction of the last accepted rate
     TimeNs last_time_ns = 0;
@@ -83,7 +81,6 @@ class Saave {
     bool operator==(const State&) const = default;
   };
 
-  /// Recovered is the result of the recursive stage for one sample, before smoothing.
   struct Recovered {
     Eigen::Vector3d rate_rad_s;
     Eigen::Vector3d variance_rad2_s2;  ///< variance of each axis
@@ -98,9 +95,8 @@ class Saave {
   /// `gap`), `state` and `out` are unchanged.
   Status step(const ImuSample& sample, State& state, Recovered& out) const;
 
-  /// Estimates one RateState per sample of a recording, with the recursive stage and the smoothing stage. Cost: O(N).
-  /// Returns `empty` if there are no samples. On error, `out` is unchanged, and the status contains the field and value
-  /// of the first invalid sample.
+  /// Cost: O(N). Returns `empty` if there are no samples. On error, `out` is unchanged, and the status contains the
+  /// field and value of the first invalid sample.
   Status estimate(std::span<const ImuSample> samples, std::vector<RateState>& out) const;
 
   const Params& params() const { return params_; }

@@ -30,7 +30,6 @@ struct SensorErrors {
   bool operator==(const SensorErrors&) const = default;
 };
 
-/// KnownSensorErrors contains estimated sensor errors with their covariance.
 struct KnownSensorErrors {
   SensorErrors errors;
   SensorErrors::Matrix covariance = SensorErrors::Matrix::Zero();
@@ -60,7 +59,6 @@ struct SensorErrorPriors {
   /// standard deviation.
   double delay_s = 1e-4, delay_uncalibrated_s = 5e-3;
 
-  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.gyro, {"gyro", "1", 0.0, 0.1,
@@ -84,13 +82,13 @@ struct SensorErrorPriors {
   }
 };
 
-/// Returns the prior standard deviations of all sensor errors, all above 0. The argument `share` is between 0
-/// (calibrated device) and 1 (uncalibrated device).
+/// Returns the prior standard deviations of all sensor errors, all above 0. `share` is between 0 (calibrated device)
+/// and 1 (uncalibrated device).
 SensorErrors::Vector prior_sigmas(const SensorErrorPriors& sizes, double share);
 
 /// SensorErrorEvidence is the log-likelihood of a run's readings as a quadratic function of the sensor errors. The
-/// quadratic function is expanded at `linearisation_point`. The member `information` is the second derivative of the
-/// cost. The member `gradient` is the negative first derivative of the cost, with all other unknowns at their optimum.
+/// log-likelihood is expanded at `linearisation_point`. `information` is the second derivative of the cost. `gradient`
+/// is the negative first derivative of the cost, with all other unknowns at their optimum.
 struct SensorErrorEvidence {
   SensorErrors linearisation_point;
   SensorErrors::Matrix information = SensorErrors::Matrix::Zero();
@@ -99,11 +97,10 @@ struct SensorErrorEvidence {
 
 /// Multiplies the information about unobservable sensor errors by `share`; see rate_smoother.md (R39). Free motion of a
 /// body does not determine a scale common to all axes of a sensor, and a common rotation of gyro and accelerometer. For
-/// these errors, residuals of the motion model wrongly appear as information. The wrong information grows with the
-/// number of samples, because smaller motions have smaller residuals.
+/// unobservable errors, residuals of the motion model wrongly appear as information. The wrong information grows with
+/// the number of samples, because smaller motions have smaller residuals.
 void discount_unobservable(double share, SensorErrorEvidence& evidence);
 
-/// SensorErrorFit contains the sensor errors estimated from readings and prior.
 struct SensorErrorFit {
   KnownSensorErrors known;
   double data_sheet_probability = 1.0;   ///< probability that scale and misalignment are within the data sheet
@@ -115,13 +112,13 @@ struct SensorErrorFit {
 /// delay and averaging. For each model, the function computes the Gaussian posterior of the sensor errors and the
 /// likelihood of the readings. The returned sensor errors are the mean and covariance of the mixture of all models. If
 /// the readings fit the data sheet, unobservable sensor errors therefore keep the small uncertainty of the data sheet.
-/// Cost: O(1), about 30 systems of 29 unknowns. The argument `earlier_runs` is the result of calibration_evidence() for
-/// earlier runs of the device.
+/// Cost: O(1), about 30 systems of 29 unknowns. `earlier_runs` is the result of calibration_evidence() for earlier runs
+/// of the device.
 SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const SensorErrorPriors& sizes,
                                  const SensorErrorEvidence& earlier_runs = {});
 
-/// Converts sensor errors that one run estimated to measurement information for the next run. The function removes the
-/// prior of an uncalibrated device from the covariance, because the next run adds the prior again.
+/// Converts sensor errors that one run estimated to measurement information for the next run. The prior of an
+/// uncalibrated device is removed from the covariance, because the next run adds the prior again.
 SensorErrorEvidence calibration_evidence(const KnownSensorErrors& earlier_runs, const SensorErrorPriors& sizes);
 
 }  // namespace tumble

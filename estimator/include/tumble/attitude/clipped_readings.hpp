@@ -13,7 +13,6 @@
 
 namespace tumble {
 
-/// ClippedReadings contains the clipped sensing elements of each sample of a recording, as input of HandHeldSmoother.
 struct ClippedReadings {
   Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();  ///< sensing directions of the gyro, one per row
   std::vector<ClipSigns> signs;                        ///< one entry per sample
@@ -26,11 +25,11 @@ struct ClippedReadings {
   void mark_suspect(std::span<const ImuSample> samples, std::span<const std::uint8_t> axes);
 
   /// Changes the source of a measured rate to `bounded_only` if its reading may be saturated during a part of its
-  /// averaging window. The argument `rates` contains one rate per sample.
+  /// averaging window. `rates` contains one rate per sample.
   void mark_partly_saturated(std::span<RateState> rates) const;
 };
 
-/// Converts the result of a ClippingFinder to the input of HandHeldSmoother. Cost: O(N).
+/// Cost: O(N).
 ClippedReadings to_clipped_readings(std::span<const ImuSample> samples, const ClippingFinder::Found& found);
 
 }  // namespace tumble

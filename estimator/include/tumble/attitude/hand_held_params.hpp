@@ -6,7 +6,6 @@
 
 namespace tumble {
 
-/// HandMotionParams contains the correlation times of hand-held motion.
 struct HandMotionParams {
   double hand_tau_s = 0.1;             ///< correlation time of the hand's acceleration
   double velocity_tau_s = 0.3;         ///< correlation time of the hand's velocity
@@ -36,7 +35,7 @@ struct HandMotionParams {
   }
 };
 
-/// HandHeldReadingParams describes the errors of IMU readings other than white noise.
+/// errors of IMU readings other than white noise
 struct HandHeldReadingParams {
   double deficit_error_ratio = 0.02;    ///< error of an unclipped element / saturation deficit of a clipped element
   double rail_sigma_rad_s = 0.01;       ///< standard deviation of a saturation limit
@@ -69,7 +68,6 @@ struct HandHeldReadingParams {
   }
 };
 
-/// HandHeldRestParams contains the standard deviations of rate, velocity and acceleration while the body is stationary.
 struct HandHeldRestParams {
   double rest_sigma_rad_s = 0.01;  ///< standard deviation of the rate at rest, per node
   double rest_sigma_m_s = 0.02;    ///< standard deviation of the velocity at rest
@@ -85,14 +83,11 @@ struct HandHeldRestParams {
   }
 };
 
-/// HandHeldExpertParams contains the rarely changed parameters of HandHeldSmoother and HandHeldStream, grouped by
-/// topic.
 struct HandHeldExpertParams {
   double node_s = 0.01;  ///< time between two nodes (states of the estimator)
   int iterations_max = 15;
   double gap_max_s = 1.0;
-  /// Factor on the assumed angular jerk for the reported covariances. The factor increases the reported uncertainty,
-  /// because the true angular jerk is unknown.
+  /// Factor on the assumed angular jerk for the reported covariances, because the true angular jerk is unknown.
   double jerk_inflation = 4.0;
   RestDetector::Params rest = {};
   HandMotionParams hand = {};
@@ -116,8 +111,6 @@ struct HandHeldExpertParams {
   }
 };
 
-/// HandHeldParams contains the parameters of HandHeldSmoother and HandHeldStream: IMU errors and the amount of hand
-/// motion.
 struct HandHeldParams {
   double gravity_m_s2 = 9.80665;
   double gyro_noise_density = 5e-4;   ///< rad/s/sqrt(Hz)
@@ -133,7 +126,6 @@ struct HandHeldParams {
   using Expert = HandHeldExpertParams;
   Expert expert = {};  ///< rarely changed parameters
 
-  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-300, 100.0, "strength of gravity"});

@@ -12,21 +12,21 @@
 
 namespace tumble {
 
-/// Estimates attitude and angular velocity of hand-held motion sample by sample, with a fixed lag. HandHeldStream uses
-/// the model of HandHeldSmoother over a sliding window of nodes, and makes one Gauss-Newton step per node.
+/// Estimates attitude and angular velocity of hand-held motion sample by sample, with a fixed lag. HandHeldStream
+/// applies the model of HandHeldSmoother to a sliding window of nodes, with one Gauss-Newton step per node.
 ///
-/// HandHeldStream marginalises the oldest node into a Gaussian prior on the next node, the biases and the lever arm.
-/// The function push() returns each rate when its sample is `lag_s` old. The window `window_s` is longer than the lag,
-/// so that each step also relinearises nodes older than the lag. The function start() allocates all memory of the
-/// stream. A run that continues from a copy of the State gives bit-identical results.
+/// The oldest node is marginalised into a Gaussian prior on the next node, the biases and the lever arm. push() returns
+/// each rate when its sample is `lag_s` old. The window `window_s` is longer than the lag, so that each step also
+/// relinearises nodes older than the lag. start() allocates all memory of the stream. A run that continues from a copy
+/// of the State gives bit-identical results.
 ///
-/// HandHeldStream differs from HandHeldSmoother as follows. While no sample in the window is clipped, the solver runs
-/// only for every fifth node. The initial attitude comes from a single force reading. The assumed density of the hand's
-/// acceleration adapts to the nodes that have left the window, with the time constant `hand_window_s` / 2.
-/// HandHeldStream does not test other numbers of full revolutions in a clipped segment. The rate covariance includes
-/// the error of one additional revolution (C42, C43 of carried.md). After the detection of a new saturation limit,
-/// HandHeldStream classifies only the readings in the window again. The prior from marginalised nodes uses the assumed
-/// jerk, but reported covariances use the increased jerk (`jerk_inflation`).
+/// Differences from HandHeldSmoother are the following. While no sample in the window is clipped, the solver runs only
+/// for every fifth node. The initial attitude comes from a single force reading. The assumed density of the hand's
+/// acceleration adapts to the nodes that have left the window, with the time constant `hand_window_s` / 2. Other
+/// numbers of full revolutions in a clipped segment are not tested. The rate covariance includes the error of one
+/// additional revolution (C42, C43 of carried.md). After the detection of a new saturation limit, only the readings in
+/// the window are classified again. The prior from marginalised nodes uses the assumed jerk, but reported covariances
+/// use the increased jerk (`jerk_inflation`).
 ///
 /// Cost: each new node costs one Gauss-Newton step, O(window).
 class HandHeldStream {
@@ -37,7 +37,6 @@ class HandHeldStream {
     double lag_s = 0.2;
     double window_s = 0.6;
 
-    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("", p.body);
@@ -50,11 +49,10 @@ class HandHeldStream {
     }
   };
 
-  /// Reading is one IMU sample of the sliding window, with its clipped sensing elements.
   struct Reading {
     ImuSample sample;
     ClipSigns signs;
-    /// Times of the centre and the end of the averaging window, relative to the centre of the first sample.
+    /// relative to the centre of the first sample's averaging window
     double centre_s = 0.0, end_s = 0.0;
     std::int64_t node = 0;  ///< node closest to the centre of the averaging window
     bool rest = false;
@@ -72,8 +70,8 @@ class HandHeldStream {
     Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();
     hand_held::Constants constants;
     hand_held::System::BorderMatrix constants_covariance = hand_held::System::BorderMatrix::Zero();
-    // Gaussian prior on the oldest node and on the constants, from all data that have left the window. The prior is
-    // linearised at `prior_node` and `prior_constants`.
+    // Gaussian prior on the oldest node and on the constants, from all data that have left the window. The Gaussian
+    // prior is linearised at `prior_node` and `prior_constants`.
     hand_held::System::Block prior;
     hand_held::System::Corner prior_corner;
     hand_held::Node prior_node;
@@ -86,8 +84,8 @@ class HandHeldStream {
     std::int64_t start_ns = 0;
     std::size_t samples = 0;
     std::size_t failures = 0;  ///< number of steps skipped because the normal equations were not positive definite
-    /// Per gyro element, for the current clipped segment up to the last reported sample: duration, and time integral of
-    /// the rate's standard deviation.
+    /// per gyro element, for the current clipped segment up to the last reported sample: duration, and time integral of
+    /// the rate's standard deviation
     Eigen::Vector3d clipped_duration_s = Eigen::Vector3d::Zero(), clipped_angle_sigma_rad = Eigen::Vector3d::Zero();
     std::size_t revolutions_ambiguous = 0;       ///< number of segments that may contain an additional revolution
     std::vector<hand_held::System::Block> work;  ///< buffer, not part of the state
@@ -96,19 +94,18 @@ class HandHeldStream {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit HandHeldStream(const Params& params);
 
-  /// Returns the state before the first sample, with all memory that push() needs.
+  /// The returned state has all memory that push() needs.
   State start() const;
-  /// Resets `state` to the state before the first sample, without allocating memory. The counters in `state` keep their
-  /// values.
+  /// Resets `state` without allocating memory; the counters keep their values.
   void restart(State& state) const;
 
-  /// Processes one sample, and computes the rate `out` of the sample that is `lag_s` old. The argument `known` contains
-  /// the current clip signs of the newest samples, up to `sample`. If the clip signs of a sample in the window changed,
-  /// push() processes the sample again. The output `out` is empty while the window fills. If `wanted` is false, `out`
-  /// is always empty, and push() skips most of the computation. The argument `repeated` describes repeated readings
-  /// (sample and hold) of the log. A repeated reading counts once, at the time when the sensor took the reading (R95 of
-  /// rate_stream.md). Returns `ok`, `non_finite`, `time_order`, `gap`, `out_of_range` (no signs) or `degenerate`
-  /// (sensing directions that do not span the axes). On error, `state` is unchanged and `out` is empty.
+  /// Computes the rate `out` of the sample that is `lag_s` old; `out` is empty while the window fills. `known` contains
+  /// the current clip signs of the newest samples, up to `sample`. A sample in the window whose clip signs changed is
+  /// processed again. If `wanted` is false, `out` is always empty, and push() skips most of the computation. `repeated`
+  /// describes repeated readings (sample and hold) of the log. A repeated reading counts once, at the time when the
+  /// sensor took the reading (R95 of rate_stream.md). Returns `ok`, `non_finite`, `time_order`, `gap`, `out_of_range`
+  /// (no signs) or `degenerate` (sensing directions that do not span the axes). On error, `state` is unchanged and
+  /// `out` is empty.
   Status push(const ImuSample& sample, const ClippedElements& known, State& state, std::optional<RateState>& out,
               bool wanted = true, const RepeatDetector::State& repeated = {}) const;
 

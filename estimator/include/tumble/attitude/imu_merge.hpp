@@ -21,10 +21,9 @@
 
 namespace tumble {
 
-/// ImuMergeParams contains the parameters of ImuMerge.
 struct ImuMergeParams {
   static constexpr int kImus = ImuMergeState::kImus;
-  /// Pose of each IMU in the common axes C; only the first `count` entries are used.
+  /// pose of each IMU in the common axes C; only the first `count` entries are used
   std::array<Eigen::Isometry3d, kImus> T_CI{};
   int count = 1;
   double rate_noise_rad_s = 0.01;  ///< standard deviation of the mean rate over a window
@@ -33,13 +32,12 @@ struct ImuMergeParams {
   double gyro_range_rad_s = 1e3;   ///< readings at or above this rate are saturated
   double accel_range_m_s2 = 1e5;
   double gap_max_s = 1.0;
-  /// Sensing directions of each IMU's gyro and accelerometer, as RailPlaneFinder finds them.
+  /// sensing directions of each IMU's gyro and accelerometer, as RailPlaneFinder finds them
   std::array<SensingDirections, kImus> gyro_elements{}, accel_elements{};
 
   using Expert = ImuMergeExpertParams;
   Expert expert = {};  ///< rarely changed parameters
 
-  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.count, {"count", "1", 1, kImus, "number of IMUs in use"});
@@ -61,32 +59,30 @@ struct ImuMergeParams {
 /// Merges several IMUs on one rigid body into one IMU, in common axes C, at the mean position of the IMUs.
 ///
 /// On a rigid body, the specific force is linear in position. The mean force of all IMUs is therefore exactly the force
-/// at their mean position, for any angular acceleration. If one IMU disagrees while three or more IMUs agree, ImuMerge
-/// excludes the disagreeing IMU from the sample. The exclusion shifts the mean position of the IMUs. ImuMerge corrects
-/// the mean force for this shift of the position, using the rate of the remaining IMUs. While the body rotates, a
-/// Kalman filter estimates each IMU's bias, scale, misalignment and time offset relative to the mean of all IMUs.
-/// ImuMerge corrects significant time offsets; averaging reduces the remaining gyro errors. In fast rotation, averaging
-/// does not reduce accelerometer errors, because large opposite forces cancel in the mean. ImuMerge therefore estimates
-/// and corrects the accelerometer errors.
+/// at their mean position, for any angular acceleration. If one IMU disagrees while three or more IMUs agree, the
+/// disagreeing IMU is excluded from the sample. The mean force is corrected for the shift of the mean position that an
+/// exclusion causes. While the body rotates, a Kalman filter estimates each IMU's bias, scale, misalignment and time
+/// offset relative to the mean of all IMUs. ImuMerge corrects significant time offsets; averaging reduces the remaining
+/// gyro errors. In fast rotation, averaging does not reduce accelerometer errors, because large opposite forces cancel
+/// in the mean. ImuMerge therefore estimates and corrects the accelerometer errors.
 ///
-/// ImuMerge excludes an IMU with a saturated accelerometer from the mean force. ImuMerge also excludes an IMU that
-/// disagrees with the others and may have been saturated during a part of the sample. If most IMUs may be saturated,
-/// the merged force is flagged as clipped. If the gyros are saturated, ImuMerge computes the rate from the force
-/// differences between three or more IMUs. If the computation of the rate fails, the merged sample has clip flags. With
-/// one or two IMUs, ImuMerge excludes an IMU with a clipped gyro while the other IMU is unsaturated. If all gyros are
-/// saturated, ImuMerge flags every axis of C to which a clipped axis contributes. ImuMerge treats a reading as clipped
-/// if the reading is flagged or beyond the stated range. The caller must flag readings at lower saturation limits and
-/// at tilted planes beforehand (ClippingFinder).
+/// IMUs with a saturated accelerometer are excluded from the mean force. A disagreeing IMU that may have been saturated
+/// during a part of the sample is excluded, too. If most IMUs may be saturated, the merged force is flagged as clipped.
+/// If the gyros are saturated, ImuMerge computes the rate from the force differences between three or more IMUs. If the
+/// rate cannot be computed, the merged sample has clip flags. With one or two IMUs, ImuMerge excludes an IMU with a
+/// clipped gyro while the other IMU is unsaturated. If all gyros are saturated, ImuMerge flags every axis of C to which
+/// a clipped axis contributes. A reading counts as clipped if the reading is flagged or beyond the stated range. The
+/// caller must flag readings at lower saturation limits and at tilted planes beforehand (ClippingFinder).
 ///
-/// ImuMerge averages the readings over `window_s`. Bandwidth and tolerances therefore do not depend on the sample rate
-/// of the IMUs. If the sample period is at least `window_s`, ImuMerge uses the readings without averaging. If an axis
-/// was saturated within the window, the mean of the axis is a lower bound.
+/// The readings are averaged over `window_s`, so bandwidth and tolerances do not depend on the IMUs' sample rate. If
+/// the sample period is at least `window_s`, the readings are not averaged. If an axis was saturated within the window,
+/// the mean of the axis is a lower bound.
 ///
-/// ImuMerge treats an IMU whose reading is not finite as absent. An IMU is frozen if its gyro or accelerometer repeats
-/// one reading while the readings of other IMUs change. An IMU is also frozen if its accelerometer repeats one reading
-/// while the direction of gravity rotates. ImuMerge excludes a frozen IMU until its readings have changed for
-/// 0.5 s. ImuMerge permanently excludes an IMU that disagrees for long (scale, axes, unit of measurement),
-/// as long as two other IMUs remain. Repeated readings of a body at rest do not count as frozen.
+/// An IMU whose reading is not finite counts as absent. An IMU is frozen if its gyro or accelerometer repeats one
+/// reading while the readings of other IMUs change. An IMU is also frozen if its accelerometer repeats one reading
+/// while the direction of gravity rotates. A frozen IMU is excluded until its readings have changed for 0.5 s. An IMU
+/// that disagrees for long (scale, axes, unit) is excluded permanently, as long as two other IMUs remain. Repeated
+/// readings of a body at rest do not count as frozen.
 ///
 /// ImuMerge assumes that all clocks have the same rate, and does not detect an error that all IMUs share.
 class ImuMerge {
@@ -108,22 +104,20 @@ class ImuMerge {
   /// inverted. The result is empty until the body has rotated enough.
   static std::optional<double> lever_arm_agreement(const State& state);
 
-  /// Returns `out_of_range` with the duration [s] if all active IMUs are frozen, and otherwise `ok`. While all IMUs are
-  /// frozen, step() merges their readings unchanged.
+  /// Returns `out_of_range` with the duration [s] if all active IMUs are frozen. While all IMUs are frozen, step()
+  /// merges their readings unchanged.
   static Status verdict(const State& state);
-  /// Adds a finding for each IMU that is frozen or disagrees with the other IMUs.
   static void add_finding(const Unit& unit, const std::string& name, SensorHealth& health);
-  /// Adds findings about all IMUs together: exchanged or inverted axes (UnitSignCheck), and a wrong scale
+  /// Adds findings about exchanged or inverted axes of all IMUs (UnitSignCheck), and about a wrong scale
   /// (lever_arm_agreement()). `gyro_confirmed` states whether another check confirms the scale of the gyros.
   static void add_findings(const std::optional<UnitSignCheck::Detected>& mislabelled_axes,
                            const std::optional<double>& lever_arm_agreement, bool gyro_confirmed, SensorHealth& health);
 
-  /// Returns the position of the merged IMU in the common axes C [m].
   Eigen::Vector3d p_C_m() const { return p_C_m_; }
 
-  /// Processes simultaneous samples of all IMUs, with the time stamp of the first IMU. The output `merged` is the mean
-  /// over the averaging window in axes C, or empty while the window is incomplete. Returns `too_few` if `samples` does
-  /// not contain `count` samples, or if none of the samples is finite. On error, the state is unchanged and `merged` is
+  /// The samples must be simultaneous; the merged sample has the time stamp of the first IMU. `merged` is the mean over
+  /// the averaging window in axes C, or empty while the window is incomplete. Returns `too_few` if `samples` does not
+  /// contain `count` samples, or if none of the samples is finite. On error, the state is unchanged and `merged` is
   /// empty. Cost: O(count), no allocation.
   Status step(std::span<const ImuSample> samples, State& state, std::optional<ImuSample>& merged) const;
 
@@ -132,7 +126,7 @@ class ImuMerge {
 
   using UnitMask = std::array<bool, kImus>;
 
-  /// Mean readings over a window, with flags of the axes that were saturated in the window.
+  /// mean readings over a window, with flags of the axes that were saturated in the window
   using Readings = std::array<ImuSample, kImus>;
 
   void accumulate_window(std::span<const ImuSample> samples, double dt_s, State& state) const;

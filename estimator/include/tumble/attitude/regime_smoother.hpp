@@ -15,11 +15,11 @@ namespace tumble {
 /// Estimates the angular velocity of a body in flight, in contact or hand-held, over a whole recording. RateSmoother
 /// estimates the rates under the assumption of flight and contact. HandHeldSmoother estimates the rates again where the
 /// body was probably hand-held while the gyro clipped. RegimeSmoother combines the two rate estimates by the
-/// probability of hand-held motion (RegimeEvidence). RegimeStream is the causal form of RegimeSmoother.
+/// probability of hand-held motion (RegimeEvidence).
 ///
-/// All samples of a clipped segment use the smallest probability of hand-held motion within and near the segment.
-/// RegimeSmoother uses the smallest probability because a hand may release the body during the segment. Additional IMUs
-/// determine the rate in any kind of motion, so RegimeSmoother omits HandHeldSmoother if there are additional IMUs.
+/// All samples of a clipped segment use the smallest probability of hand-held motion within and near the segment,
+/// because a hand may release the body. With additional IMUs, which determine the rate in any kind of motion,
+/// HandHeldSmoother does not run.
 class RegimeSmoother {
  public:
   struct Params {
@@ -30,7 +30,6 @@ class RegimeSmoother {
         0.02;                        ///< minimum probability of hand-held motion for which HandHeldSmoother runs
     double segment_gap_max_s = 0.1;  ///< clipped samples closer together than this form one segment
 
-    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("", p.rate);
@@ -55,18 +54,18 @@ class RegimeSmoother {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit RegimeSmoother(const Params& params);
 
-  /// Estimates one RateState per sample. Returns the status of RateSmoother; on error, `rates` is empty. If
-  /// HandHeldSmoother fails, `rates` contains the result of RateSmoother.
+  /// Returns the status of RateSmoother; on error, `rates` is empty. If HandHeldSmoother fails, `rates` contains the
+  /// result of RateSmoother.
   Status estimate(std::span<const ImuSample> samples, std::vector<RateState>& rates, Report& report) const {
     return estimate(samples, {}, rates, report);
   }
-  /// Estimates the rates with additional IMUs on the body, like RateSmoother::estimate(). If there are additional IMUs,
+  /// Estimates the rates with additional IMUs on the body, like RateSmoother::estimate(). With additional IMUs,
   /// HandHeldSmoother does not run and `report.judged` is false.
   Status estimate(std::span<const ImuSample> samples, std::span<const std::vector<AuxiliaryReading>> auxiliary_imus,
                   std::vector<RateState>& rates, Report& report) const;
 
-  /// Combines `rates`, the result of RateSmoother, with the rates of HandHeldSmoother, in place. The argument
-  /// `report.rate` must contain the report of RateSmoother.
+  /// Combines `rates`, the result of RateSmoother, with the rates of HandHeldSmoother, in place. `report.rate` must
+  /// contain the report of RateSmoother.
   void join(std::span<const ImuSample> samples, std::vector<RateState>& rates, Report& report) const;
 
  private:

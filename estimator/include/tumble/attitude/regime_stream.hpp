@@ -17,17 +17,14 @@ namespace tumble {
 /// the rates again where the body is probably hand-held while the gyro clips. RegimeStream combines the two rate
 /// estimates by the probability of hand-held motion.
 ///
-/// A filter over the reported samples estimates the probabilities of flight, contact and hand-held motion. The
-/// probabilities depend on earlier samples and, through the smoothed rate, on later samples within the lag. The weight
+/// A filter over the reported samples estimates the probabilities of flight, contact and hand-held motion. The weight
 /// of HandHeldStream is the smallest probability of hand-held motion in the clipped segment, as in RegimeSmoother. If
-/// RateStream resets its calibration in more than half of the steps within its lag, the body is probably not in flight.
-/// Clipped samples then do not change the probabilities. HandHeldStream pauses while the probability of hand-held
-/// motion is below `hand_held_probability_min`, and then restarts. RegimeStream reports RateStream's rate for each
-/// unclipped sample.
+/// RateStream resets its calibration in most steps within its lag, clipped samples do not change the probabilities.
+/// HandHeldStream pauses while the probability of hand-held motion is below `hand_held_probability_min`, and then
+/// restarts. RegimeStream reports RateStream's rate for each unclipped sample.
 ///
-/// RateStream fits angular accelerations to the measured force. In gentle hand-held motion, such an angular
-/// acceleration can wrongly explain gravity. RegimeStream therefore estimates the probabilities with the time
-/// derivative of the rates instead of RateStream's angular accelerations.
+/// The probabilities use the time derivative of the rates, because RateStream's angular accelerations can wrongly
+/// explain gravity.
 class RegimeStream {
  public:
   struct Params {
@@ -37,7 +34,6 @@ class RegimeStream {
     double hand_held_probability_min = 0.02;  ///< minimum probability of hand-held motion for which HandHeldStream runs
     double segment_gap_max_s = 0.1;           ///< clipped samples closer together than this form one segment
 
-    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("", p.rate);
@@ -50,7 +46,6 @@ class RegimeStream {
                                   "clipped samples that are less than this time apart belong to one segment"});
     }
   };
-  /// ReportedProbability is the probability of hand-held motion at the time of a reported sample.
   struct ReportedProbability {
     TimeNs time_ns = 0;
     double hand_held = 0.0;
@@ -68,7 +63,7 @@ class RegimeStream {
     double resets = 0.0;  ///< number of calibration resets of RateStream, decaying with the time constant `rate.lag_s`
     bool hand_held_running = false;  ///< true if HandHeldStream is running
     /// Samples that may determine the smallest probability of hand-held motion within the last `segment_gap_max_s`. The
-    /// oldest entry of `near` has the smallest probability.
+    /// oldest entry has the smallest probability of hand-held motion.
     std::vector<ReportedProbability> near;
     TimeNs reported_ns = 0;            ///< time of the last reported sample
     std::optional<TimeNs> clipped_ns;  ///< last reported clipped sample
@@ -77,7 +72,7 @@ class RegimeStream {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit RegimeStream(const Params& params);
 
-  /// Returns the state before the first sample, with all memory that push() needs.
+  /// The returned state has all memory that push() needs.
   State start() const;
 
   /// Processes one sample like RateStream::push(), and combines the rate with the rate of HandHeldStream.
@@ -87,7 +82,7 @@ class RegimeStream {
     return push(sample, {}, state, out);
   }
 
-  /// Appends the rates of the samples in the window to `out`, combined by the current probabilities.
+  /// Appends the rates of the samples in the window, combined by the current probabilities.
   void flush(const State& state, std::vector<RateState>& out) const;
 
   const RateStream& rate() const { return rate_; }

@@ -12,9 +12,8 @@
 
 namespace tumble {
 
-/// RegimeProbabilities contains the probabilities of three kinds of motion at one sample, which sum to 1. Free flight
-/// has zero specific force at the centre of mass, contact has any force, and hand-held motion has a bounded
-/// acceleration about gravity.
+/// Probabilities of three kinds of motion at one sample, which sum to 1. Free flight has zero specific force at the
+/// centre of mass, contact has any force, and hand-held motion has a bounded acceleration about gravity.
 struct RegimeProbabilities {
   double flight = 0.0, contact = 0.0, hand_held = 0.0;
 };
@@ -22,13 +21,13 @@ struct RegimeProbabilities {
 /// Estimates the kind of motion (flight, contact or hand-held) of each sample of a recording from the specific force.
 ///
 /// The residual force is e = f - a x r - w x (w x r), the specific force without the effect of rotation at the lever
-/// arm. The symbols are the specific force f, the rate w, the angular acceleration a and the lever arm r. The residual
-/// force e is zero in flight. In hand-held motion, the residual force is gravity plus the acceleration of a hand, in
-/// any direction. In contact, the residual force can have any magnitude; the logarithm of the magnitude has a uniform
-/// prior. A Markov chain connects the samples: flight and contact alternate several times per second, but a body is
-/// rarely thrown or caught. The Markov chain prevents RegimeEvidence from mistaking an impact or a quiet moment of
-/// rolling for hand-held motion. Readings within `memory_s` are correlated and count as one reading. Readings without
-/// rotation do not change the probabilities.
+/// arm. The symbols are the specific force f, the rate w, the angular acceleration a and the lever arm r. In flight,
+/// the residual force is zero; in hand-held motion, gravity plus the acceleration of a hand in any direction. In
+/// contact, the residual force can have any magnitude; the logarithm of the magnitude has a uniform prior. A Markov
+/// chain connects the samples: flight and contact alternate several times per second, but a body is rarely thrown or
+/// caught. The Markov chain prevents that an impact or a quiet moment of rolling counts as hand-held motion. Readings
+/// within `memory_s` are correlated and count as one reading. Readings without rotation do not change the
+/// probabilities.
 ///
 /// RegimeEvidence does not use the attitude, so its probabilities are available before HandHeldSmoother runs.
 /// RegimeEvidence assumes that no rope, no buoyancy and no aerodynamic force above `flight_force_sigma_m_s2` acts on
@@ -47,7 +46,6 @@ class RegimeEvidence {
     double contacts_hz = 5.0;      ///< mean number of changes between flight and contact per second
     double throws_hz = 0.02;       ///< mean number of throws and catches per second
 
-    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-300, 100.0, "strength of gravity"});
@@ -78,15 +76,14 @@ class RegimeEvidence {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit RegimeEvidence(const Params& params);
 
-  /// Estimates the probabilities of flight, contact and hand-held motion of each sample. Cost: O(N). The argument
-  /// `rates` contains the angular velocity of each sample, from a smoother that assumes flight and contact. The
-  /// argument `lever_arm_m` is the vector from the centre of mass to the IMU, in IMU axes. Returns `ok`, `empty` if
-  /// there are no samples, or `out_of_range` if `rates` does not have one element per sample.
+  /// Cost: O(N). `rates` contains the angular velocity of each sample, from a smoother that assumes flight and contact.
+  /// `lever_arm_m` is the vector from the centre of mass to the IMU, in IMU axes. Returns `ok`, `empty` if there are no
+  /// samples, or `out_of_range` if `rates` does not have one element per sample.
   Status find(std::span<const ImuSample> samples, std::span<const RateState> rates, const Eigen::Vector3d& lever_arm_m,
               const Eigen::Matrix3d& lever_arm_covariance_m2, std::vector<RegimeProbabilities>& out) const;
 
-  /// Returns the probabilities after one sample, given the probabilities `before`, which are `dt_s` older. Cost: O(1).
-  /// The argument `angular_acceleration_rad_s2` is the time derivative of the rate, in IMU axes.
+  /// The probabilities `before` are `dt_s` older than the sample. Cost: O(1). `angular_acceleration_rad_s2` is the time
+  /// derivative of the rate, in IMU axes.
   RegimeProbabilities next(const RegimeProbabilities& before, double dt_s, const ImuSample& sample,
                            const RateState& rate, const Eigen::Vector3d& angular_acceleration_rad_s2,
                            const Eigen::Vector3d& lever_arm_m, const Eigen::Matrix3d& lever_arm_covariance_m2) const;
@@ -98,7 +95,7 @@ class RegimeEvidence {
 };
 
 /// Combines two estimates of a rate, where `share` is the probability that `second` is correct. The combined rate has
-/// the mean of the more probable estimate and the covariance of the mixture of both estimates.
+/// the mean of the more probable estimate and the covariance of the mixture.
 RateState mix_rate_states(const RateState& first, const RateState& second, double share);
 
 }  // namespace tumble

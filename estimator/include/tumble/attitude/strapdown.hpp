@@ -18,7 +18,6 @@ class Strapdown {
   struct Params {
     double gap_max_s = 1.0;  ///< maximum time between samples; a longer gap is an error
 
-    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.gap_max_s,
@@ -36,8 +35,8 @@ class Strapdown {
 
   explicit Strapdown(const Params& params);
 
-  /// Processes one sample and updates the attitude. Cost: O(1), no allocation. The first sample sets the attitude from
-  /// its specific force, with yaw 0. On error, the state is unchanged.
+  /// Cost: O(1), no allocation. The first sample sets the attitude from its specific force, with yaw 0. On error, the
+  /// state is unchanged.
   Status step(const ImuSample& sample, State& state) const;
 
  private:

@@ -10,7 +10,7 @@
 
 namespace tumble {
 
-/// VqfExpertParams contains the VQF parameters for which the authors use one value for all devices.
+/// The authors of VQF use one value of the expert parameters for all devices.
 struct VqfExpertParams {
   double bias_sigma_motion_rad_s = 1.7453e-3;  ///< standard deviation of the bias in motion: 0.1 deg/s
   double bias_sigma_rest_rad_s = 5.2360e-4;    ///< standard deviation of the bias at rest: 0.03 deg/s
@@ -31,7 +31,7 @@ struct VqfExpertParams {
   }
 };
 
-/// VqfParams contains the parameters of Vqf, named as in the publication.
+/// The parameters are named as in the publication.
 struct VqfParams {
   double tau_s = 3.0;  ///< time constant of the low-pass filter on the specific force
   bool rest_bias_estimation = true;
@@ -47,7 +47,6 @@ struct VqfParams {
   using Expert = VqfExpertParams;
   Expert expert = {};  ///< rarely changed parameters
 
-  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.tau_s,
@@ -80,11 +79,10 @@ struct VqfParams {
 /// "VQF", Information Fusion 91, 2023.
 ///
 /// Vqf integrates the gyro, which rotates the specific force into a nearly inertial frame N. A low-pass filter in frame
-/// N averages out the acceleration of a bounded motion. The averaged force defines the vertical of frame N, and Vqf
-/// rotates N by the smallest rotation that aligns its vertical with the vertical of the world W. A Kalman filter of
-/// three states estimates the gyro bias. At rest, the low-passed gyro measures the bias; in motion, the rate of the
-/// vertical correction measures the bias. Vqf estimates neither the heading nor, in motion, the bias about the
-/// vertical.
+/// N averages out the acceleration of a bounded motion. The averaged force defines the vertical of N, and the smallest
+/// rotation that aligns the vertical of N with the world W levels the attitude. A Kalman filter of three states
+/// estimates the gyro bias. At rest, the low-passed gyro measures the bias; in motion, the rate of the vertical
+/// correction measures the bias. Vqf estimates neither the heading nor, in motion, the bias about the vertical.
 class Vqf {
  public:
   using Params = VqfParams;
@@ -109,9 +107,9 @@ class Vqf {
 
   explicit Vqf(const Params& params);
 
-  /// Processes one sample and updates the attitude. Cost: O(1), no allocation. The first sample sets the attitude from
-  /// its specific force, with yaw 0. Each later sample is integrated and corrects the attitude. If the force is below
-  /// 1e-6 m/s^2, step() integrates the gyro without a correction. On error, the state is unchanged.
+  /// Cost: O(1), no allocation. The first sample sets the attitude from its specific force, with yaw 0. Each later
+  /// sample is integrated and corrects the attitude. If the force is below 1e-6 m/s^2, step() integrates the gyro
+  /// without a correction. On error, the state is unchanged.
   Status step(const ImuSample& sample, State& state) const;
 
  private:

@@ -9,7 +9,7 @@
 
 namespace tumble {
 
-/// Bits of ImuSample::device_clip_flags. Each bit marks one sensor axis that the device reports as clipped.
+/// Each bit marks one sensor axis that the device reports as clipped.
 enum ClipFlag : std::uint8_t {
   kClipGyroX = 1,
   kClipGyroY = 2,
@@ -31,17 +31,15 @@ struct ImuSample {
   std::uint8_t device_clip_flags = 0;  ///< ClipFlag bits; 0 if the device reports no clipping
 };
 
-/// Returns true if all angular rates and specific forces of an IMU sample are finite.
 inline bool is_finite(const ImuSample& sample) {
   return sample.angular_velocity_rad_s.allFinite() && sample.specific_force_m_s2.allFinite();
 }
 
-/// Checks that all components of an IMU sample are valid. Returns `non_finite` for NaN and infinity, `out_of_range` for
-/// a magnitude above 1e6, and otherwise `ok`.
+/// Returns `non_finite` for NaN and infinity, `out_of_range` for a magnitude above 1e6, and otherwise `ok`.
 Status check_sample(const ImuSample& sample);
 
-/// Checks the time stamps of two consecutive samples. Returns `time_order` if `time_ns` is not later than
-/// `previous_ns`. Returns `gap`, with the gap in seconds, if the time stamps are more than `gap_max_s` apart.
+/// Returns `time_order` if `time_ns` is not later than `previous_ns`. Returns `gap`, with the gap in seconds, if the
+/// time stamps are more than `gap_max_s` apart.
 Status check_stamp_order(TimeNs time_ns, TimeNs previous_ns, double gap_max_s);
 
 }  // namespace tumble

@@ -14,17 +14,17 @@
 /// tables and file readers call `fields` with a visitor to process every parameter.
 ///
 /// The signature is `template <class Self, class Visitor> static void fields(Self& p, Visitor& visit)`, and `Self` may
-/// be const. The function `fields` calls `visit(p.member, Field)` for each number, boolean, enumeration and Vector3d of
-/// the struct. The function `fields` calls `visit.group("prefix_", p.member)` for each nested `Params` struct.
+/// be const. `fields` calls `visit(p.member, Field)` for each number, boolean, enumeration and Vector3d of the struct.
+/// `fields` calls `visit.group("prefix_", p.member)` for each nested `Params` struct.
 ///
 /// Poses, planes and calibrations in a `Params` struct are not visited, because users do not enter them as plain
-/// numbers. The bounds of a Field are constants. Constructors check conditions that relate two parameters.
+/// numbers. The bounds of a Field are constants; constructors check conditions that relate two parameters.
 namespace tumble {
 
-/// FieldRank sets the order of parameters in a listing. The rank `basic` marks the parameters that most users adapt.
+/// The rank `basic` marks the parameters that most users adapt.
 enum class FieldRank : std::uint8_t { basic, advanced };
 
-/// Field describes one parameter of a `Params` struct. All strings in a Field must have static lifetime.
+/// All strings in a Field must have static lifetime.
 struct Field {
   const char* name;     ///< name with its unit as suffix, used in tables and messages
   const char* unit;     ///< unit; "1" if dimensionless
@@ -33,22 +33,20 @@ struct Field {
   FieldRank rank = FieldRank::advanced;
 };
 
-/// Returns the description of a boolean parameter.
 inline Field switch_field(const char* name, const char* meaning, FieldRank rank = FieldRank::advanced) {
   return {name, "1", 0.0, 1.0, meaning, rank};
 }
 
-/// Bound for parameters without a limit: the largest finite number.
+/// bound for parameters without a limit: the largest finite number
 inline constexpr double kUnbounded = std::numeric_limits<double>::max();
 
-/// The concept Number is satisfied by arithmetic and enumeration types, which a visitor receives as numbers.
+/// arithmetic and enumeration types, which a visitor receives as numbers
 template <class T>
 concept Number = std::is_arithmetic_v<std::remove_cvref_t<T>> || std::is_enum_v<std::remove_cvref_t<T>>;
 
 namespace detail {
 
-/// OutOfBounds describes the first parameter with an invalid value. The array `names` contains the prefixes of the
-/// parameter's groups, followed by the parameter's name.
+/// First parameter with an invalid value; `names` contains the prefixes of its groups, followed by its name.
 struct OutOfBounds {
   std::array<const char*, 8> names{};
   std::size_t depth = 0;
@@ -56,8 +54,7 @@ struct OutOfBounds {
   Status status;
 };
 
-/// BoundsChecker is a visitor that finds the first parameter whose value is out of bounds or NaN. The visitor allocates
-/// no memory.
+/// Finds the first parameter whose value is out of bounds or NaN, without allocating memory.
 class BoundsChecker {
  public:
   explicit BoundsChecker(OutOfBounds& out) : out_(out) {}
@@ -83,7 +80,7 @@ class BoundsChecker {
   OutOfBounds& out_;
 };
 
-/// If `found` contains an error, throws InvalidParams with the full name of the parameter.
+/// The exception contains the full name of the parameter.
 void throw_if_out_of_bounds(const OutOfBounds& found);
 
 }  // namespace detail
@@ -99,7 +96,6 @@ Status check_fields(const Params& params) {
   return found.status;
 }
 
-/// Throws InvalidParams if a parameter is out of its bounds.
 template <class Params>
 void require_valid_fields(const Params& params) {
   detail::OutOfBounds found;

@@ -8,7 +8,7 @@
 
 namespace tumble {
 
-/// AttitudeState is the attitude of a sensor or body A in the world frame W at one time.
+/// attitude of a sensor or body A in the world frame W at one time
 struct AttitudeState {
   TimeNs time_ns = 0;
   Eigen::Quaterniond q_WA = Eigen::Quaterniond::Identity();
@@ -17,7 +17,7 @@ struct AttitudeState {
   Eigen::Matrix3d covariance_rad2 = Eigen::Matrix3d::Zero();
 };
 
-/// PoseState is the pose and velocity of a frame A in the world frame W at one time.
+/// pose and velocity of a frame A in the world frame W at one time
 struct PoseState {
   TimeNs time_ns = 0;
   Eigen::Vector3d p_WA_m = Eigen::Vector3d::Zero();

@@ -14,24 +14,23 @@
 namespace tumble {
 
 /// Estimates the time of each sensor sample from delayed time stamps that a host computer assigned. SampleClock is
-/// causal: an estimate uses only earlier time stamps and the current one. SampleClock assumes a regular sample period
-/// of the sensor and a varying delay of the host. For example, at an angular acceleration of 300 rad/s^2, a timing
-/// error of 0.5 ms causes a rate error of 0.15 rad/s.
+/// causal: an estimate uses only earlier time stamps and the current one. The sensor is assumed to have a regular
+/// sample period, and the host a varying delay. For example, at an angular acceleration of 300 rad/s^2, a timing error
+/// of 0.5 ms causes a rate error of 0.15 rad/s.
 ///
-/// SampleClock fits a line to the time stamps as a function of the sample number. In the fit, the weights of older time
-/// stamps decrease exponentially. The method is the fading-memory polynomial filter of first degree (Morrison,
-/// Introduction to Sequential Smoothing and Prediction, 1969, ch. 13). The error of an estimated time is 1.1 sqrt(T /
-/// memory_s) times the jitter of the time stamps, where T is the sample period. A constant delay of the host is not
-/// observable. The sample number also counts dropped samples.
+/// A line is fitted to the time stamps as a function of the sample number; the weights of older time stamps decrease
+/// exponentially. The method is the fading-memory polynomial filter of first degree (Morrison, Introduction to
+/// Sequential Smoothing and Prediction, 1969, ch. 13). The error of an estimated time is 1.1 sqrt(T / memory_s) times
+/// the jitter of the time stamps, where T is the sample period. A constant delay of the host is not observable. The
+/// sample number also counts dropped samples.
 ///
-/// SampleClock returns the first 32 time stamps unchanged. Later time stamps are unchanged if the jitter is below
-/// `jitter_min` of the period, which indicates time stamps of the sensor's own clock. Time stamps are also unchanged if
-/// the jitter exceeds `jitter_max` or successive errors are correlated, which indicates a varying sample period.
+/// The first 32 time stamps remain unchanged. Later time stamps are unchanged if the jitter is below `jitter_min` of
+/// the period, which indicates time stamps of the sensor's own clock. Time stamps are also unchanged if the jitter
+/// exceeds `jitter_max` or successive errors are correlated, which indicates a varying sample period.
 ///
 /// An estimated sample time differs from the time stamp by at most half a period.
 ///
-/// SampleClock assumes that the sensor triggers the samples. Set `jitter_max` to 0 if a host computer triggers the
-/// samples at irregular times and assigns exact time stamps.
+/// Set `jitter_max` to 0 if a host computer triggers the samples at irregular times and assigns exact time stamps.
 class SampleClock {
  public:
   struct Params {
@@ -39,7 +38,6 @@ class SampleClock {
     double jitter_min = 0.005;  ///< minimum jitter of corrected time stamps, in sample periods
     double jitter_max = 0.15;
 
-    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.memory_s,
@@ -80,7 +78,6 @@ class SampleClock {
   /// Returns the standard deviation of the time stamps about the fitted line [s]. The result is empty before the first
   /// fit.
   static std::optional<double> jitter_s(const State& state);
-  /// Returns true if push() currently corrects time stamps.
   bool corrects_stamps(const State& state) const;
 
  private:

@@ -9,10 +9,10 @@
 #include "tumble/common/status.hpp"
 #include "tumble/common/time.hpp"
 
-/// sensor_health.hpp defines the findings that TumblingOdometry, RollingOdometry and the checks of recordings report.
+/// Findings of TumblingOdometry, RollingOdometry and the checks of recordings.
 namespace tumble {
 
-/// HealthFinding is one suspected fault of a sensor or of the estimate.
+/// one suspected fault of a sensor or of the estimate
 struct HealthFinding {
   enum class Kind : std::uint8_t {
     frozen_axis,        ///< one axis of a gyro or an accelerometer repeats one reading
@@ -42,7 +42,7 @@ struct HealthFinding {
   double value = 0.0;                   ///< value of the quantity
   double bound = 0.0;                   ///< violated limit
   std::optional<TimeNs> since_ns = {};  ///< start of the fault; empty if the check does not determine the start
-  /// True if the fault is over. health() of a live run only reports findings that have not ended.
+  /// The fault is over. health() of a live run only reports findings that have not ended.
   bool ended = false;
 
   /// Returns how far the value is beyond its bound: 0 for a value at the bound, towards 1 for a value far beyond the
@@ -53,23 +53,18 @@ struct HealthFinding {
   bool invalidates_estimate() const;
 };
 
-/// Returns the name of a kind as used in files and tables ("frozen_axis").
 const char* to_string(HealthFinding::Kind kind);
 /// Returns one sentence for people: sensor, meaning, and the tested quantity with value and limit.
 std::string to_text(const HealthFinding& finding);
 
-/// SensorHealth lists the suspected faults, the most important fault first. Without a finding, a SensorHealth allocates
-/// no memory.
+/// The most important fault is first. Without a finding, no memory is allocated.
 struct SensorHealth {
   std::vector<HealthFinding> findings;
 
   bool ok() const { return findings.empty(); }
-  /// Returns the first finding as a Status, or `ok`.
   Status worst() const { return ok() ? Status{} : findings.front().status(); }
   operator Status() const { return worst(); }
-  /// Returns the text of the first finding, or "ok".
   std::string message() const { return ok() ? "ok" : to_text(findings.front()); }
-  /// Returns whether a finding invalidates the estimate.
   bool invalidates_estimate() const;
 
   /// Adds the finding of a check unless `status` is ok. If a finding of the same kind, sensor and axis exists, add()
@@ -78,8 +73,7 @@ struct SensorHealth {
            std::optional<TimeNs> since_ns = {});
   void add(HealthFinding finding);
   void add(const SensorHealth& other);
-  /// Collects the findings of a run. `now` is the newest result of health(). The function adds the findings of `now`,
-  /// and marks all other findings as ended.
+  /// Adds the findings of `now`, the newest result of health(), and marks all other findings as ended.
   void observe(const SensorHealth& now);
 };
 

@@ -12,7 +12,7 @@ namespace tumble::so3 {
 Eigen::Matrix3d hat(const Eigen::Vector3d& v);
 
 /// Returns the unit quaternion of a rotation by |phi| radians about the vector phi. The rotation angle is exact up to
-/// the rounding of |phi|. The vector phi = 0 gives the identity.
+/// the rounding of |phi|.
 Eigen::Quaterniond exp(const Eigen::Vector3d& phi);
 
 /// Returns the shortest rotation vector (length at most pi) of a unit quaternion. The quaternions q and -q give equal

@@ -9,7 +9,7 @@
 
 namespace tumble {
 
-/// ErrorCode lists the kinds of input errors. The value `none` means success.
+/// Kinds of input errors; `none` means success.
 enum class ErrorCode : std::uint8_t {
   none,
   empty,         ///< a required input is missing
@@ -22,12 +22,10 @@ enum class ErrorCode : std::uint8_t {
   diverged,      ///< an iteration left its trust region
 };
 
-/// Returns the name of an error code as used in tables and messages, for example "time_order".
 const char* to_string(ErrorCode error_code);
 
-/// Status is the result of a processing step. On error, Status contains the invalid input field, its value and the
-/// violated limit. The library reports input errors as a returned Status and prints nothing. Only constructors throw
-/// exceptions.
+/// On error, Status contains the invalid input field, its value and the violated limit. The library reports input
+/// errors as a returned Status and prints nothing. Only constructors throw exceptions.
 struct Status {
   ErrorCode error_code = ErrorCode::none;
   const char* field = "";  ///< name of the input field (static string)
@@ -35,11 +33,11 @@ struct Status {
   double bound = 0.0;      ///< violated limit, in the field's unit
 
   bool ok() const { return error_code == ErrorCode::none; }
-  /// Returns a message such as "time_order: time_ns is 5; the bound is 7". Returns "ok" on success.
+  /// The message has the form "time_order: time_ns is 5; the bound is 7", or "ok".
   std::string message() const;
 };
 
-/// InvalidParams is the exception that a constructor throws if a parameter is out of its documented bounds.
+/// A constructor throws InvalidParams if a parameter is out of its documented bounds.
 class InvalidParams : public std::invalid_argument {
  public:
   InvalidParams(const std::string& field, double value, const std::string& bound);

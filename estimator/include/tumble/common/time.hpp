@@ -7,7 +7,7 @@
 
 namespace tumble {
 
-/// TimeNs is a time stamp in integer nanoseconds since the start of the recording.
+/// integer nanoseconds since the start of the recording
 using TimeNs = std::int64_t;
 
 /// Largest magnitude of a time stamp that the odometry classes accept: 97 years. Twice the difference of two accepted

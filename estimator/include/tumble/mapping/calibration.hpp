@@ -8,10 +8,9 @@
 
 namespace tumble {
 
-/// SweepCalibration contains the calibration between lidar, IMU and world. The registration refines the initial
-/// calibration during the motion. The error vector of a calibration contains rotation of T_IL, translation of T_IL,
-/// time offset and gravity, in this order. The rotation error phi is a left perturbation in IMU axes: R_true = Exp(phi)
-/// R.
+/// The registration refines the initial calibration between lidar, IMU and world during the motion. The error vector of
+/// a calibration contains rotation of T_IL, translation of T_IL, time offset and gravity, in this order. The rotation
+/// error phi is a left perturbation in IMU axes: R_true = Exp(phi) R.
 struct SweepCalibration {
   static constexpr int kErrorCount = 10;
   using Covariance = Eigen::Matrix<double, kErrorCount, kErrorCount>;
@@ -20,14 +19,13 @@ struct SweepCalibration {
   double time_offset_s = 0.0;                              ///< IMU clock minus lidar clock
   Eigen::Vector3d gravity_W_m_s2 = Eigen::Vector3d(0.0, 0.0, -9.80665);
 
-  /// Adds a small error vector to the calibration. SweepCalibration defines the order of the vector.
+  /// See SweepCalibration for the order of the error vector.
   void add(const Eigen::Matrix<double, kErrorCount, 1>& error);
   /// Returns the error vector that transforms `other` to this calibration, to first order in the rotation difference.
   Eigen::Matrix<double, kErrorCount, 1> minus(const SweepCalibration& other) const;
 };
 
-/// Returns `out_of_range` if `deviations`, the result of StatedCalibration::deviations(), exceeds
-/// StatedCalibration::kDistanceMax_sigmas.
+/// `deviations` is the result of StatedCalibration::deviations(). Returns `out_of_range` above kDistanceMax_sigmas.
 Status verdict_on(double deviations);
 
 /// StatedCalibration is the calibration that the caller states, with one standard deviation per axis for each part

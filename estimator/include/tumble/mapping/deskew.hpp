@@ -24,14 +24,12 @@ struct SweepPoint {
   std::uint16_t ring = 0;
 };
 
-/// PointBounds limits the range and position of usable lidar returns.
 struct PointBounds {
   double range_min_m = 0.3;
   double range_max_m = 100.0;
   Eigen::AlignedBox3d own_body_L;  ///< returns inside this box hit the robot; an empty box keeps all returns
 };
 
-/// PointCounts contains the numbers of received and usable lidar returns of a sweep.
 struct PointCounts {
   std::size_t received = 0;
   std::size_t finite = 0;  ///< number of returns with finite coordinates; a laser pulse without a return may be NaN
@@ -39,17 +37,16 @@ struct PointCounts {
   bool has_ring_numbers = false;  ///< false if the device does not report ring numbers
 };
 
-/// Selects the usable lidar returns of a sweep and transforms them to IMU axes. The argument `sweep_start_s` is the
-/// start of the sweep relative to the start of the trajectory.
+/// Selects the usable lidar returns of a sweep and transforms them to IMU axes. `sweep_start_s` is the start of the
+/// sweep relative to the start of the trajectory.
 PointCounts select_points(std::span<const LidarPoint> points, const PointBounds& bounds, const Eigen::Isometry3d& T_IL,
                           double sweep_start_s, std::vector<SweepPoint>& selected);
 
-/// Recomputes `points` for another calibration and writes the result to `moved`. Cost: O(n). The function adds
-/// `later_s` to the times of the points in the IMU's clock. The arguments `points` and `moved` must be different
-/// objects.
+/// Recomputes `points` for another calibration and writes the result to `moved`. Cost: O(n). `later_s` is added to the
+/// times of the points in the IMU's clock. `points` and `moved` must be different objects.
 void apply_calibration(const SweepCalibration& calibration, double later_s, std::span<const SweepPoint> points,
                        std::vector<SweepPoint>& moved);
-/// Recomputes `points` for another calibration in place, like the function above.
+/// Recomputes `points` for another calibration in place.
 void apply_calibration(const SweepCalibration& calibration, double later_s, std::span<SweepPoint> points);
 
 /// Computes the lever arm vector u_i = S(t_i) + R(t_i) x_i of SweepTrajectory for each point i. Cost: O(n). The
@@ -57,17 +54,17 @@ void apply_calibration(const SweepCalibration& calibration, double later_s, std:
 void compute_lever_arm_vectors(const SweepTrajectory& trajectory, std::span<const SweepPoint> points,
                                std::vector<Eigen::Vector3f>& levers_W_m);
 
-/// Transforms the points of a sweep to IMU axes at the time `target_s`, usually the end of the trajectory. The time
-/// `target_s` is relative to the start of the trajectory. The deskewed points equal the points that a stationary sensor
-/// would measure at the time `target_s`.
+/// Transforms the points of a sweep to IMU axes at the time `target_s`, usually the end of the trajectory. `target_s`
+/// is relative to the start of the trajectory. The deskewed points equal the points that a stationary sensor would
+/// measure at the time `target_s`.
 void deskew(const SweepTrajectory& trajectory, std::span<const SweepPoint> points, double target_s,
             std::vector<Eigen::Vector3f>& positions_I_m);
 
-/// SweepSampler keeps the first point in each cube of edge `voxel_m` in the world. The registration needs fewer points
-/// if their density is even.
+/// Keeps the first point in each cube of edge `voxel_m` in the world, because the registration needs fewer points of
+/// even density.
 class SweepSampler {
  public:
-  /// Writes the indices of the kept points to `chosen`, in increasing order.
+  /// `chosen` receives the indices of the kept points, in increasing order.
   void choose(std::span<const Eigen::Vector3f> positions_W_m, double voxel_m, std::vector<std::uint32_t>& chosen);
 
  private:

@@ -13,7 +13,7 @@ namespace tumble {
 /// ParallelFor, the calling thread does all work. Results of the library are bit-identical for any number of threads.
 using ParallelFor = std::function<void(std::size_t count, const std::function<void(std::size_t)>& body)>;
 
-/// Runs `body` with `parallel_for`, or on the calling thread if `parallel_for` is empty.
+/// An empty `parallel_for` runs `body` on the calling thread.
 inline void run_parallel(const ParallelFor& parallel_for, std::size_t count,
                          const std::function<void(std::size_t)>& body) {
   if (parallel_for && count > 1) {

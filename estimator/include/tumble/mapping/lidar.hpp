@@ -9,7 +9,7 @@
 
 namespace tumble {
 
-/// LidarPoint is one lidar return in lidar axes L at the time when the laser fired, not deskewed.
+/// lidar return in lidar axes L at the time when the laser fired, not deskewed
 struct LidarPoint {
   Eigen::Vector3f position_L_m = Eigen::Vector3f::Zero();
   float intensity = 0.0f;       ///< 0 to 1
@@ -17,7 +17,7 @@ struct LidarPoint {
   std::uint16_t ring = 0;       ///< number of the laser, from bottom to top, or of the scan line
 };
 
-/// MapPoint is a point of the map, in world axes.
+/// point of the map, in world axes
 struct MapPoint {
   Eigen::Vector3f position_W_m = Eigen::Vector3f::Zero();
   Eigen::Vector3f normal_W = Eigen::Vector3f::Zero();  ///< unit normal; zero if no plane could be fitted

@@ -13,13 +13,11 @@
 
 namespace tumble {
 
-/// OdometryExpertParams contains the rarely changed parameters of LidarInertialOdometry, grouped by topic.
 struct OdometryExpertParams {
   double gravity_m_s2 = 9.80665;
-  /// Standard deviation of gravity's horizontal part. If gravity_sigma_m_s2 is 0, the direction of gravity is fixed.
+  /// standard deviation of gravity's horizontal part; 0: the direction of gravity is fixed
   double gravity_sigma_m_s2 = 0.0;
-  /// Number of newest sweeps that the fixed-lag smoother refines together (see SweepReport::smoothed). If window_sweeps
-  /// is 1, smoothing is disabled.
+  /// number of newest sweeps that the fixed-lag smoother refines together (see SweepReport::smoothed); 1: no smoothing
   int window_sweeps = 2;
   RestBoundsParams rest = {};
   OdometryStartParams start = {};
@@ -58,7 +56,6 @@ struct OdometryExpertParams {
   }
 };
 
-/// OdometryParams contains the parameters of LidarInertialOdometry.
 struct OdometryParams {
   Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< pose of the lidar in IMU axes
   double time_offset_s = 0.0;                              ///< IMU clock minus lidar clock
@@ -71,13 +68,12 @@ struct OdometryParams {
   double range_max_m = 100.0;      ///< maximum range of a usable return
   Eigen::AlignedBox3d own_body_L;  ///< returns inside this box hit the robot and are removed; empty: none
   double sweep_voxel_m = 0.25;     ///< edge of the voxels; the registration uses one point per voxel
-  /// Runs the loops of the registration on the caller's threads. The results do not depend on the number of threads.
+  /// Runs the loops of the registration on the caller's threads; results do not depend on the number of threads.
   ParallelFor parallel_for;
 
   using Expert = OdometryExpertParams;
   Expert expert;  ///< rarely changed parameters
 
-  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.time_offset_s,
@@ -101,8 +97,7 @@ struct OdometryParams {
   }
 };
 
-/// Checks all parameters of LidarInertialOdometry, including poses. Returns `out_of_range` for the first invalid
-/// parameter.
+/// Checks all parameters including poses, and returns `out_of_range` for the first invalid parameter.
 Status check_odometry_params(const OdometryParams& params);
 
 }  // namespace tumble

@@ -8,32 +8,30 @@
 
 namespace tumble {
 
-/// PlaneVerdict is `plane` if neighbouring map points form a plane, and otherwise the reason why they do not.
 enum class PlaneVerdict { plane, too_few, collinear, one_scan_line, too_thick };
 
-/// PlaneFit is a plane through neighbouring map points, with the equation normal . x = normal . centre.
+/// plane through neighbouring map points: normal . x = normal . centre
 struct PlaneFit {
   PlaneVerdict verdict = PlaneVerdict::too_few;
   Eigen::Vector3f normal_W = Eigen::Vector3f::Zero();  ///< unit length, arbitrary sign
   Eigen::Vector3f centre_W_m = Eigen::Vector3f::Zero();
   float thickness_variance_m2 = 0.0f;  ///< smallest eigenvalue of the neighbours' covariance
-  /// Standard deviation of the normal's error along the two axes of the plane, as columns. The function fit_plane()
-  /// computes the normal's error as in a linear regression whose residuals equal the thickness of the plane.
+  /// Standard deviation of the normal's error along the two axes of the plane, as columns. The normal's error is that
+  /// of a linear regression whose residuals equal the thickness of the plane.
   Eigen::Matrix<float, 3, 2> normal_sigma_W = Eigen::Matrix<float, 3, 2>::Zero();
 };
 
-/// PlaneBounds limits the eigenvalues l0 <= l1 <= l2 of the covariance of neighbouring map points.
+/// limits of the eigenvalues l0 <= l1 <= l2 of the covariance of neighbouring map points
 struct PlaneBounds {
   int neighbours_min = 5;
   /// Neighbours are collinear if l1 < collinear_ratio_max * l2. Collinear neighbours would give a wrong normal, for
   /// example on one ring of a lidar at rest.
   double collinear_ratio_max = 0.03;
   double rough_share = 0.1;  ///< neighbours are not a plane if l0 > rough_share * l1
-  /// Minimum number of neighbours that are not on the most frequent scan line. With fewer such neighbours, the fitted
-  /// plane could be the plane of a lidar ring instead of the surface, for example at a pillar or a room's corner.
+  /// Minimum number of neighbours that are not on the most frequent scan line. Otherwise, the fitted plane could be the
+  /// plane of a lidar ring instead of the surface, for example at a pillar or a room's corner.
   int off_line_neighbours_min = 2;
 
-  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.neighbours_min, {"neighbours_min", "1", 3, 32, "minimum number of map points for a plane"});

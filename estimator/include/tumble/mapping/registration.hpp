@@ -23,12 +23,11 @@ class OuterProducts;
 ///
 /// The unknowns are position p, attitude (left perturbation phi in W) and velocity v of the IMU at the start of the
 /// trajectory. The saturation deficit (the true rate minus the clipped reading) and the calibration are additional
-/// unknowns if their prior is uncertain. A point in the world is X = p + v t + g t^2/2 + Exp(phi) u. The vector g is
+/// unknowns if their prior is uncertain. A point in the world is X = p + v t + g t^2/2 + Exp(phi) u. The symbol g is
 /// gravity, and u is the lever arm vector of SweepTrajectory. Each iteration deskews the points with the current
-/// estimate. The cost function is the sum of two terms. The first term of the cost is the sum of robustly weighted
-/// squared distances to planes through the k nearest map points. The second term of the cost is the squared Mahalanobis
-/// distance from the prior. The Gauss-Newton solver uses a normal matrix of at most 28x28. The prior determines the
-/// directions that no surface constrains.
+/// estimate. The cost is the sum of robustly weighted squared distances to planes through the k nearest map points, and
+/// the squared Mahalanobis distance from the prior. The Gauss-Newton solver uses a normal matrix of at most 28x28. The
+/// prior determines the directions that no surface constrains.
 class Registration {
   static constexpr std::size_t kBlock = 128;  // points per partial sum; independent of the number of threads
 
@@ -46,9 +45,9 @@ class Registration {
 
   explicit Registration(const Params& params);
 
-  /// Aligns the points of a sweep to a map. The argument `points` must have been computed with the calibration of
-  /// `prior`. The function rebuilds `trajectory` from `prior` and `samples` up to `end_ns`. The output `trajectory`
-  /// contains the aligned motion. Returns `ok` or an error of SweepTrajectory::build().
+  /// Aligns the points of a sweep to a map. `points` must have been computed with the calibration of `prior`.
+  /// `trajectory` is rebuilt from `prior` and `samples` up to `end_ns`, and contains the aligned motion. Returns `ok`
+  /// or an error of SweepTrajectory::build().
   Status align(const Prior& prior, std::span<const MotionSample> samples, TimeNs end_ns,
                std::span<const SweepPoint> points, const VoxelMap& map, SweepTrajectory& trajectory, Result& result);
 
@@ -56,8 +55,8 @@ class Registration {
   /// deskewing.
   double point_variance_m2(const SweepPoint& point) const;
 
-  /// Computes the distance of a point from a plane, and its derivatives with respect to all unknowns. The function is
-  /// public so that tests can compare the derivatives with finite differences.
+  /// Computes the distance of a point from a plane, and its derivatives with respect to all unknowns. Public, so that
+  /// tests can compare the derivatives with finite differences.
   static double residual(const SweepTrajectory& trajectory, const SweepCalibration& calibration,
                          const SweepPoint& point, const PlaneFit& plane, std::size_t& hint, Vector& derivative);
 
@@ -70,7 +69,7 @@ class Registration {
         std::numeric_limits<float>::infinity();  // distance to the farthest neighbour, if all neighbours were found
     bool searched = false;
   };
-  /// Sums contains the normal equations of the estimated unknowns, summed over the matches of one iteration.
+  /// normal equations of the estimated unknowns, summed over the matches of one iteration
   struct Sums {
     Matrix H = Matrix::Zero();
     Vector g = Vector::Zero();
@@ -107,7 +106,7 @@ class Registration {
   Weight compute_weight(const SweepPoint& point, const Match& match, double distance_m, double kernel_m) const;
 
   Params params_;
-  // Buffers that avoid allocations. Results do not depend on the contents of the buffers.
+  // Results do not depend on the contents of the buffers.
   std::vector<Eigen::Vector3f> lever_arm_vectors_, positions_;
   std::vector<SweepPoint> moved_;
   std::vector<Match> matches_;

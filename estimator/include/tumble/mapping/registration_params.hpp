@@ -9,7 +9,6 @@
 
 namespace tumble {
 
-/// RegistrationExpertParams contains the rarely changed parameters of Registration.
 struct RegistrationExpertParams {
   double step_m = 5e-4;  ///< converged if a step is below `step_m` and `step_rad`
   double step_rad = 1e-4;
@@ -23,8 +22,7 @@ struct RegistrationExpertParams {
   /// Minimum number of matches for accepting a registration that agrees with the prior but violates `matches_min` or
   /// `match_ratio_min`. The large default of agreeing_matches_needed disables the exception for agreeing registrations.
   std::size_t agreeing_matches_needed = 1'000'000'000;
-  /// Minimum fraction of matches whose residual is within three standard deviations. A registration with a smaller
-  /// fraction of fitting matches is rejected.
+  /// Minimum fraction of matches within three standard deviations for accepting a registration.
   double inlier_ratio_min = 0.6;
   PlaneBounds plane;
 
@@ -50,7 +48,6 @@ struct RegistrationExpertParams {
   }
 };
 
-/// RegistrationParams contains the parameters of Registration.
 struct RegistrationParams {
   static constexpr double kMatchDistanceMax_m = 10.0;
   int neighbours = 8;             ///< number of nearest neighbours for a plane fit
@@ -67,7 +64,6 @@ struct RegistrationParams {
   using Expert = RegistrationExpertParams;
   Expert expert = {};  ///< rarely changed parameters
 
-  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.neighbours, {"neighbours", "1", 3, 32, "number of map points used for each plane fit", FieldRank::basic});

@@ -10,14 +10,12 @@
 
 namespace tumble {
 
-/// RegistrationVerdict is `converged`, or the reason why the result is the prior.
 enum class RegistrationVerdict : std::uint8_t {
   converged,
   too_few,   ///< too few matches; the result is the prior
   diverged,  ///< no convergence, too large a correction, or too few fitting matches; the result is the prior
 };
 
-/// RegistrationResult contains the estimate and the diagnostics of a registration.
 struct RegistrationResult {
   RegistrationVerdict verdict = RegistrationVerdict::too_few;
   SweepUnknowns::Estimate mean;
@@ -41,8 +39,8 @@ struct RegistrationResult {
   /// `directions` are its eigenvectors.
   Eigen::Matrix<double, 6, 1> eigenvalues = Eigen::Matrix<double, 6, 1>::Zero();
   Eigen::Matrix<double, 6, 6> directions = Eigen::Matrix<double, 6, 6>::Identity();
-  /// Standard deviation of the pose in its least constrained direction, from the surfaces alone. The standard deviation
-  /// least_constrained_sigma_m excludes the apparent information from noise of the normals.
+  /// Standard deviation of the pose in its least constrained direction, from the surfaces alone. Apparent information
+  /// from noise of the normals is excluded.
   double least_constrained_sigma_m = std::numeric_limits<double>::infinity();
 };
 

@@ -11,8 +11,8 @@
 namespace tumble {
 
 /// SweepVerdict states how a sweep determined the pose. If the verdict is not `registered`, the pose relies on the
-/// inertial prediction. A `degenerate` sweep with eigenvalue_ratio 0 uses the prediction in every direction.
-/// LidarInertialOdometry also inserts a `rejected` sweep with too few matches into the map.
+/// inertial prediction. A `degenerate` sweep with eigenvalue_ratio 0 uses the prediction in every direction. A
+/// `rejected` sweep with too few matches is also inserted into the map.
 enum class SweepVerdict : std::uint8_t {
   first,       ///< the sweep started the map
   registered,  ///< aligned with the map in all six directions
@@ -21,21 +21,19 @@ enum class SweepVerdict : std::uint8_t {
 };
 const char* to_string(SweepVerdict verdict);
 
-/// SweepReport contains the result of LidarInertialOdometry for one sweep.
 struct SweepReport {
   SweepVerdict verdict = SweepVerdict::rejected;
   PoseState pose;  ///< pose and velocity of the IMU at the end of the sweep, with covariance
-  /// Covariance of the velocity error in IMU axes, R_IW v_WI_W, at the end of the sweep [m^2/s^2].
+  /// covariance of the velocity error in IMU axes, R_IW v_WI_W, at the end of the sweep [m^2/s^2]
   Eigen::Matrix3d velocity_covariance_I_m2_s2 = Eigen::Matrix3d::Zero();
   std::vector<PoseState> trajectory;  ///< IMU poses within the sweep, corrected by the registration
-  /// Final poses of the oldest sweep in the window, smoothed with the data of all newer sweeps in the window. If the
-  /// window has two sweeps, the oldest sweep is the previous sweep. The list of smoothed poses is empty while the
-  /// window fills.
+  /// Final poses of the oldest sweep in the window, smoothed with all newer sweeps; empty while the window fills. With
+  /// a window of two sweeps, the oldest sweep is the previous sweep.
   std::vector<PoseState> smoothed;
   double inlier_ratio = 0.0;      ///< fraction of the registered points that are inliers
   double eigenvalue_ratio = 0.0;  ///< smallest divided by largest eigenvalue of the scaled normal matrix
-  /// Standard deviation of the pose in the least constrained direction, from the surfaces of the current sweep alone.
-  /// The value 0 means that the sweep was not aligned.
+  /// Standard deviation of the pose in the least constrained direction, from the surfaces of the reported sweep alone;
+  /// 0: not aligned.
   double least_constrained_sigma_m = 0.0;
   /// Normalised innovation: correction of pose and velocity in standard deviations of the inertial prediction, divided
   /// by sqrt(9). The mean innovation is at most 1 if the covariances of prediction and surfaces are correct. The value
@@ -47,7 +45,7 @@ struct SweepReport {
   int iterations = 0;
   int consecutive_rejected_sweeps = 0;  ///< consecutive rejected sweeps, including the current sweep
   /// True if the sweep relocalised the robot at an unpredicted pose, and later sweeps have not confirmed the pose. Two
-  /// further sweeps must confirm a relocalisation. A contradicting sweep reverts the relocalisation.
+  /// further sweeps must confirm a relocalisation; a contradicting sweep reverts the relocalisation.
   bool relocalisation_unconfirmed = false;
   /// Direction in world axes in which the surfaces constrain the pose least, as a unit vector of position and attitude.
   /// The attitude is scaled to metres by the root-mean-square lever arm.

@@ -17,8 +17,7 @@ namespace tumble {
 
 struct SweepPoint;
 
-/// MotionSample is one IMU sample with its estimated angular velocity. The force and rate of a MotionSample are means
-/// over (from_ns, time_ns].
+/// Force and rate are means over (from_ns, time_ns].
 struct MotionSample {
   TimeNs from_ns = 0;
   TimeNs time_ns = 0;
@@ -45,8 +44,8 @@ struct MotionState {
   PoseState pose() const;
 };
 
-/// Computes the motion of the IMU over a segment by strapdown integration from a known start. SweepTrajectory can
-/// evaluate the motion at any time of the segment.
+/// Computes the motion of the IMU over a segment by strapdown integration from a known start. The motion can be
+/// evaluated at any time of the segment.
 ///
 /// The attitude is R(t) = R_k Exp(w_k (t - t_k)) with the rate w_k of sample k. The attitude is exact if the rate is
 /// constant in body axes over each sample. The position is p(t) = p_0 + v_0 t + g t^2 / 2 + S(t). The vectors p_0 and
@@ -58,11 +57,11 @@ struct MotionState {
 /// The saturation deficit e is the true rate minus the clipped reading, and corrects the clipped axes. The saturation
 /// deficit is linear in time between kKnots knots, at equal steps from the start to the end of the segment. If axis j
 /// is clipped, the corrected rate is w_j + s_j e_j(t), with the measured rate w_j, a factor s_j and the saturation
-/// deficit e_j. The factor s_j has the sign of the rate w_j. The magnitude of s_j is the rate's standard deviation
-/// sigma_j, divided by the largest sigma_j of the segment's clipped samples. The saturation deficit corrects rates with
-/// a small standard deviation only a little. The magnitude of s_j is 1 if all standard deviations sigma_j are 0. Within
-/// a sample, the saturation deficit is constant and has the value at the middle of the sample. SweepTrajectory neglects
-/// sculling within a sample and the earth's rotation.
+/// deficit e_j. The factor s_j has the sign of w_j, and magnitude sigma_j divided by the largest sigma_j of the
+/// segment's clipped samples. The symbol sigma_j is the standard deviation of the rate; if all sigma_j are 0, the
+/// magnitude of s_j is 1. The saturation deficit corrects rates with a small standard deviation only a little. Within a
+/// sample, the saturation deficit is constant and has the value at the middle of the sample. Sculling within a sample
+/// and the earth's rotation are neglected.
 class SweepTrajectory {
  public:
   static constexpr int kKnots = 3;
@@ -70,14 +69,13 @@ class SweepTrajectory {
   using Deficit = Eigen::Matrix<double, 3, kKnots>;
   using DeficitJacobian = Eigen::Matrix<double, 3, kDeficitSize>;
 
-  /// PreintegratedMotion is the attitude R(t) and the double integral S(t) of the specific force at the time of a lidar
-  /// point.
+  /// attitude R(t) and double integral S(t) of the specific force at the time of a lidar point
   struct PreintegratedMotion {
     Eigen::Quaterniond q_WI;
     Eigen::Vector3d preintegrated_position_m;
   };
-  /// DeficitDerivative contains the first-order derivatives of the attitude and of S(t) by the saturation deficit e.
-  /// The attitude error is attitude_jacobian_s * e, and the error of S is position_jacobian_m_s * e.
+  /// First-order errors due to the saturation deficit e: attitude_jacobian_s * e of the attitude, and
+  /// position_jacobian_m_s * e of S(t).
   struct DeficitDerivative {
     DeficitJacobian attitude_jacobian_s;
     DeficitJacobian position_jacobian_m_s;
@@ -86,10 +84,10 @@ class SweepTrajectory {
   /// Integrates the motion from `start` to `end_ns`. The samples must be contiguous and in time order, beginning at the
   /// start. Returns `too_few` if there is no sample or if the samples end before `end_ns`. Returns `time_order` if the
   /// end is before the start. Returns `gap` with the time in seconds if the first sample begins after the start.
-  /// Repeated calls of build() reuse the memory of the trajectory.
+  /// Repeated calls reuse the memory of the trajectory.
   Status build(const MotionState& start, std::span<const MotionSample> samples, TimeNs end_ns,
                const Eigen::Vector3d& gravity_W_m_s2, const Deficit& deficit_rad_s = Deficit::Zero());
-  /// Integrates the motion from `start` to `end_ns`, with gravity of magnitude `gravity_m_s2` along -z.
+  /// The gravity has magnitude `gravity_m_s2` along -z.
   Status build(const MotionState& start, std::span<const MotionSample> samples, TimeNs end_ns, double gravity_m_s2,
                const Deficit& deficit_rad_s = Deficit::Zero()) {
     return build(start, samples, end_ns, Eigen::Vector3d(0.0, 0.0, -gravity_m_s2), deficit_rad_s);
@@ -99,16 +97,16 @@ class SweepTrajectory {
   double duration_s() const { return duration_s_; }
 
   /// Returns the motion at `t_s` seconds after the start. Outside of the segment, at() extrapolates the motion by up to
-  /// kExtrapolation_s, which covers errors of the time offset. The argument `hint` is the interval of the previous
-  /// call, and speeds up calls in time order. Any value of `hint` in [0, intervals()) is valid.
+  /// kExtrapolation_s, which covers errors of the time offset. `hint` is the interval of the previous call, and speeds
+  /// up calls in time order. Any value of `hint` in [0, intervals()) is valid.
   static constexpr double kExtrapolation_s = 0.02;
   PreintegratedMotion at(double t_s, std::size_t& hint) const;
-  /// Computes the lever arm vector S(t) + R(t) x of each point x. The function is faster than at() for several points,
-  /// and gives bit-identical results.
+  /// Computes the lever arm vector S(t) + R(t) x of each point x. lever_arm_vectors() is faster than at() for several
+  /// points, and gives bit-identical results.
   void lever_arm_vectors(std::span<const SweepPoint> points, std::span<Eigen::Vector3f> levers_W_m) const;
   DeficitDerivative deficit_derivative(double t_s, std::size_t& hint) const;
   std::size_t intervals() const { return intervals_.size(); }
-  /// Returns the end of interval i in seconds after the start of the segment.
+  /// end of interval i in seconds after the start of the segment
   double interval_end_s(std::size_t i) const { return intervals_[i].start_s + intervals_[i].length_s; }
 
   /// Returns the common part p_0 + v_0 t + g t^2 / 2 of the positions of all points at time t. The position of a point
@@ -125,8 +123,8 @@ class SweepTrajectory {
   /// noise.
   MotionState state(double t_s) const;
 
-  /// Transition contains the first-order derivatives of the state at time t_s (position, attitude, velocity) with
-  /// respect to the start state, the saturation deficit and gravity.
+  /// first-order derivatives of position, attitude and velocity at time t_s with respect to the start state, the
+  /// saturation deficit and gravity
   struct Transition {
     Eigen::Matrix<double, 9, 9> jacobian_start;
     Eigen::Matrix<double, 9, kDeficitSize> jacobian_deficit_s;
@@ -134,12 +132,12 @@ class SweepTrajectory {
   };
   Transition transition(double t_s) const;
 
-  /// Return the magnitude |s_j| of the saturation deficit's factor in the first and in the last interval. The magnitude
-  /// |s_j| is 0 if axis j is not clipped in the interval.
+  /// Return the magnitude |s_j| of the saturation deficit's factor in the first and in the last interval; 0 if axis j
+  /// is not clipped there.
   Eigen::Vector3d deficit_factor_at_start() const { return intervals_.front().deficit_factor.cwiseAbs(); }
   Eigen::Vector3d deficit_factor_at_end() const { return intervals_.back().deficit_factor.cwiseAbs(); }
 
-  /// Returns the gyro axes that were clipped anywhere in the segment: bit j for axis j.
+  /// gyro axes that were clipped anywhere in the segment: bit j for axis j
   std::uint8_t clipped_axes() const { return clipped_axes_; }
 
  private:

@@ -12,7 +12,7 @@
 
 namespace tumble {
 
-/// Neighbours is the result of a neighbour search: the nearest points of a map, nearest first.
+/// nearest points of a map, nearest first
 struct Neighbours {
   static constexpr int kMax = 32;
   int count = 0;
@@ -23,21 +23,18 @@ struct Neighbours {
 /// VoxelMap stores map points in world axes and finds nearest neighbours.
 ///
 /// The cells of a cubic grid store their points in chunks of sixteen. Each chunk has one array per coordinate, so that
-/// VoxelMap computes distances over contiguous floats. One look-up in a hash table finds a group of 8x8x8 cells.
-/// VoxelMap keeps at most one point per cube of edge `spacing_m`. Coordinates are single-precision floats, which limits
-/// the width of a map to a few kilometres.
+/// distances are computed over contiguous floats. One look-up in a hash table finds a group of 8x8x8 cells. At most one
+/// point per cube of edge `spacing_m` is kept. Coordinates are single-precision floats, which limits the width of a map
+/// to a few kilometres.
 class VoxelMap {
  public:
-  /// Label of a point whose scan line is unknown.
   static constexpr std::uint32_t kUnknownScanLine = 0xffffffffu;
-  /// Invalid point index.
   static constexpr std::uint32_t kNoPoint = 0xffffffffu;
 
   struct Params {
     double voxel_m = 0.5;    ///< edge of a cell; the search is fastest at a few times spacing_m
     double spacing_m = 0.1;  ///< edge of a cube that keeps at most one point; 0 keeps all points
 
-    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.voxel_m, {"voxel_m", "m", 0.01, 100.0,
@@ -49,22 +46,21 @@ class VoxelMap {
 
   explicit VoxelMap(const Params& params);
 
-  /// Adds a point if the cube at its position is empty. Returns true if the point was added. The argument `sigma_m` is
-  /// the standard deviation of the point's position. The arguments `sweep` and `line` are labels, which the functions
-  /// sweep() and line() return. VoxelMap rejects points that are not finite or beyond 2^20 cells.
+  /// Adds a point if the cube at its position is empty, and returns whether the point was added. `sigma_m` is the
+  /// standard deviation of the point's position. `sweep` and `line` are labels, which sweep() and line() return. Points
+  /// that are not finite or beyond 2^20 cells are rejected.
   bool insert(const Eigen::Vector3f& position_W_m, float sigma_m, std::uint32_t sweep,
               std::uint32_t line = kUnknownScanLine) {
     return add(position_W_m, sigma_m, sweep, line) != kNoPoint;
   }
 
-  /// Adds a point like insert(). Returns the index of the new point, or kNoPoint if the point was rejected.
+  /// Returns the index of the new point, or kNoPoint if the point was rejected.
   std::uint32_t add(const Eigen::Vector3f& position_W_m, float sigma_m, std::uint32_t sweep, std::uint32_t line);
   /// Returns true if add() would reject a point, because its cube already has a point or the position is outside the
   /// map's range. Call is_occupied() first if the properties of a point are expensive to compute.
   bool is_occupied(const Eigen::Vector3f& position_W_m) const;
 
-  /// Moves a point to a refined position. If the refined position is in another cell, move() returns false and leaves
-  /// the point unchanged.
+  /// If the refined position is in another cell, move() returns false and leaves the point unchanged.
   bool move(std::uint32_t index, const Eigen::Vector3f& position_W_m);
 
   /// Counts a sweep whose beam passed through the position of a point (`through` is true) or hit the point again
@@ -85,7 +81,6 @@ class VoxelMap {
   /// and the numbers of sweeps are unchanged.
   void remove_sweeps_from(std::uint32_t first_sweep);
 
-  /// Returns the memory in use [bytes].
   std::size_t bytes() const;
 
   std::size_t size() const { return sigma_m_.size() - free_slots_; }

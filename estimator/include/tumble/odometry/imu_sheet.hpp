@@ -8,10 +8,9 @@
 
 namespace tumble {
 
-/// ImuSheet contains the data sheet of an IMU. A range of 0 means that the range is unknown. The estimators detect
-/// saturation limits from the readings, with or without a stated range. Data sheets state the range of a gyro in
-/// degrees per second, between 250 and 4000. A gyro range above 100 rad/s (5730 deg/s) is rejected, because the range
-/// is probably in degrees per second.
+/// A range of 0 means that the range is unknown. The estimators detect saturation limits from the readings, with or
+/// without a stated range. Data sheets state the range of a gyro in degrees per second, between 250 and 4000. A gyro
+/// range above 100 rad/s (5730 deg/s) is rejected, because the range is probably in degrees per second.
 struct ImuSheet {
   double rate_hz = 100.0;
   double gyro_range_rad_s = 0.0;
@@ -19,7 +18,6 @@ struct ImuSheet {
   double gyro_noise_rad_s_sqrt_hz = 5.236e-4;
   double accel_noise_m_s2_sqrt_hz = 5.9e-4;
 
-  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.rate_hz, {"rate_hz", "Hz", 1.0, 1e5, "samples per second", FieldRank::basic});
@@ -65,7 +63,7 @@ ImuSheet ouster_imu();
 /// IMU inside a Livox Mid-360; its ranges are assumed.
 ImuSheet mid360_imu();
 
-/// Returns the data sheets of all IMUs with their names, for programs that select a data sheet by name.
+/// For programs that select a data sheet by name.
 std::span<const std::pair<const char*, ImuSheet (*)()>> imus();
 
 }  // namespace sheets

@@ -8,12 +8,11 @@
 
 namespace tumble {
 
-/// LidarSheet contains the data sheet of a lidar. The estimators drop lidar returns outside of the stated range.
+/// Lidar returns outside of the stated range are dropped.
 struct LidarSheet {
   double range_min_m = 0.3;
   double range_max_m = 100.0;
 
-  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.range_min_m,
@@ -51,7 +50,7 @@ LidarSheet os1_128();
 /// Livox Mid-360.
 LidarSheet mid360();
 
-/// Returns the data sheets of all lidars with their names, for programs that select a data sheet by name.
+/// For programs that select a data sheet by name.
 std::span<const std::pair<const char*, LidarSheet (*)()>> lidars();
 
 }  // namespace sheets

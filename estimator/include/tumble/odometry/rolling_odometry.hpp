@@ -42,40 +42,35 @@ class RollingOdometry {
  public:
   static constexpr double kWholeRecording = RollingSmoother::kWholeRun;  ///< value of Params::lag_s
 
-  /// Unit is one IMU inside the sphere.
   struct Unit {
     ImuSheet sheet;
-    /// Pose of the IMU relative to the sphere's centre: x_B = T_BI x_I.
+    /// pose of the IMU relative to the sphere's centre: x_B = T_BI x_I
     Eigen::Isometry3d T_BI = Eigen::Isometry3d::Identity();
   };
   struct Params {
     double radius_m = 0.0;    ///< required; has no default
     std::vector<Unit> units;  ///< 1 to ImuMerge::kImus IMUs; required
-    /// Standard deviation of the distance between the origin of T_BI and the true centre of the sphere. RollingOdometry
-    /// estimates this distance.
+    /// Standard deviation of the distance between the origin of T_BI and the sphere's true centre, which is estimated.
     double centre_sigma_m = 6e-3;
     double gravity_m_s2 = 9.80665;
-    /// Lag of the poses that take() returns. If the lag is 0, the poses are live. With kWholeRecording, add_imus()
-    /// stores the readings, newest() returns nothing, and finish() estimates all poses from the whole recording.
+    /// Lag of the poses that take() returns; 0: live poses. With kWholeRecording, add_imus() stores the readings,
+    /// newest() returns nothing, and finish() estimates all poses from the whole recording.
     double lag_s = 0.0;
 
-    /// Expert contains rarely changed parameters. If Params and Expert contain the same parameter, RollingOdometry uses
-    /// the value in Params.
+    /// If Params and Expert contain the same parameter, the value in Params applies.
     struct Expert {
       ImuMerge::Params merge;
       RollingSmoother::Params rolling;
       SampleClock::Params stamps;  ///< correction of time stamps that a host computer assigned
     } expert;
 
-    /// Returns the names of parameters that RollingOdometry computes from other parameters and from data sheets.
-    /// RollingOdometry ignores user values of computed parameters.
+    /// Names of parameters that are computed from other parameters and from data sheets; user values are ignored.
     static std::span<const char* const> derived_fields();
 
-    /// Widens the priors for IMUs without data sheet and calibration, mounted anywhere in the sphere. The function also
-    /// assumes a level floor, because the accelerometer bias of an uncalibrated IMU resembles a slope.
+    /// Widens the priors for IMUs without data sheet and calibration, mounted anywhere in the sphere. The floor is also
+    /// assumed level, because the accelerometer bias of an uncalibrated IMU resembles a slope.
     void widen_priors_for_unknown_imus();
 
-    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.radius_m, {"radius_m", "m", 1e-3, 100.0, "radius of the sphere", FieldRank::basic});
@@ -94,16 +89,14 @@ class RollingOdometry {
       visit.group("stamps_", p.expert.stamps);
     }
   };
-  /// Calibration contains the estimated centre and radius of the sphere.
   struct Calibration {
     Eigen::Vector3d centre_B_m = Eigen::Vector3d::Zero();  ///< sphere's centre, relative to the origin of T_BI
-    /// Radius and its standard deviation. A standard deviation of 0 means that the radius is fixed
-    /// (expert.rolling.filter.radius_sigma_m).
+    /// radius and its standard deviation; 0: the radius is fixed (expert.rolling.filter.radius_sigma_m)
     double radius_m = 0.0, radius_sigma_m = 0.0;
   };
   struct Pose {
     PoseState pose;  ///< pose of the sphere's centre; live poses have no attitude covariance
-    /// Angular velocity of the sphere, in sphere axes.
+    /// angular velocity of the sphere, in sphere axes
     Eigen::Vector3d angular_velocity_rad_s = Eigen::Vector3d::Zero();
     /// Covariance of the velocity of the sphere's centre, in sphere axes. With a lag, the covariance omits the
     /// uncertainty of the contact mode.
@@ -126,28 +119,28 @@ class RollingOdometry {
   /// stamps with jitter. Pass NaN for an IMU without a reading. OutlierFilter rejects single outliers of each IMU, and
   /// may delay the samples of all IMUs by one. newest() is then one sample older. On error, the state is unchanged. The
   /// errors are `too_few` (wrong number of IMUs, or no reading), `time_order`, `degenerate` (no gravity in the first
-  /// sample), `gap` and `out_of_range`. The error `out_of_range` means that the run has finished, the time stamp
-  /// exceeds kStampMax_ns, or the only IMU with readings has a frozen axis.
+  /// sample), `gap` and `out_of_range`. `out_of_range` means that the run has finished, the time stamp exceeds
+  /// kStampMax_ns, or the only IMU with readings has a frozen axis.
   ///
   /// A single wrong time stamp causes the loss of one sample. After a gap of more than a second, the second sample
   /// restarts the run. If the clock steps back, add_imus() rejects samples with `time_order` for 0.2 s, and then the
   /// run restarts. A restart finishes the poses so far and continues at the newest pose, like reset(pose). Poses after
-  /// a restart have the flag `uncertain`. The covariance of these poses includes the unknown motion during the gap.
+  /// a restart have the flag `uncertain`, and their covariance includes the unknown motion during the gap.
   Status add_imus(std::span<const ImuSample> samples);
-  /// Processes a sample of a sphere with one IMU. Returns `ok` or an error of add_imus().
+  /// For a sphere with one IMU. Returns `ok` or an error of add_imus().
   Status add_imu(const ImuSample& sample) { return add_imus({&sample, 1}); }
 
-  /// Processes a sample of one IMU whose samples are not simultaneous with those of the other IMUs. RollingOdometry
-  /// resamples the IMUs to common times, at most 0.05 s late. RollingOdometry treats an IMU without readings as absent.
-  /// Returns `ok`, an error of add_imus(), or `out_of_range` for an invalid IMU number. After a clock steps back,
-  /// add_imu() rejects samples until reset().
+  /// Processes a sample of one IMU whose samples are not simultaneous with those of the other IMUs. The IMUs are
+  /// resampled to common times, at most 0.05 s late. An IMU without readings counts as absent. Returns `ok`, an error
+  /// of add_imus(), or `out_of_range` for an invalid IMU number. After a clock steps back, add_imu() rejects samples
+  /// until reset().
   Status add_imu(std::size_t unit, const ImuSample& sample);
 
-  /// Returns the pose at the newest sample, from all data so far. The result is empty before the first sample.
+  /// The pose uses all data so far, and is empty before the first sample.
   std::optional<Pose> newest() const;
 
-  /// Returns the next pose in time order. Each pose is returned once. If the lag is 0, the poses are live; otherwise
-  /// the poses are smoothed and `lag_s` old.
+  /// Returns the next pose in time order, once. If the lag is 0, the poses are live; otherwise the poses are smoothed
+  /// and `lag_s` old.
   std::optional<Pose> take();
 
   /// Ends the run and smooths the remaining poses. After finish(), add_imus() rejects samples until reset(). Returns
@@ -158,37 +151,34 @@ class RollingOdometry {
   /// Starts a new run at the origin and at rest. After reset(), take() still returns the remaining poses of the old
   /// run, and counters keep their values.
   void reset();
-  /// Starts a new run at a known pose of the sphere, like reset(). The pose `T_WG` sets position and heading, and
-  /// gravity at rest determines the tilt. Covariances are relative to `T_WG`.
+  /// Starts a new run at a known pose of the sphere, like reset(). `T_WG` sets position and heading, and gravity at
+  /// rest determines the tilt. Covariances are relative to `T_WG`.
   void reset(const Eigen::Isometry3d& T_WG);
 
-  /// Reports the suspected faults of the IMUs: frozen axes (FrozenAxes), units that are silent, frozen or disagree
-  /// (ImuMerge), a force at rest that differs from gravity (RestGravity), and readings that contradict each other
-  /// (ImuPlausibility, UnitSignCheck, ImuMerge::lever_arm_agreement). A finding ends when its cause ends.
-  /// RollingOdometry ignores the readings of a frozen unit. If all units with readings are frozen, add_imus() rejects
-  /// the sample. With kWholeRecording, finish() checks the whole recording, and before finish() there is no finding.
+  /// Reports the suspected faults of the IMUs. A finding ends when its cause ends. The readings of a frozen unit are
+  /// ignored. If all units with readings are frozen, add_imus() rejects the sample. With kWholeRecording, finish()
+  /// checks the whole recording, and before finish() there is no finding.
   SensorHealth health() const;
 
   /// Returns the merged IMUs of a whole recording with their findings (detail/imu_findings.hpp). Returns null before
   /// finish() and without kWholeRecording.
   const MergedFindings* recording() const { return whole_.get(); }
 
-  /// Returns the estimated centre and radius of the sphere. If `lag_s` is above 0, the centre and radius are the
-  /// estimates at the newest smoothed pose.
+  /// If `lag_s` is above 0, centre and radius are the estimates at the newest smoothed pose.
   Calibration calibration() const;
 
   /// Returns the number of bridged gaps between samples, and the longest gap [s].
   std::int64_t bridged_gaps() const { return state_->live.gaps; }
   double longest_gap_s() const { return state_->live.gap_longest_s; }
-  /// Returns true if the sphere was already moving at the first samples.
+  /// The sphere was already moving at the first samples.
   bool started_in_motion() const { return state_->live.started_in_motion; }
 
-  /// Returns the state of ImuMerge, which contains the frozen, disagreeing and delayed IMUs.
+  /// ImuMerge::State contains the frozen, disagreeing and delayed IMUs.
   const ImuMerge::State& units() const { return *imu_merge_state_; }
 
   /// Returns the number of readings of all IMUs that OutlierFilter rejected.
   std::size_t rejected_readings() const;
-  /// Returns the number of restarts after a gap or after a clock that stepped back.
+  /// number of restarts after a gap or after a clock that stepped back
   std::size_t restart_count() const { return restart_count_; }
   /// Returns the jitter of the time stamps [s] while SampleClock corrects them, and otherwise an empty value.
   std::optional<double> estimated_jitter_s() const;
@@ -203,10 +193,10 @@ class RollingOdometry {
   /// because biases change at every switch-on. The run starts at the saved pose with its covariance, and its poses have
   /// the flag `uncertain`. If the sphere may have moved, call reset(pose) after load().
   ///
-  /// The output `last_pose` is the saved pose with its time in the clock of the saved run, or empty. On error, the
-  /// object is unchanged, and the returned status names the field, the saved value and the bound. The error is
-  /// `too_few` (truncated bytes), `non_finite` or `out_of_range`. The function rejects damaged bytes, bytes of
-  /// TumblingOdometry or of another version, and a saved run with another radius or other IMUs.
+  /// `last_pose` receives the saved pose with its time in the clock of the saved run, or is empty. On error, the object
+  /// is unchanged, and the returned status names the field, the saved value and the bound. The error is `too_few`
+  /// (truncated bytes), `non_finite` or `out_of_range`. Damaged bytes, bytes of TumblingOdometry or of another version,
+  /// and a saved run with another radius or other IMUs are rejected.
   Status load(std::span<const std::byte> bytes, std::optional<PoseState>* last_pose = nullptr);
 
   /// Returns the parameters with which RollingSmoother processes merged readings, for programs that use RollingSmoother
@@ -246,7 +236,7 @@ class RollingOdometry {
   UnitAlignment unit_alignment_;
   UnitAlignment::State unit_alignment_state_;
   std::array<std::vector<ImuSample>, ImuMerge::kImus> recorded_;  ///< readings of each IMU, with kWholeRecording
-  /// State of ImuMerge, and buffer for its next state.
+  /// state of ImuMerge, and buffer for its next state
   std::unique_ptr<ImuMerge::State> imu_merge_state_, merge_state_buffer_;
   std::unique_ptr<RollingSmoother::State> state_;
   UnitRails::State rails_state_;

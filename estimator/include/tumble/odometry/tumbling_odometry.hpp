@@ -28,35 +28,33 @@ namespace tumble {
 
 struct RecordingEstimate;
 
-/// Estimates pose, velocity and map of a tumbling body from a lidar and one IMU, whose gyro may saturate.
-/// TumblingOdometry is causal and corrects the motion distortion of the sweeps. SampleClock corrects time stamps that a
-/// host computer assigned. RegimeStream estimates the angular velocity of each sample with a delay of `lag_s`.
-/// LidarInertialOdometry then processes the samples and the sweeps.
+/// Estimates pose, velocity and map of a tumbling body from a lidar and one IMU, whose gyro may saturate. SampleClock
+/// corrects time stamps that a host computer assigned. RegimeStream estimates the angular velocity of each sample with
+/// a delay of `lag_s`.
 ///
-/// TumblingOdometry reports three poses of increasing accuracy. The function newest() predicts the IMU's pose at the
-/// newest sample by inertial integration from the last registered sweep. The function take() returns a sweep registered
-/// to the map (`report.pose`), at most `lag_s` after the sweep's end. The report of the following sweep contains the
-/// final pose (`report.smoothed`), at most 0.3 s after the sweep's end at ten sweeps per second. Time stamps of poses
-/// are in the IMU's clock. LidarInertialOdometry defines the world frame. The earliest sweep with enough points starts
-/// the map. TumblingOdometry reports poses only after the map has started. Start with at least half a second at rest,
-/// which determines the tilt. If the gyro's zero offset at rest exceeds 0.05 rad/s, TumblingOdometry subtracts the
-/// offset and restarts, which needs a second at rest.
+/// Three poses of increasing accuracy are reported. newest() predicts the IMU's pose at the newest sample by inertial
+/// integration from the last registered sweep. take() returns a sweep registered to the map (`report.pose`), at most
+/// `lag_s` after the sweep's end. The report of the following sweep contains the final pose (`report.smoothed`), at
+/// most 0.3 s after the sweep's end at ten sweeps per second. Time stamps of poses are in the IMU's clock. The earliest
+/// sweep with enough points starts the map, and poses are reported only after the map has started. Start with at least
+/// half a second at rest, which determines the tilt. If the gyro's zero offset at rest exceeds 0.05 rad/s, the offset
+/// is subtracted and the run restarts, which needs a second at rest.
 ///
 /// Some seconds after motion starts, SecondPass processes the first seconds of motion again with the calibration
-/// estimated so far. TumblingOdometry then continues with the map and pose of SecondPass; poses that were already
-/// reported are not changed. If no sweep arrives for a second, inertial integration continues, and take() returns a
-/// sweep without points.
+/// estimated so far. The run then continues with the map and pose of SecondPass; poses that were already reported are
+/// not changed. If no sweep arrives for a second, inertial integration continues, and take() returns a sweep without
+/// points.
 ///
 /// With `lag_s` = kWholeRecording, add_imu() and add_sweep() store the data, and finish() estimates rates, poses and
-/// map from the whole recording. The function finish() estimates the rates with RegimeSmoother, checks the IMU, and
-/// repeats the mapping until the lidar's calibration has converged. With kWholeRecording, there are no live poses, and
-/// take() returns all sweeps after finish(). A step of the clock ends the recording, but a gap in the data does not.
-/// The function finish() needs more stack and memory than other functions.
+/// map from the whole recording. finish() estimates the rates with RegimeSmoother, checks the IMU, and repeats the
+/// mapping until the lidar's calibration has converged. With kWholeRecording, there are no live poses, and take()
+/// returns all sweeps after finish(). A step of the clock ends the recording, but a gap in the data does not. finish()
+/// needs more stack and memory than other functions.
 ///
 /// An IMU sample costs one step of RegimeStream, and sometimes the registration of a sweep. After start-up, add_imu()
 /// allocates memory only if the sample completes a sweep. While SecondPass runs, a sweep costs up to four
-/// registrations. When SecondPass ends, it costs five additional registrations. The memory is bounded: it depends on
-/// the lag, the map radius, `sweeps_max` and the buffer of SecondPass. In addition, the map stores 12 bytes per sweep
+/// registrations. The end of SecondPass costs five additional registrations. The memory is bounded: it depends on the
+/// lag, the map radius, `sweeps_max` and the buffer of SecondPass. In addition, the map stores 12 bytes per sweep
 /// within ten metres. A call needs at most 64 KiB of stack.
 ///
 /// TumblingOdometry starts no threads, uses no files and prints nothing. A copy of a TumblingOdometry contains the
@@ -68,12 +66,11 @@ class TumblingOdometry {
   using SweepProgress = std::function<void(std::size_t done, std::size_t all)>;
   static constexpr double kWholeRecording = Params::kWholeRecording;  ///< value of Params::lag_s
 
-  /// Sweep contains the results of one lidar sweep.
   struct Sweep {
     Status status;  ///< status of add_sweep(); `report.trajectory` is empty without a pose
     LidarInertialOdometry::SweepReport report;
-    /// Transform from the world to the frame of the position readings, estimated from readings up to the sweep's end.
-    /// The value is empty if the transform is unknown.
+    /// transform from the world to the frame of the position readings, estimated up to the sweep's end; empty if
+    /// unknown
     std::optional<PositionFrame> position_frame;
   };
 
@@ -81,11 +78,11 @@ class TumblingOdometry {
   /// invalid.
   explicit TumblingOdometry(const Params& params);
 
-  /// Sets the map of an earlier run, in which TumblingOdometry then localises the robot. Call use_map() before the
-  /// first sweep. Until the robot is localised, poses are in a local frame, and health() reports the missing
-  /// localisation. After localisation, `report.in_prior_map` is true, and poses are in the frame of the prior map. The
-  /// function reset() keeps the prior map and localises the robot again. The argument of reset(pose) is a pose in the
-  /// prior map. Returns `ok` or an error of LidarInertialOdometry::use_map().
+  /// Sets the map of an earlier run, in which the robot is then localised. Call use_map() before the first sweep. Until
+  /// the robot is localised, poses are in a local frame, and health() reports the missing localisation. After
+  /// localisation, `report.in_prior_map` is true, and poses are in the frame of the prior map. reset() keeps the prior
+  /// map and localises the robot again. The argument of reset(pose) is a pose in the prior map. Returns `ok` or an
+  /// error of LidarInertialOdometry::use_map().
   Status use_map(PriorMap map);
   /// Processes an IMU sample, and registers the sweeps whose rates become available. Time stamps must increase. Returns
   /// `non_finite`, `out_of_range`, `time_order` or `gap` if the sample is rejected. A single wrong time stamp causes
@@ -94,35 +91,34 @@ class TumblingOdometry {
   /// with `time_order` for 0.2 s. The run then restarts at the newest pose, like reset(pose). OutlierFilter rejects
   /// single outliers and may delay a sample by one. newest() is then one sample older.
   Status add_imu(const ImuSample& sample);
-  /// Processes a sweep of points fired in [start_ns, end_ns], at any time after the sweep's last point. The function
-  /// copies the points. The function drops points from before the end of the last sweep, because time stamps of sweeps
-  /// may overlap by jitter. On error, the state is unchanged. The error `time_order` means that the end is before the
-  /// start, or that half of the sweep is before the end of the last sweep. The error `out_of_range` means that a point
-  /// is outside the sweep, or that the end is a second after the newest IMU sample. The function also returns
-  /// `out_of_range` if a time stamp exceeds 97 years or too many sweeps wait.
+  /// Processes a sweep of points fired in [start_ns, end_ns], at any time after the sweep's last point. The points are
+  /// copied. Points from before the end of the last sweep are dropped, because time stamps of sweeps may overlap by
+  /// jitter. On error, the state is unchanged. `time_order` means that the end is before the start, or that half of the
+  /// sweep is before the end of the last sweep. `out_of_range` means that a point is outside the sweep, or that the end
+  /// is a second after the newest IMU sample. `out_of_range` also means that a time stamp exceeds 97 years or that too
+  /// many sweeps wait.
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points);
-  /// Processes a sweep of one of several lidars: 0 is the first lidar, k is `further_lidars[k - 1]`. TumblingOdometry
-  /// registers the points of a further lidar together with the simultaneous sweep of the first lidar. The points of a
-  /// further lidar must therefore arrive before the registration of the sweep, which is `lag_s` after the end of the
+  /// Processes a sweep of one of several lidars: 0 is the first lidar, k is `further_lidars[k - 1]`. The points of a
+  /// further lidar are registered together with the simultaneous sweep of the first lidar. The points of a further
+  /// lidar must arrive before the simultaneous sweep of the first lidar is registered, `lag_s` after the end of the
   /// sweep. A lag of two sweep periods is long enough. The lidars need no synchronisation. Limitation: the ranges and
   /// the own-body box of the first lidar also apply to the points of further lidars, in axes of the first lidar.
   /// Returns `ok`, an error of add_sweep() for the first lidar, or `out_of_range` for an unknown lidar.
   Status add_sweep(std::size_t lidar, TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points);
   /// Processes an odometer reading (detail/odometer_reading.hpp). An odometer reading must arrive before the
   /// registration of its sweep, which is `lag_s` after the end of the sweep. If a sweep has several odometer readings,
-  /// TumblingOdometry uses only the last reading. On error, the state is unchanged. Returns `empty` (no IMU sample
-  /// yet), `non_finite`, `time_order` (the sweep is already registered) or `out_of_range`. The error `out_of_range`
-  /// means an invalid standard deviation, a time stamp more than a second ahead of the newest sample, or 1024 waiting
-  /// readings.
+  /// only the last reading is used. On error, the state is unchanged. Returns `empty` (no IMU sample yet),
+  /// `non_finite`, `time_order` (the sweep is already registered) or `out_of_range`. `out_of_range` means an invalid
+  /// standard deviation, a time stamp more than a second ahead of the newest sample, or 1024 waiting readings.
   Status add_velocity(const VelocityReading& velocity);
   Status add_motion(const MotionReading& motion);
-  /// Processes a position reading, for example from GPS or a beacon. Position readings leave poses and map unchanged.
-  /// Position readings determine Sweep::position_frame, in which poses do not drift (PositionAlignment). Position
-  /// readings may arrive in any order, but before the registration of their sweep. Position readings also work with
-  /// kWholeRecording. On error, the state is unchanged. Returns `ok` or an error of add_velocity(); `out_of_range` also
-  /// means that the covariance is not symmetric and positive definite.
+  /// Processes a position reading, for example from GPS or a beacon. Position readings do not change poses and map, but
+  /// determine Sweep::position_frame, in which poses do not drift. Position readings may arrive in any order, but
+  /// before the registration of their sweep. Position readings also work with kWholeRecording. On error, the state is
+  /// unchanged. Returns `ok` or an error of add_velocity(); `out_of_range` also means that the covariance is not
+  /// symmetric and positive definite.
   Status add_position(const PositionReading& position);
-  /// Returns the next registered sweep, in time order. The result is empty if no registered sweep waits.
+  /// The sweeps are in time order; the result is empty if no registered sweep waits.
   std::optional<Sweep> take();
   /// Registers all sweeps that the IMU samples cover. Call finish() at the end of a run or during a halt. After
   /// finish(), take() returns the registered sweeps. After finish(), mapper().window_trajectories() returns the final
@@ -130,23 +126,22 @@ class TumblingOdometry {
   /// current calibration.
   ///
   /// With kWholeRecording, finish() processes the whole recording, and later samples and sweeps are rejected until
-  /// reset(). The function take() then returns all sweeps with their final poses in `report.pose` and
-  /// `report.trajectory`. Returns `ok`, an error of RateSmoother::estimate() such as `too_few`, or the error of a
-  /// sample in the mapper. Without kWholeRecording, finish() returns `ok`. The function finish() calls `on_sweep`
-  /// before each sweep, with the number of processed sweeps and the number of all sweeps, for a progress display. Each
-  /// pass over the recording starts again at 0 processed sweeps.
+  /// reset(). take() then returns all sweeps with their final poses in `report.pose` and `report.trajectory`. Returns
+  /// `ok`, an error of RateSmoother::estimate() such as `too_few`, or the error of a sample in the mapper. Without
+  /// kWholeRecording, finish() returns `ok`. finish() calls `on_sweep` before each sweep, with the number of processed
+  /// sweeps and the number of all sweeps, for a progress display. Each pass over the recording starts again at 0
+  /// processed sweeps.
   Status finish(const SweepProgress& on_sweep = {});
   /// Starts a new run with a new map, at the origin and at rest. After reset(), take() still returns the remaining
   /// sweeps of the old run, and counters keep their values.
   void reset();
-  /// Starts a new run at a known pose of the IMU, like reset(). The pose `T_WI` sets position and heading, and gravity
-  /// at rest determines the tilt. Covariances are relative to `T_WI`.
+  /// Starts a new run at a known pose of the IMU, like reset(). `T_WI` sets position and heading, and gravity at rest
+  /// determines the tilt. Covariances are relative to `T_WI`.
   void reset(const Eigen::Isometry3d& T_WI);
 
   /// Predicts pose and velocity of the IMU at its newest sample, with covariance, by inertial integration from the last
-  /// registered sweep. Returns `empty` before the first sweep. The function newest() allocates memory. Cost: O(samples
-  /// since the last sweep). The optional output `velocity_covariance_I_m2_s2` is the covariance of the velocity error
-  /// in IMU axes.
+  /// registered sweep. Returns `empty` before the first sweep. newest() allocates memory. Cost: O(samples since the
+  /// last sweep). `velocity_covariance_I_m2_s2` (optional) is the covariance of the velocity error in IMU axes.
   Status newest(PoseState& pose, Eigen::Matrix3d* velocity_covariance_I_m2_s2 = nullptr) const;
   /// Reports the suspected faults of the sensors and of the estimate. Estimation continues after any finding, and a
   /// finding ends when its cause ends (at the latest a minute later). The checks are RateStream::health(),
@@ -159,7 +154,6 @@ class TumblingOdometry {
   const SweepScale& sweep_scale() const;
   /// Returns the newest Sweep::position_frame, for newest(); empty with kWholeRecording.
   const std::optional<PositionFrame>& position_frame() const { return positions_.frame(); }
-  /// Returns the time of the newest accepted IMU sample.
   std::optional<TimeNs> newest_ns() const { return newest_ns_; }
   /// Returns the rate of the newest IMU sample, if any. While the gyro is saturated, the rate of the newest sample is
   /// provisional.
@@ -170,16 +164,14 @@ class TumblingOdometry {
   /// directions.
   RigCalibration rig() const;
   const SaturationLevels& rails() const;
-  /// Returns the number of restarts after a gap or after a clock that stepped back.
+  /// number of restarts after a gap or after a clock that stepped back
   std::size_t restart_count() const { return restart_count_; }
-  /// Returns the number of samples that OutlierFilter rejected because of a wrong reading or time stamp.
+  /// number of samples that OutlierFilter rejected because of a wrong reading or time stamp
   std::size_t rejected_readings() const { return outlier_filter_state_.rejected; }
-  /// Returns true if SecondPass has replaced the map and the pose.
   bool second_pass_applied() const { return second_pass_.applied(); }
-  /// The following counters are 0 in normal operation. The function rejected_samples() counts IMU samples that the
-  /// mapper rejected. The function dropped_sweeps() counts sweeps that take() did not return in time. The function
-  /// early_sweeps() counts sweeps that ended before the first IMU sample. The function unused_odometer_readings()
-  /// counts odometer readings that span two sweeps.
+  /// The following counters are 0 in normal operation. rejected_samples() counts IMU samples that the mapper rejected.
+  /// dropped_sweeps() counts sweeps that take() did not return in time. early_sweeps() counts sweeps that ended before
+  /// the first IMU sample. unused_odometer_readings() counts odometer readings that span two sweeps.
   std::size_t rejected_samples() const { return pass_.rejected_samples(); }
   std::size_t dropped_sweeps() const { return dropped_sweeps_; }
   std::size_t early_sweeps() const { return early_sweeps_; }
@@ -189,7 +181,7 @@ class TumblingOdometry {
   /// Returns the jitter of the IMU's time stamps about a regular clock [s] while SampleClock corrects them, and
   /// otherwise an empty value.
   std::optional<double> estimated_jitter_s() const;
-  /// Returns the mapper, which provides the map and the calibration of the lidar.
+  /// The mapper provides the map and the calibration of the lidar.
   const LidarInertialOdometry& mapper() const;
   /// Returns the rates of all samples, the checks and the mapping passes of a whole recording
   /// (detail/recording_estimate.hpp). Returns null before finish() and without kWholeRecording.
@@ -211,10 +203,10 @@ class TumblingOdometry {
   /// localisation. If the robot may have moved by more than a metre, call reset(pose) after load(). With
   /// kWholeRecording, the run starts at the saved pose with a new map.
   ///
-  /// The output `last_pose` is the saved pose with its time in the clock of the saved run, or empty. On error, the
-  /// object is unchanged, and the returned status names the field, the saved value and the bound. The error is
-  /// `too_few` (truncated bytes), `non_finite`, `degenerate` or `out_of_range`. The function rejects damaged bytes,
-  /// bytes of RollingOdometry or of another version, and a saved run with another stated lever arm or lidar mounting.
+  /// `last_pose` receives the saved pose with its time in the clock of the saved run, or is empty. On error, the object
+  /// is unchanged, and the returned status names the field, the saved value and the bound. The error is `too_few`
+  /// (truncated bytes), `non_finite`, `degenerate` or `out_of_range`. Damaged bytes, bytes of RollingOdometry or of
+  /// another version, and a saved run with another stated lever arm or lidar mounting are rejected.
   Status load(std::span<const std::byte> bytes, std::optional<PoseState>* last_pose = nullptr);
 
  private:

@@ -20,28 +20,25 @@
 
 namespace tumble {
 
-/// TumblingExpertParams contains the rarely changed parameters of TumblingOdometry. If TumblingParams contains the same
-/// parameter, TumblingOdometry uses the value in TumblingParams. The parameter gravity_m_s2 applies to the estimation
-/// of rates and of the map.
+/// If TumblingParams contains the same parameter, the value in TumblingParams applies. gravity_m_s2 applies to the
+/// estimation of rates and of the map.
 struct TumblingExpertParams {
   double gravity_m_s2 = 9.80665;
-  /// Maximum number of sweeps that wait for IMU samples, in addition to the sweeps within the lag. TumblingOdometry
-  /// also stores at most sweeps_max sweeps that wait for take(), and then drops the oldest sweep.
+  /// Maximum number of sweeps that wait for IMU samples, in addition to the sweeps within the lag. At most sweeps_max
+  /// sweeps wait for take(); then the oldest sweep is dropped.
   std::size_t sweeps_max = 16;
-  /// Parameters of the rate estimation. The default `uncalibrated` = 0.003 assumes the device's data sheet until
-  /// readings contradict the data sheet. The covariance of each rate includes the uncertainty of the calibration.
+  /// The default `uncalibrated` = 0.003 assumes the device's data sheet until readings contradict the data sheet. The
+  /// covariance of each rate includes the uncertainty of the calibration.
   RegimeStream::Params rate = rate_defaults();
-  /// Parameters of the mapping. By default, gravity's direction and the saturation deficit (true rate minus clipped
-  /// reading) are unknowns of the registration.
+  /// By default, gravity's direction and the saturation deficit (true rate minus clipped reading) are unknowns of the
+  /// registration.
   OdometryParams mapping = mapping_defaults();
-  /// Parameters of SampleClock, which corrects IMU time stamps that a host computer assigned.
   SampleClock::Params stamps;
-  /// Parameters of SecondPass, which processes the first seconds of motion again with a better calibration.
   SecondPass::Params second_pass;
   static OdometryParams mapping_defaults();
   static RegimeStream::Params rate_defaults();
-  /// Returns the names of parameters that TumblingOdometry computes from other parameters. A name that ends in '*'
-  /// stands for all names with that prefix. TumblingOdometry ignores user values of computed parameters.
+  /// Names of parameters that are computed from other parameters; a name that ends in '*' stands for all names with
+  /// that prefix. User values of computed parameters are ignored.
   static std::span<const char* const> derived_fields();
 
   template <class Self, class Visitor>
@@ -55,25 +52,23 @@ struct TumblingExpertParams {
   }
 };
 
-/// TumblingParams contains the parameters of TumblingOdometry.
 struct TumblingParams {
   static constexpr double kWholeRecording = 1e9;  ///< value of `lag_s`; see TumblingOdometry
 
   ImuSheet imu;
   /// Lever arm from the body's centre of mass to the IMU, in IMU axes, and its standard deviation per axis. The lever
-  /// arm relates rates to forces, and TumblingOdometry estimates its error. The lever arm has no default, because zero
-  /// would mean an IMU at the centre of mass.
+  /// arm relates rates to forces; its error is estimated. The lever arm has no default, because zero would mean an IMU
+  /// at the centre of mass.
   Eigen::Vector3d lever_arm_I_m = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
   double lever_arm_sigma_m = 0.01;
   Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< pose of the lidar in IMU axes
-  /// Standard deviations of T_IL and of the lidar's time offset, which TumblingOdometry estimates. A standard deviation
-  /// of 0 marks an exact quantity.
+  /// Standard deviations of T_IL and of the lidar's time offset, which are estimated; 0: exact.
   double mount_sigma_rad = 0.01;
   double mount_sigma_m = 0.006;
   double time_offset_sigma_s = 0.003;
   LidarSheet lidar;
-  /// Box in lidar axes that contains the robot. TumblingOdometry drops lidar returns inside the box. The default, an
-  /// empty Eigen box, keeps all returns. TumblingOdometry rejects a box with swapped corners.
+  /// Box in lidar axes that contains the robot; lidar returns inside the box are dropped. The default, an empty Eigen
+  /// box, keeps all returns. A box with swapped corners is rejected.
   Eigen::AlignedBox3d own_body_L;
   std::vector<FurtherLidar> further_lidars;  ///< lidars in addition to the first; see TumblingOdometry::add_sweep()
   /// Delay of reported rates and sweeps: at least two samples and at most 10 s, or kWholeRecording.
@@ -82,14 +77,12 @@ struct TumblingParams {
   using Expert = TumblingExpertParams;
   Expert expert;  ///< rarely changed parameters
 
-  /// Returns T_IL and the time offset with their standard deviations.
   StatedCalibration stated_calibration() const {
     StatedCalibration out{{}, mount_sigma_rad, mount_sigma_m, time_offset_sigma_s};
     out.calibration.T_IL = T_IL;
     return out;
   }
 
-  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit.group("imu_", p.imu);

@@ -12,11 +12,11 @@
 namespace tumble {
 
 /// Converts map points to a PCL cloud of positions and normals. Cost: O(n). The field `intensity` of the cloud contains
-/// sigma_m, because PCL has no field for a standard deviation. The field `curvature` is 0. Programs that include
-/// map_cloud.hpp must find PCL, directly or through find_package(tumble).
+/// sigma_m, because PCL has no field for a standard deviation; `curvature` is 0. Programs that include map_cloud.hpp
+/// must find PCL, directly or through find_package(tumble).
 pcl::PointCloud<pcl::PointXYZINormal> to_pcl(std::span<const MapPoint> points);
 
-/// Converts a PCL cloud to map points, as the inverse of to_pcl(). Cost: O(n).
+/// Inverse of to_pcl(). Cost: O(n).
 std::vector<MapPoint> from_pcl(const pcl::PointCloud<pcl::PointXYZINormal>& cloud);
 
 }  // namespace tumble

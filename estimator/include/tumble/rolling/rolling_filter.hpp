@@ -17,27 +17,24 @@ namespace tumble {
 /// floor.
 ///
 /// While the sphere grips the floor, the rolling constraint acts as a velocity measurement. The velocity measurements
-/// determine tilt, biases, scale, misalignment, delay and lever arm of the IMU. RollingFilter can then integrate the
-/// calibrated IMU through several seconds without grip. RollingFilter also estimates the contact mode, for example grip
-/// or slip. Each hypothesis about the past contact modes has a separate error-state Kalman filter, until later data
-/// decide between the hypotheses. The state of each Kalman filter contains the position. Grip after a slip or bump
-/// therefore also corrects the displacement during the slip or bump. RollingSmoother revises earlier poses with later
-/// data.
+/// determine tilt, biases, scale, misalignment, delay and lever arm of the IMU. The calibrated IMU can then be
+/// integrated through several seconds without grip. The contact mode, for example grip or slip, is also estimated. Each
+/// hypothesis about the past contact modes has a separate error-state Kalman filter, until later data decide between
+/// the hypotheses. The state contains the position, so grip after a slip or bump also corrects the displacement during
+/// the slip or bump. RollingSmoother revises earlier poses with later data.
 ///
 /// While the sphere is at rest, the reported position is constant. Measurements at rest may correct the path before the
-/// rest; RollingFilter applies the corrections when motion resumes. If another hypothesis becomes the most probable at
-/// rest, RollingFilter corrects the position immediately.
+/// rest; the corrections are applied when motion resumes. If another hypothesis becomes the most probable at rest, the
+/// position is corrected immediately.
 ///
-/// RollingFilter averages the readings of a fast IMU over RollingExpertParams::reading_s, and extrapolates the estimate
-/// between averages. Over a gap of up to gap_max_s, RollingFilter interpolates the rate and assumes an unknown force.
-/// The covariance after a gap includes the errors of the interpolated rate and the unknown force. RollingFilter detects
-/// a start in motion, and increases the initial uncertainty.
+/// The readings of a fast IMU are averaged over RollingExpertParams::reading_s, and the estimate is extrapolated
+/// between averages. Over a gap of up to gap_max_s, the rate is interpolated and the force unknown, with an increased
+/// covariance. A start in motion is detected, and increases the initial uncertainty.
 ///
-/// While the gyro is saturated, the attitude is uncertain, and RollingFilter does not use the rolling constraint.
-/// During gyro saturation, nothing corrects the position, and the covariance of the position grows. The state of
-/// RollingFilter needs 430 KiB of memory.
+/// While the gyro is saturated, the rolling constraint is not used, and the covariance of the position grows. The state
+/// needs 430 KiB of memory.
 ///
-/// RollingFilter assumes a rigid floor that does not move. The heading drifts.
+/// The floor is assumed rigid and unmoving. The heading drifts.
 class RollingFilter {
  public:
   static constexpr int kStates = 40;
@@ -46,7 +43,7 @@ class RollingFilter {
   using Vector = Eigen::Matrix<double, kStates, 1>;
   using Covariance = Eigen::Matrix<double, kStates, kStates>;
 
-  /// Hypothesis is one possible sequence of contact modes, with the estimate for this sequence.
+  /// one possible sequence of contact modes, with the estimate for this sequence
   struct Hypothesis {
     Vector x = Vector::Zero();  ///< errors: attitude (W), velocity and position of the IMU, constants
     Covariance P = Covariance::Zero();
@@ -59,11 +56,11 @@ class RollingFilter {
   };
 
   struct State {
-    // Estimated pose and velocity at the last sample, from the most probable hypothesis.
+    // pose and velocity at the last sample, from the most probable hypothesis
     Eigen::Vector3d p_WG_m = Eigen::Vector3d::Zero();
     Eigen::Vector3d v_WG_m_s = Eigen::Vector3d::Zero();
     Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
-    /// Position covariance at the last node, over all hypotheses.
+    /// position covariance at the last node, over all hypotheses
     Eigen::Matrix3d position_covariance_m2 = Eigen::Matrix3d::Zero();
     Eigen::Vector3d contact_velocity_m_s =
         Eigen::Vector3d::Zero();  ///< contact velocity at the last node, in world axes
@@ -76,7 +73,7 @@ class RollingFilter {
     bool started_in_motion = false;
     std::int64_t gaps = 0;  ///< number of bridged gaps
     double gap_longest_s = 0.0;
-    // Trajectory and constants about which all hypotheses are linearised.
+    // trajectory and constants about which all hypotheses are linearised
     RollingNominal nominal;
     RollingIntegrals sums;
     ImuAverage average;  ///< average of the readings that are not yet processed
@@ -96,27 +93,24 @@ class RollingFilter {
 
   explicit RollingFilter(const Params& params);
 
-  /// Processes one sample and updates the estimate. The first sample sets the tilt from its specific force, with yaw 0,
-  /// and sets the sphere's centre to the origin, at rest. The sphere should be at rest for one second after the first
-  /// sample. On error, the state is unchanged. Cost: no allocation; about kHypotheses * kStates^2 * 40 operations per
-  /// node.
+  /// The first sample sets the tilt from its specific force, with yaw 0, and sets the sphere's centre to the origin, at
+  /// rest. The sphere should be at rest for one second after the first sample. On error, the state is unchanged. Cost:
+  /// no allocation; about kHypotheses * kStates^2 * 40 operations per node.
   Status step(const ImuSample& sample, State& state) const {
     return step(sample, state, [](const State&) {});
   }
 
-  /// Processes a sample and calls `closed(state)` after each completed node. A sample that ends a gap completes several
-  /// nodes.
+  /// Calls `closed(state)` after each completed node; a sample that ends a gap completes several nodes.
   template <typename Closed>
   Status step(const ImuSample& sample, State& state, Closed closed) const {
     return step_with(sample, state,
                      Listener{&closed, [](void* to, const State& at) { (*static_cast<Closed*>(to))(at); }});
   }
 
-  /// Returns the estimate at the last processed sample. The covariance contains only the position block; all other
-  /// entries are zero.
+  /// The covariance contains only the position block; all other entries are zero.
   static RollingEstimate estimate(const State& state);
 
-  /// Returns the estimated constants of sensors and sphere at the last node, after the first sample.
+  /// The constants of sensors and sphere refer to the last node.
   static RollingCalibration calibration(const State& state);
 
  private:

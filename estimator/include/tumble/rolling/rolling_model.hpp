@@ -8,7 +8,6 @@
 
 namespace tumble {
 
-/// RollingMode is the mode of contact between the rolling sphere and the floor.
 enum class RollingMode : std::uint8_t {
   grip,     ///< the contact point is at rest; the floor is level
   slip,     ///< the contact point moves along the floor: the sphere spins too fast or slides
@@ -18,12 +17,12 @@ enum class RollingMode : std::uint8_t {
 };
 inline constexpr int kRollingModes = 5;
 
-/// Returns true if the contact point may move along the floor in the contact mode `mode`.
+/// Returns true if the contact point may move along the floor in this contact mode.
 inline bool may_slip(RollingMode mode) {
   return mode == RollingMode::slip || mode == RollingMode::bump;
 }
 
-/// RollingEstimate is the pose of a rolling sphere's centre G at one sample, with the contact mode.
+/// pose of a rolling sphere's centre G at one sample, with the contact mode
 struct RollingEstimate {
   TimeNs time_ns = 0;
   Eigen::Vector3d p_WG_m = Eigen::Vector3d::Zero();
@@ -39,7 +38,7 @@ struct RollingEstimate {
   bool uncertain = false;  ///< the position is uncertain after an event (RollingModeParams::event_sigma_growth_m)
 };
 
-/// RollingNominal contains the trajectory and the constants about which the filter linearises its errors.
+/// trajectory and constants about which the filter linearises its errors
 struct RollingNominal {
   Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
   Eigen::Vector3d v_WI_m_s = Eigen::Vector3d::Zero();
@@ -56,8 +55,8 @@ struct RollingNominal {
   bool operator==(const RollingNominal&) const = default;
 };
 
-/// RollingCalibration contains the constants that RollingFilter estimated in one run, usable as the prior of another
-/// run of the same sphere. The order is that of the error state, rolling.md (R1), from the gyro bias to the radius.
+/// Constants that one run estimated, usable as the prior of another run of the same sphere. The order is that of the
+/// error state, rolling.md (R1), from the gyro bias to the radius.
 struct RollingCalibration {
   static constexpr int kSize = 31;
   Eigen::Matrix<double, kSize, 1> constants = Eigen::Matrix<double, kSize, 1>::Zero();
@@ -82,8 +81,7 @@ struct RollingIntegrals {
   double unexplained_impact_m_s = 0.0;                 ///< part of impact_m_s that rotation does not explain
   Eigen::Vector3d subsample_saturation_W_m_s =
       Eigen::Vector3d::Zero();  ///< standard deviation of force lost to saturation shorter than a sample
-  // Duration of a gap, and the variances that the gap adds to angle, rate and velocity. The rate variance is multiplied
-  // by the duration.
+  // Duration of a gap, and the variances that the gap adds to angle, rate (times duration) and velocity.
   double gap_s = 0.0, gap_angle_variance_rad2 = 0.0, gap_rate_variance_rad2_s = 0.0, gap_speed_variance_m2_s2 = 0.0;
   double node_s = 0.0;
   bool operator==(const RollingIntegrals&) const = default;

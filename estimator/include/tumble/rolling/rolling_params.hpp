@@ -13,16 +13,14 @@
 
 namespace tumble {
 
-/// RollingExpertParams contains the rarely changed parameters of RollingFilter and RollingSmoother, grouped by topic.
 struct RollingExpertParams {
   double node_s = 0.02;  ///< time between two measurement updates
-  /// Averaging time of the readings. The thresholds in RollingExpertParams assume the default averaging time. An
-  /// averaging time of 0 disables averaging. If the sample period is longer than reading_s, RollingFilter uses the
-  /// readings without averaging.
+  /// Averaging time of the readings, which the other thresholds assume; 0: no averaging. If the sample period is longer
+  /// than reading_s, the readings are not averaged.
   double reading_s = 4e-3;
-  /// Parameters of the rest detector, which processes the mean reading of each node. The rate limit of 0.0115 rad/s per
-  /// axis is 0.02 rad/s in total, at which the sphere rolls at 3 mm/s. With a limit of 0.02 rad/s per axis, the drift
-  /// of a sphere that comes to rest would be 1.5 times as large.
+  /// The rest detector processes the mean reading of each node. The rate limit of 0.0115 rad/s per axis is 0.02 rad/s
+  /// in total, at which the sphere rolls at 3 mm/s. With a limit of 0.02 rad/s per axis, the drift of a sphere that
+  /// comes to rest would be 1.5 times as large.
   RestDetector::Params rest = {
       .rate_max_rad_s = 0.0115, .rate_spread_rad_s = 0.016, .force_spread_m_s2 = 0.15, .rest_s = 0.4, .memory_s = 0.1};
   RollingPriorParams prior = {};
@@ -46,7 +44,6 @@ struct RollingExpertParams {
   }
 };
 
-/// RollingParams describes the sphere, its IMU and the floor, for RollingFilter and RollingSmoother.
 struct RollingParams {
   double radius_m = 0.0;        ///< required; has no default
   double radius_sigma_m = 0.0;  ///< 0: the radius is exact
@@ -66,7 +63,6 @@ struct RollingParams {
   using Expert = RollingExpertParams;
   Expert expert = {};  ///< rarely changed parameters
 
-  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.radius_m, {"radius_m", "m", 1e-12, 10.0, "radius of the sphere"});

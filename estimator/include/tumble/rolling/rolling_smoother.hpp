@@ -17,18 +17,17 @@ namespace tumble {
 
 /// Smooths the poses of RollingFilter with later data, with a fixed lag or over the whole run.
 ///
-/// RollingSmoother uses the contact modes of the most probable hypothesis of RollingFilter at the time of smoothing.
-/// With the contact modes fixed, one Kalman filter runs forward over the stored samples. The modified Bryson-Fraser
-/// smoother then runs backward (Bierman, Factorization Methods for Discrete Sequential Estimation, 1977). The
-/// Bryson-Fraser smoother needs no matrix inverse, only the gains of the Kalman filter. RollingSmoother interpolates
-/// the errors of a sample from the errors of its two neighbouring nodes.
+/// The smoother uses the contact modes of RollingFilter's most probable hypothesis at the time of smoothing. With the
+/// contact modes fixed, one Kalman filter runs forward over the stored samples. The modified Bryson-Fraser smoother
+/// then runs backward (Bierman, Factorization Methods for Discrete Sequential Estimation, 1977). The Bryson-Fraser
+/// smoother needs no matrix inverse, only the gains of the Kalman filter. The errors of a sample are interpolated from
+/// the errors of its two neighbouring nodes.
 ///
-/// With a fixed lag, the reported position is constant while the sphere is at rest. When motion resumes,
-/// RollingSmoother corrects the position for errors of the path before the rest. If the whole run is smoothed,
-/// RollingSmoother corrects the path before a rest directly.
+/// With a fixed lag, the reported position is constant while the sphere is at rest. When motion resumes, the position
+/// is corrected for errors of the path before the rest. If the whole run is smoothed, the path before a rest is
+/// corrected directly.
 ///
-/// RollingSmoother treats the contact modes as certain, except for the spread of positions that RollingFilter prunes at
-/// rest.
+/// The contact modes are treated as certain, except for the spread of positions that RollingFilter prunes at rest.
 class RollingSmoother {
  public:
   static constexpr double kWholeRun = 1e9;
@@ -41,12 +40,10 @@ class RollingSmoother {
     double lag_s = kWholeRun;    ///< delay of an estimate behind the newest sample
     double block_s = 0.2;        ///< RollingSmoother reports estimates in blocks of this duration
     double rate_max_hz = 500.0;  ///< sample rate for which memory is allocated in advance
-    /// Measured horizontal distance of the centre between the start and the end of the run, and its standard deviation.
-    /// The measured distance and the prior on the radius determine the radius. A distance of 0 means that no distance
-    /// was measured.
+    /// Measured horizontal distance of the centre between start and end of the run, and its standard deviation; 0: not
+    /// measured. The measured distance and the prior on the radius determine the radius.
     double known_distance_m = 0.0, known_distance_sigma_m = 5e-3;
 
-    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("", p.filter);
@@ -68,8 +65,7 @@ class RollingSmoother {
     }
   };
 
-  /// NodeModes contains the contact modes of all hypotheses at a node, and the parent of each hypothesis at the
-  /// previous node.
+  /// contact modes of all hypotheses at a node, and the parent of each hypothesis at the previous node
   struct NodeModes {
     std::array<std::uint8_t, RollingFilter::kHypotheses> parent{};
     std::array<RollingMode, RollingFilter::kHypotheses> mode{};
@@ -79,7 +75,7 @@ class RollingSmoother {
     bool spins_in_place = false;
     bool operator==(const NodeModes&) const = default;
   };
-  /// FinalPassState is the state of the smoother at the committed node, up to which estimates are reported.
+  /// state of the smoother at the committed node, up to which estimates are reported
   struct FinalPassState {
     RollingNominal nominal;
     RollingFilter::Covariance P = RollingFilter::Covariance::Zero();
@@ -89,7 +85,7 @@ class RollingSmoother {
     bool position_constrained = false;  ///< the sphere is at rest and the reported position is constant
     TimeNs last_time_ns = 0;
     Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero();
-    // Rate during a gap between samples, if the node is within a gap.
+    // rate during a gap between samples, if the node is within a gap
     Eigen::Vector3d gap_rate_rad_s = Eigen::Vector3d::Zero();
     TimeNs gap_start_ns = 0;
     int gap_step = 0;
@@ -108,32 +104,31 @@ class RollingSmoother {
 
   explicit RollingSmoother(const Params& params);
 
-  /// Returns the RollingFilter that updates State::live. A program that needs only live poses can use RollingFilter
-  /// alone.
+  /// RollingFilter updates State::live. A program that needs only live poses can use RollingFilter alone.
   const RollingFilter& filter() const { return filter_; }
 
-  /// Processes a sample, and appends the estimates that are older than the lag to `out`. On error, the state is
-  /// unchanged. The first call of step() allocates the memory for samples within the lag. Later calls of step()
-  /// allocate memory only for `out` and for the processing of a block. The memory grows with the duration (64 bytes per
-  /// sample, 152 per node) if the sample rate exceeds rate_max_hz, if the lag contains over a million samples, or with
-  /// kWholeRun. The call of step() for the last sample of a block smooths the block. Smoothing temporarily needs 14 KiB
-  /// of memory per node of lag and block, or 4 MiB plus 0.3 KiB per node if there are many nodes.
+  /// Appends the estimates that are older than the lag to `out`. On error, the state is unchanged. The first call of
+  /// step() allocates the memory for samples within the lag. Later calls of step() allocate memory only for `out` and
+  /// for the processing of a block. The memory grows with the duration (64 bytes per sample, 152 per node) if the
+  /// sample rate exceeds rate_max_hz, if the lag contains over a million samples, or with kWholeRun. The call of step()
+  /// for the last sample of a block smooths the block. Smoothing temporarily needs 14 KiB of memory per node of lag and
+  /// block, or 4 MiB plus 0.3 KiB per node if there are many nodes.
   Status step(const ImuSample& sample, State& state, std::vector<RollingEstimate>& out) const;
 
-  /// Ends the run. The function smooths the remaining estimates with all data, and passes them to `take` in time order.
-  /// For a whole run of N nodes, finish() temporarily needs 4 MiB + N * 0.3 KiB of memory, in addition to the state.
+  /// Smooths the remaining estimates with all data, and passes them to `take` in time order. For a whole run of N
+  /// nodes, finish() temporarily needs 4 MiB + N * 0.3 KiB of memory, in addition to the state.
   using EstimateCallback = std::function<void(const RollingEstimate&)>;
   void finish(State& state, const EstimateCallback& take) const;
   void finish(State& state, std::vector<RollingEstimate>& out) const;
 
-  /// Ends the run with externally known contact modes. The argument `known` contains one contact mode per sample of a
-  /// whole run that was processed with kWholeRun.
+  /// Ends the run with externally known contact modes. `known` contains one contact mode per sample of a whole run that
+  /// was processed with kWholeRun.
   void finish(std::span<const RollingMode> known, State& state, const EstimateCallback& take) const;
 
  private:
   struct Path;
 
-  /// Returns the number of samples for which the memory of the lag is allocated in advance.
+  /// number of samples for which the memory of the lag is allocated in advance
   std::size_t preallocated_samples() const;
   Path most_probable_path(const State& state) const;
   void smooth_window(const Path& path, std::size_t emitted, State& state, const EstimateCallback& take) const;

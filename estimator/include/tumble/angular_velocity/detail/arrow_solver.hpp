@@ -7,7 +7,6 @@
 
 namespace tumble {
 
-/// The namespace arrow contains the sparse linear system (ArrowSystem) that RateSmoother and RateStream solve.
 namespace arrow {
 
 inline constexpr int kBlockSize = 6;    ///< size of a block: rate and scaled angular acceleration
@@ -26,25 +25,22 @@ using Marginal = System::Marginal;
 
 inline constexpr int kErrorCount = 29;  ///< number of sensor errors, which all blocks share: see SensorErrors
 
-/// Derivative of the gradient of a block or of the border with respect to each of the kErrorCount sensor errors. After
-/// back-substitution, the matrix contains the derivative of the step that the solver computes for the block.
+/// derivative of a block's gradient with respect to the sensor errors; after back-substitution, derivative of the
+/// block's step
 using ErrorMatrix = Eigen::Matrix<double, kBlockSize, kErrorCount>;
 using BorderErrors = Eigen::Matrix<double, kBorderSize, kErrorCount>;
 
-/// The functions eliminate() to marginal() are the functions of ArrowSystem with the same name.
 bool eliminate(Block& block, Block* next, Corner& corner);
 bool solve_corner(const Corner& corner, BorderVector& step, BorderMatrix& covariance);
 StateVector back_substitute(const Block& block, const StateVector* next_step, const BorderVector& border_step);
 Conditional back_conditional(const Block& block, const Conditional* next);
 Marginal marginal(const Conditional& conditional, const BorderMatrix& border_covariance);
 
-/// Eliminates the sensor-error columns `errors` of `block`, after eliminate(). The function adds the result to `border`
-/// and to the columns `next` of the next block (null for the last block).
+/// Eliminates the sensor-error columns `errors` of `block`, after eliminate(). `next` is null for the last block.
 void eliminate_errors(const Block& block, ErrorMatrix& errors, ErrorMatrix* next, BorderErrors& border);
 
-/// Returns the derivative of an eliminated block with respect to each sensor error. Call eliminate_errors() first. The
-/// arguments `next_moved` and `border_moved` are the derivatives of the next block (null for the last block) and of the
-/// border.
+/// Returns the derivative of an eliminated block with respect to each sensor error. Call eliminate_errors() first.
+/// `next_moved` (null for the last block) and `border_moved` are the derivatives of the next block and of the border.
 ErrorMatrix back_substitute_errors(const Block& block, const ErrorMatrix& errors, const ErrorMatrix* next_moved,
                                    const BorderErrors& border_moved);
 

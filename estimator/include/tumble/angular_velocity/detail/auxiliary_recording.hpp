@@ -11,17 +11,16 @@
 
 namespace tumble {
 
-/// AuxiliaryRecording contains the readings of an additional IMU over a whole recording, in time order.
 struct AuxiliaryRecording {
   AuxiliaryImu imu;  ///< its sensing directions are ignored; align() estimates them
   RailDetector::Params stated_rails;
   std::vector<ImuSample> samples;
 };
 
-/// Interpolates the readings of additional IMUs at the time stamps of the primary IMU. The function appends each IMU
-/// with its estimated sensing directions to `model.auxiliary_imus`, and its interpolated readings to `out`. The
-/// function ignores recordings beyond the first kAuxiliaryImusMax. Returns `ok`, or the first error of align() for a
-/// single IMU. Cost: O(N), plus the search of ClippingFinder.
+/// Interpolates the readings of additional IMUs at the time stamps of the primary IMU. Each IMU is appended with its
+/// estimated sensing directions to `model.auxiliary_imus`, and its readings to `out`. Recordings beyond the first
+/// kAuxiliaryImusMax are ignored. Returns `ok`, or the first error of align() for a single IMU. Cost: O(N), plus the
+/// search of ClippingFinder.
 Status align(std::span<const AuxiliaryRecording> recordings, std::span<const ImuSample> primary, double gap_max_s,
              RateModelParams& model, std::vector<std::vector<AuxiliaryReading>>& out);
 

@@ -15,12 +15,11 @@ namespace tumble {
 /// Detects wrong signs of the accelerometer from free flight. Checks at rest cannot detect mirrored forces (three axes
 /// flipped, or one axis flipped), because mirrored gravity has the correct magnitude and rotation.
 ///
-/// In free flight, the force at the lever arm t from the centre of mass is a x t + w x (w x t), with the rate w and the
-/// angular acceleration a. FlightSignCheck compares the readings with the force of free flight, for the true sensor and
+/// In free flight, the force at the lever arm t from the centre of mass is a x t + w x (w x t), with rate w and angular
+/// acceleration a. FlightSignCheck compares the measured force with the force of free flight, for the true sensor and
 /// for each alternative. If an alternative agrees within a quarter for 0.02 s, the flight time of the alternative
-/// increases. On the ground, readings do not agree with free flight for 0.02 s. If one axis of the gyro is saturated,
-/// the force along the lever arm determines the rate of the saturated axis. The force along the lever arm is -|w x t|^2
-/// for any angular acceleration. The remaining two components of the force verify that the body is in flight.
+/// increases. The force along the lever arm is -|w x t|^2 for any angular acceleration, and determines the rate of one
+/// saturated gyro axis.
 ///
 /// A person who swings a body can produce the forces of a flight with a different lever arm. For a body that may be
 /// hand-held, FlightSignCheck therefore reports only three inverted axes, from unsaturated rates. FlightSignCheck
@@ -30,18 +29,17 @@ class FlightSignCheck {
  public:
   static constexpr double kMemory_s = 60.0;
 
-  /// Number of alternatives: the true accelerometer, and one with all axes, or axis x, y or z, inverted.
+  /// true accelerometer; accelerometer with all axes, or axis x, y or z, inverted
   static constexpr std::size_t kAlternatives = 5;
 
   enum class Body { may_be_hand_held, thrown };
 
   struct Params {
     Body body = Body::may_be_hand_held;
-    /// Lever arm from the centre of mass to the IMU, in IMU axes.
+    /// lever arm from the centre of mass to the IMU, in IMU axes
     Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();
     double gyro_range_rad_s = 0.0;  ///< range from the data sheet; 0: unknown
 
-    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.lever_arm_m,
@@ -50,11 +48,10 @@ class FlightSignCheck {
             {"gyro_range_rad_s", "rad/s", 0.0, kUnbounded, "range stated by the device; 0: not stated"});
     }
   };
-  /// Reading is one averaged IMU reading.
   struct Reading {
     TimeNs time_ns = 0;
     Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero(), force_m_s2 = Eigen::Vector3d::Zero();
-    /// Sign of the rate on each saturated gyro axis; 0 for an unsaturated axis.
+    /// sign of the rate on each saturated gyro axis; 0: unsaturated
     Eigen::Vector3d at_rail = Eigen::Vector3d::Zero();
     bool known = false;  ///< false if an axis was saturated during a part of the window
     bool operator==(const Reading&) const = default;
@@ -74,10 +71,10 @@ class FlightSignCheck {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit FlightSignCheck(const Params& params);
 
-  /// Processes one IMU sample. Cost: O(1), no allocation. Samples that are not finite or out of order are ignored.
+  /// Cost: O(1), no allocation. Samples that are not finite or out of order are ignored.
   void step(const ImuSample& sample, State& state) const;
 
-  /// Returns `out_of_range` if the measured flights match an accelerometer with wrong signs, and otherwise `ok`.
+  /// Returns `out_of_range` if the measured flights match an accelerometer with wrong signs.
   Status verdict(const State& state) const;
   /// Returns verdict() while the last flight of an alternative sensor is at most kMemory_s old, and otherwise `ok`.
   Status current_verdict(const State& state) const;

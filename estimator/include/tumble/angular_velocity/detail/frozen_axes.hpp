@@ -17,21 +17,19 @@ namespace tumble {
 
 /// Detects single axes of an IMU that have stopped updating, sample by sample.
 ///
-/// FrozenAxes reports an axis as frozen if one reading repeats bit for bit for 0.5 s, and for ten times the
-/// longest earlier repetition. Before the repetition, the readings of the axis must have changed for an equal time.
-/// Another axis of the same sensor must change from sample to sample, by far more than the quantisation of the tested
-/// axis. FrozenAxes cannot detect a frozen axis whose readings never changed before, or often repeat at rest due to
-/// coarse quantisation.
+/// FrozenAxes reports an axis as frozen if one reading repeats bit for bit for 0.5 s, and for ten times the longest
+/// earlier repetition. The readings of the axis must have changed before, for an equal time. Another axis of the same
+/// sensor must change from sample to sample, by far more than the quantisation of the tested axis. FrozenAxes cannot
+/// detect a frozen axis whose readings never changed, or often repeat at rest due to coarse quantisation.
 ///
-/// A working axis may repeat one reading because it is saturated. FrozenAxes treats a reading as saturated if the
-/// device flags the reading, or if the reading exceeds 0.9 of the stated range. The extreme reading of an axis counts
-/// as saturated above 0.5 of the stated range. A saturated axis does not count as frozen.
+/// A saturated axis may repeat one reading and does not count as frozen. A reading counts as saturated if the device
+/// flags the reading, or if the reading exceeds 0.9 of the stated range. The extreme reading of an axis counts as
+/// saturated above 0.5 of the stated range.
 class FrozenAxes {
  public:
   struct Params {
     double gyro_range_rad_s = 0.0, accel_range_m_s2 = 0.0;  ///< ranges from the data sheet; 0: unknown
 
-    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.gyro_range_rad_s,
@@ -40,7 +38,6 @@ class FrozenAxes {
             {"accel_range_m_s2", "m/s^2", 0.0, kUnbounded, "range stated by the device; 0: not stated"});
     }
   };
-  /// State of one axis of the gyro or of the accelerometer.
   struct Axis {
     double reading = 0.0;
     TimeNs since_ns = 0;               ///< first sample with the current reading
@@ -51,7 +48,7 @@ class FrozenAxes {
     double changing_duration_s = 0.0;  ///< total time with changing readings
     double smallest_change = 0.0;      ///< smallest observed change; 0: none yet
     double min_reading = 0.0, max_reading = 0.0;
-    /// Minimum, maximum and number of changes of the sensor's two other axes while this axis repeats its reading.
+    /// minimum, maximum and number of changes of the sensor's two other axes while this axis repeats its reading
     std::array<double, 2> others_min{}, others_max{}, others_changes{};
     double samples = 0.0;  ///< number of repeated samples
     bool operator==(const Axis&) const = default;
@@ -68,18 +65,18 @@ class FrozenAxes {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit FrozenAxes(const Params& params);
 
-  /// Processes one IMU sample. Cost: O(1), no allocation. Samples that are not finite or out of order are ignored.
+  /// Cost: O(1), no allocation. Samples that are not finite or out of order are ignored.
   void step(const ImuSample& sample, State& state) const;
 
   static const Axis& axis(Triad triad, int axis, const State& state);
 
   static bool any_frozen(const State& state);
-  /// Adds a finding of kind `kind` (`frozen_axis` or `unit_frozen`) for each currently frozen axis.
+  /// Adds a finding (`frozen_axis` or `unit_frozen`) for each currently frozen axis.
   void add_findings(HealthFinding::Kind kind, const std::string& sensor, const State& state,
                     SensorHealth& health) const;
 
   /// Returns the variance of a rate at `time_ns` due to currently frozen gyro axes. The standard deviation of a frozen
-  /// gyro axis is the largest rate measured so far. The variance is zero for axes that work.
+  /// gyro axis is the largest rate measured so far.
   Eigen::Vector3d rate_variance_rad2_s2(TimeNs time_ns, const State& state) const;
 
  private:
@@ -91,7 +88,6 @@ class FrozenAxes {
   Params params_;
 };
 
-/// FrozenAxis is an interval in which one axis repeats one reading.
 struct FrozenAxis {
   Triad triad = Triad::gyro;
   int axis = 0;
@@ -101,7 +97,7 @@ struct FrozenAxis {
 /// Adds a finding about an interval in which an axis is frozen, with 0.5 s as bound.
 void add_finding(HealthFinding::Kind kind, const std::string& sensor, const FrozenAxis& interval, SensorHealth& health);
 
-/// Returns the intervals in which axes of a recording are frozen, sorted by axis and time. O(N).
+/// Returns the intervals with frozen axes, sorted by axis and time. Cost: O(N).
 std::vector<FrozenAxis> find_frozen_axes(const FrozenAxes& detector, std::span<const ImuSample> samples);
 
 }  // namespace tumble

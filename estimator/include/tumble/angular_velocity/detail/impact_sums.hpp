@@ -5,7 +5,6 @@
 
 namespace tumble {
 
-/// TriadDelay is the delay of a device's accelerometer relative to its gyro.
 struct TriadDelay {
   double delay_s = 0.0;
   double sigma_s = 0.0;  ///< 0: no estimate, or only an initial value
@@ -20,23 +19,22 @@ struct ImpactSums {
                        kDelayCount = 2 * kDelayMax + 1;
   using DelayGrid = Eigen::Matrix<double, kDelayCount, 1>;
 
-  /// Number, sum and sum of squares of the angular acceleration x over intervals between adjacent unsaturated gyro
-  /// readings.
+  /// number, sum and sum of squares of the angular acceleration x over intervals between adjacent unsaturated gyro
+  /// readings
   double intervals = 0.0, acceleration_sum = 0.0, acceleration_squared = 0.0;
-  /// Sums for each tested delay: sum and sum of squares of the force z, sum of the products x z, number of intervals
-  /// with an impact, and number of intervals almost without force.
+  /// for each tested delay: sums of the force z, of z^2 and of x z, and numbers of intervals with an impact and almost
+  /// without force
   DelayGrid force = DelayGrid::Zero(), force_squared = DelayGrid::Zero(), product = DelayGrid::Zero(),
             impacts = DelayGrid::Zero(), flying = DelayGrid::Zero();
 
-  /// Returns true if the body moves between two gyro readings. ImpactSums ignores intervals without motion.
+  /// Intervals without motion are ignored.
   static bool counts(const Eigen::Vector3d& before_rad_s, const Eigen::Vector3d& after_rad_s);
   /// Adds an interval with its mean angular acceleration [rad/s^2] and its mean force magnitude for each tested delay
   /// [m/s^2]. Cost: O(kDelayCount).
   void add(double acceleration_rad_s2, const DelayGrid& force_m_s2);
-  /// Multiplies the weights of all earlier intervals by `share`.
   void decay(double share);
-  /// Returns the delay with the best correlation, for samples that are `period_s` apart. The argument `slower_s` is the
-  /// update period of the slower of the two sensors. The returned sigma_s is 0 if the delay is not accepted. Cost:
+  /// Returns the delay with the best correlation, for samples that are `period_s` apart. `slower_s` is the update
+  /// period of the slower of the two sensors. The returned sigma_s is 0 if the delay is not accepted. Cost:
   /// O(kDelayCount).
   TriadDelay estimate_delay(double period_s, double slower_s) const;
   /// Returns the correlation at the tested delay that is nearest to `delay_s`, even if there are few impacts. Cost:

@@ -11,15 +11,15 @@
 #include "tumble/angular_velocity/detail/rate_stream_state.hpp"
 #include "tumble/common/imu.hpp"
 
-/// The functions in interpolated_rates.hpp interpolate the readings of a gyro that updates more slowly than the log, so
-/// that the log repeats readings. The interpolation is cubic between the readings around a sample, and uses the time at
-/// which the gyro took each reading. See docs/maths/rate_stream.md (R96).
+/// Interpolates the readings of a gyro that updates more slowly than its log. The interpolation is cubic between the
+/// readings around a sample, and uses the time at which the gyro took each reading. See docs/maths/rate_stream.md
+/// (R96).
 namespace tumble {
 
-/// InterpolatedRate is a rate between two readings of the gyro, including the gyro's bias.
+/// rate between two readings of the gyro, including the gyro's bias
 struct InterpolatedRate {
   Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();
-  /// Variance of the interpolation error, without sensor noise.
+  /// variance of the interpolation error, without sensor noise
   Eigen::Vector3d variance_rad2_s2 = Eigen::Vector3d::Zero();
 };
 
@@ -29,12 +29,12 @@ std::optional<InterpolatedRate> rate_between_readings(std::span<const RateStream
                                                       double period_s);
 
 /// Returns the interpolated rates of a recording. Cost: O(N), plus find_repeated(). The result is empty if no reading
-/// repeats. The argument `hidden` contains one bit mask of unused axes per sample. The result has no rate next to
-/// samples with unused axes, and at the ends of the recording.
+/// repeats. `hidden` contains one bit mask of unused axes per sample. The result has no rate next to samples with
+/// unused axes, and at the ends of the recording.
 std::vector<std::optional<InterpolatedRate>> rates_between_readings(std::span<const ImuSample> samples,
                                                                     std::span<const std::uint8_t> hidden);
 struct RepeatedReadings;
-/// Returns the interpolated rates of a recording, given the result of find_repeated() for the gyro.
+/// `repeated` is the result of find_repeated() for the gyro.
 std::vector<std::optional<InterpolatedRate>> rates_between_readings(std::span<const ImuSample> samples,
                                                                     std::span<const std::uint8_t> hidden,
                                                                     const std::optional<RepeatedReadings>& repeated);

@@ -6,8 +6,8 @@
 
 namespace tumble {
 
-/// MinSaturationLevels contains lower bounds of the saturation limits, per sensing element and sign. The bounds follow
-/// from the readings, because no reading exceeds its saturation limit, see rails.md (R75).
+/// Lower bounds of the saturation limits, per sensing element and sign: no reading exceeds its limit, see rails.md
+/// (R75).
 class MinSaturationLevels {
  public:
   void add(const Eigen::Vector3d& rate_rad_s);

@@ -7,7 +7,7 @@
 
 namespace tumble {
 
-/// RateKnot contains the unknowns of one sample: angular rate and angular acceleration of the body in IMU axes.
+/// angular rate and angular acceleration of the body, in IMU axes
 struct RateKnot {
   Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();
   Eigen::Vector3d acceleration_rad_s2 = Eigen::Vector3d::Zero();
@@ -35,21 +35,19 @@ RateFactor element_factor(const RateKnot& knot, const RigConstants& rig, const E
 /// flight.
 RateFactor flight_factor(const RateKnot& knot, const RigConstants& rig, const Eigen::Vector3d& reading_m_s2);
 
-/// Residual of an accelerometer in free flight whose readings are `delay_s` late [m/s^2]. Euler's equation without
-/// torque propagates rate and angular acceleration back by the delay d. The propagated rate is w - d alpha + d^2/2 j,
-/// and the propagated angular acceleration is alpha - d j, with the angular jerk j. The residual of a late reading also
-/// depends on the inertia. The optional output `jacobian_delay` is the derivative of the residual with respect to the
-/// delay.
+/// Residual of an accelerometer in free flight whose readings are `delay_s` late [m/s^2]. Rate and angular acceleration
+/// are propagated back by the delay d: w - d alpha + d^2/2 j and alpha - d j, with the angular jerk j. `jacobian_delay`
+/// (or null) receives the derivative of the residual with respect to the delay.
 RateFactor delayed_flight_factor(const RateKnot& knot, const RigConstants& rig, const Eigen::Vector3d& reading_m_s2,
                                  double delay_s, Eigen::Vector3d* jacobian_delay);
 
-/// Residual of delayed_flight_factor() with derivatives only with respect to lever arm and accelerometer bias. All
-/// other derivatives are zero. The function is a fast test of whether a sample fits the flight model.
+/// Residual of delayed_flight_factor() with derivatives only with respect to lever arm and accelerometer bias, at lower
+/// cost.
 RateFactor delayed_flight_jacobian_calibration(const RateKnot& knot, const RigConstants& rig,
                                                const Eigen::Vector3d& reading_m_s2, double delay_s);
 
 /// Returns the second time derivative of the specific force at the lever arm in free flight [m/s^4]. Averaging changes
-/// a reading by half of this derivative, times the variance of the time within the averaging window.
+/// a reading by half of the force's second derivative, times the variance of the time within the averaging window.
 Eigen::Vector3d flight_curvature(const RateKnot& knot, const RigConstants& rig);
 
 /// Residual of Euler's equation without torque, with the inertia scaled to trace 3 [rad/s^2]: J alpha + w x J w.

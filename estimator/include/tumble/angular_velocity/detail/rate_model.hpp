@@ -18,78 +18,67 @@ namespace tumble {
 /// and RateStream.
 class RateModel {
  public:
-  /// Constructs the model for a nominal time `period_s` between samples. The sample period determines the noise per
-  /// sample, and the unit of angular acceleration in the solver.
+  /// `period_s` is the nominal time between samples, which determines the noise per sample.
   RateModel(const RateModelParams& params, double period_s);
 
-  /// Computes the weight of a sample between contact (0) and free flight (1) at the current estimate. The argument
-  /// `rig_covariance` prevents RateModel from mistaking calibration errors for contact. The argument `threshold_factor`
-  /// >= 1 multiplies the contact threshold while the rates are still inaccurate. The argument `jump` is the smaller
-  /// result of jump() between the sample and its two neighbours. In flight, the motion is smooth on at least one side
-  /// of a sample.
+  /// Computes the weight of a sample between contact (0) and free flight (1) at the current estimate. `rig_covariance`
+  /// prevents that calibration errors are mistaken for contact. `threshold_factor` >= 1 multiplies the contact
+  /// threshold while the rates are still inaccurate. `jump` is the smaller result of jump() between the sample and its
+  /// two neighbours. In flight, the motion is smooth on at least one side of a sample.
   void compute_flight_weight(const RateObservation& observation, const RigConstants& rig,
                              const RigConstants::Matrix& rig_covariance, double threshold_factor, double jump,
                              RateEstimate& estimate) const;
 
-  /// Returns the squared normalised error between the motion at two samples and constant angular acceleration, with six
-  /// degrees of freedom. The error is normalised with the white angular jerk of flight.
+  /// Returns the squared normalised deviation from constant angular acceleration between two samples, with six degrees
+  /// of freedom.
   double jump(const RateKnot& from, const RateKnot& to, double dt_s) const;
 
   /// Moves the unmeasured rates of a sample in contact to the minimum of the contact force, if the minimum is far below
   /// the current force. Between two impacts, a body may fly for a single sample, which local solver steps do not find.
   void search_flight(const RateObservation& observation, const RigConstants& rig, RateEstimate& estimate) const;
 
-  /// Initialises the lower bounds of a sample's clipped rates near the current estimate, or near the reading if the
-  /// reading is larger.
   void start_bounds(const RateObservation& observation, const RigConstants& rig, RateEstimate& estimate) const;
 
   /// Refines the lower bounds of a sample's clipped rates by expectation propagation (Minka 2001). A Gaussian factor
-  /// (site) gives the marginal rate the mean and variance of a distribution truncated at the reading. The argument
-  /// `damping` in (0, 1] is the weight of the new site.
+  /// (site) gives the marginal rate the mean and variance of a distribution truncated at the reading. `damping` in (0,
+  /// 1] is the weight of the new Gaussian factor.
   void update_bounds(const RateObservation& observation, const RigConstants& rig, const arrow::Conditional& conditional,
                      const RigConstants::Matrix& rig_covariance, double damping, RateEstimate& estimate) const;
 
-  /// Adds the residuals of gyro, lower bounds, flight and Euler's equation of one sample. The argument `rig_spread` is
-  /// null, or the covariance of the calibration. If a covariance is passed, the sample has a reduced weight and does
-  /// not update the calibration. Pass a covariance for short flights, because a different calibration could explain the
-  /// same readings as contact.
+  /// `rig_spread` is null, or the covariance of the calibration. If a covariance is passed, the sample has a reduced
+  /// weight and does not update the calibration. Pass a covariance for short flights, because a different calibration
+  /// could explain the same readings as contact.
   void add_sample(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
                   arrow::Block& block, arrow::Corner& corner, const RigConstants::Matrix* rig_spread = nullptr) const;
 
   /// Adds the derivatives of a sample's gradient with respect to the sensor errors, and the sample's information about
-  /// the sensor errors. Clipped elements and samples in contact contribute no information about SensorErrors. The
-  /// argument `rig_spread` states whether add_sample() received a covariance; the force of the sample then contributes
-  /// no information.
+  /// these errors. Clipped elements and samples in contact contribute no information about SensorErrors. `rig_spread`
+  /// states whether add_sample() received a covariance.
   void add_errors(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
                   arrow::ErrorMatrix& block, arrow::BorderErrors& border, SensorErrorEvidence& evidence,
                   bool rig_spread = false) const;
 
-  /// Adds the motion prior between two samples that are `dt_s` apart.
   void add_step(const RateEstimate& from, const RateEstimate& to, double dt_s, arrow::Block& block,
                 arrow::Block& next) const;
 
-  /// Adds the prior of the calibration.
   void add_rig_prior(const RigConstants& rig, arrow::Corner& corner) const;
 
-  /// Returns the distance of `rig` from its prior in standard deviations, with an expected value of about 1. The
-  /// distance is the Mahalanobis distance divided by the root of the number of components. The function returns the
-  /// largest distance among lever arm, gyro bias, accelerometer bias and inertia.
+  /// Returns the distance of `rig` from its prior in standard deviations, with an expected value of about 1. The result
+  /// is the largest distance among lever arm, gyro bias, accelerometer bias and inertia.
   double calibration_mahalanobis(const RigConstants& rig) const;
 
   RigConstants prior_constants() const { return prior_constants_; }
   const RigConstants::Matrix& prior_covariance() const { return prior_covariance_; }
 
-  /// Converts a step of the solver to physical units.
   Eigen::Matrix<double, 6, 1> unscaled(const arrow::StateVector& step) const;
-  /// Converts a difference in physical units to the solver's units.
   arrow::StateVector scaled(const Eigen::Matrix<double, 6, 1>& difference) const;
-  /// Returns the covariance of a rate that is reported to the user. In contact, the reported covariance is larger than
-  /// the covariance of the fit. The reported covariance includes the uncertain time of the reading.
+  /// In contact, the reported covariance of a rate is larger than the covariance of the fit. The reported covariance
+  /// includes the uncertain time of the reading.
   Eigen::Matrix3d reported(const Eigen::Matrix3d& covariance_rad2_s2, const RateObservation& observation,
                            const RateEstimate& estimate) const;
   double gyro_sigma_rad_s() const { return gyro_sigma_rad_s_; }
-  /// Returns period_s / model_error_s, but at most 1. The ratio is the weight of one sample, because samples within
-  /// `model_error_s` have equal model errors.
+  /// The ratio period_s / model_error_s (at most 1) is the weight of one sample, because close samples have equal model
+  /// errors.
   double independent_reading_ratio() const { return share_; }
 
  private:
@@ -97,22 +86,17 @@ class RateModel {
     RateFactor factor;
     Eigen::Vector3d information;  ///< information (inverse variance) of each axis or element
   };
-  /// Converts the flight residual to element directions if an accelerometer element clips, and removes the residuals of
-  /// satisfied lower bounds. Returns additional variances due to the uncertain sensing directions and the saturation
-  /// deficit of the force.
+  /// Converts the flight residual to element directions if an accelerometer element clips. Returns additional variances
+  /// due to uncertain sensing directions and the saturation deficit of the force.
   static Eigen::Vector3d read_accel_elements(const RateObservation& observation, RateFactor& flight);
   ForceFactor force_factor(const RateObservation& observation, const RateEstimate& estimate,
                            const RigConstants& rig) const;
-  /// Returns the rate at the time of the gyro's reading, which is earlier than the sample by the age of the reading.
+  /// The gyro's reading is earlier than the sample by the age of the reading.
   RateKnot knot_at_reading(const RateObservation& observation, const RateEstimate& estimate) const;
-  /// Returns the gyro's reading, corrected for known sensor errors.
   Eigen::Vector3d corrected_rate(const RateObservation& observation, const RateEstimate& estimate) const;
-  /// Returns flight_factor() with the known accelerometer errors. The argument `jacobian_delay` is passed to
-  /// delayed_flight_factor().
   RateFactor flight(const RateObservation& observation, const RateKnot& knot, const RigConstants& rig,
                     Eigen::Vector3d* jacobian_delay = nullptr) const;
-  /// Returns the residual of flight() with derivatives with respect to the calibration only. The function needs less
-  /// than half of the computation time of flight().
+  /// Computes only derivatives with respect to the calibration, in less than half of the time of flight().
   RateFactor flight_jacobian_calibration(const RateObservation& observation, const RateKnot& knot,
                                          const RigConstants& rig) const;
   double gyro_information(const RateObservation& observation, const RateEstimate& estimate, int axis) const;
@@ -140,8 +124,7 @@ class RateModel {
   RigConstants::Matrix prior_information_;
 };
 
-/// Returns the source of a rate. In contact, a clipped axis counts as recovered if its standard deviation is at most
-/// `recovered_sigma_rad_s`.
+/// In contact, a clipped axis counts as recovered if its standard deviation is at most `recovered_sigma_rad_s`.
 RateSource rate_source(const RateObservation& observation, const RateEstimate& estimate,
                        const Eigen::Matrix3d& covariance_rad2_s2, double recovered_sigma_rad_s);
 

@@ -4,12 +4,11 @@
 #include "tumble/angular_velocity/sensor_errors.hpp"
 #include "tumble/common/parameters.hpp"
 
-/// The structs in rate_model_expert_params.hpp are parts of RateModelParams::Expert.
 namespace tumble {
 
-/// RateReadingParams describes the errors of IMU readings other than noise.
+/// errors of IMU readings other than noise
 struct RateReadingParams {
-  /// Relative scale and misalignment error of the accelerometer.
+  /// relative scale and misalignment error of the accelerometer
   double accel_scale_error = 1e-3;
   /// Uncertainty of a reading's time due to the gyro's bandwidth and clock. For example, a first-order low-pass filter
   /// at 415 Hz delays by 0.38 ms. The covariance of the rate includes the time uncertainty multiplied by the angular
@@ -29,7 +28,7 @@ struct RateReadingParams {
   }
 };
 
-/// RateFlightParams contains the parameters of free flight, in which only gravity acts on the body.
+/// In free flight, only gravity acts on the body.
 struct RateFlightParams {
   double sigma_m_s2 = 0.02;         ///< error of the specific force besides noise (drag, bias in motion)
   double euler_sigma_rad_s2 = 0.3;  ///< error of the angular acceleration from Euler's equation without torque
@@ -52,11 +51,11 @@ struct RateFlightParams {
   }
 };
 
-/// RateContactParams contains the parameters of contact, in which an unknown force acts on the body.
+/// In contact, an unknown force acts on the body.
 struct RateContactParams {
-  /// Angular acceleration that a contact force causes: rad/s^2 per m/s^2 of specific force beyond the flight model.
+  /// angular acceleration that a contact force causes: rad/s^2 per m/s^2 of specific force beyond the flight model
   double gain_rad_m = 4.0;
-  /// Factor on the standard deviation during impacts, because the errors of impacts are not Gaussian.
+  /// Impacts need a larger standard deviation, because their errors are not Gaussian.
   double sigma_factor = 1.3;
   /// Largest angular acceleration perpendicular to a contact force, per unit of specific force. The value is mass times
   /// the distance of the contact point, divided by a third of the trace of the inertia.
@@ -86,10 +85,9 @@ struct RateContactParams {
   }
 };
 
-/// RateModelExpertParams contains the rarely changed parameters of RateModelParams, grouped by topic.
 struct RateModelExpertParams {
-  /// Duration for which the model error of a force, a torque or a rate is constant. Averaging samples within this time
-  /// reduces their noise, but not their model error.
+  /// Duration for which the model error of a force, a torque or a rate is constant. Averaging samples within
+  /// `model_error_s` reduces the noise, but not the model error.
   double model_error_s = 0.01;
   /// Standard deviation of the rate about zero at rest, independent for each sample. The value covers vibration and
   /// false detections of rest.

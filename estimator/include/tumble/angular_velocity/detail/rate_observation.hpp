@@ -15,13 +15,12 @@
 
 namespace tumble {
 
-/// RateObservation is one IMU sample with its classification, as input of RateModel.
 struct RateObservation {
   ImuSample sample;
   Clipping clipping;
   bool at_rest = false;  ///< the rate is zero, see RestDetector
-  // Masks of axes whose readings have a separate standard deviation, with bit j for axis j. Each axis is in at most one
-  // of the three masks subsample_saturated, isolated_high_axes and suspect.
+  // Bit masks of axes whose readings have a separate standard deviation; each axis is in at most one of the three
+  // masks.
   std::uint8_t subsample_saturated = 0;  ///< saturated during a part of the sample, see SubsampleSaturation
   std::uint8_t isolated_high_axes = 0;   ///< few high readings, whose saturation limit is unknown
   std::uint8_t suspect = 0;              ///< readings that may be at an unknown saturation limit: lower bounds
@@ -29,8 +28,7 @@ struct RateObservation {
       Eigen::Vector3d::Zero();  ///< expected saturation deficit, with the reading's sign
   Eigen::Vector3d expected_deficit_sigma_rad_s =
       Eigen::Vector3d::Zero();  ///< standard deviation of expected_deficit_rad_s
-  /// Age of the readings of gyro and accelerometer at the sample's time stamp, and whether the gyro repeats the
-  /// previous reading.
+  /// Ages of the readings refer to the sample's time stamp.
   double gyro_age_s = 0.0, accel_age_s = 0.0;
   bool gyro_repeats = false;
   SensingDirections accel_rows = {};  ///< sensing directions of the accelerometer; needed if an element clips
@@ -58,20 +56,17 @@ struct RateObservation {
   }
 };
 
-/// Finds the axes of the sample `now` that are saturated during a part of the sample, from the neighbouring samples. A
-/// missing neighbour is null.
+/// The neighbouring samples show which axes are saturated during a part of the sample. A missing neighbour is null.
 void mark_subsample_saturation(const RailDetector& rails, const RailDetector::State& state, double noise_rad_s,
                                const ImuSample* before, RateObservation& now, const ImuSample* after);
 
-/// RateEstimate contains the estimated rate, contact state and lower bounds of one sample.
 struct RateEstimate {
   RateKnot knot;
   double flight_weight = 0.0;  ///< 0: contact, 1: free flight
-  /// Specific force of contact at the centre of mass, which is the part of the force that the flight model does not
-  /// explain.
+  /// specific force of contact at the centre of mass: the part of the force that the flight model does not explain
   Eigen::Vector3d contact_force_m_s2 = Eigen::Vector3d::Zero();
-  /// Gaussian factors (sites) that approximate the lower bounds of clipped elements. Each factor acts on the saturation
-  /// deficit along m_j, and is stored as precision and precision * mean.
+  /// Gaussian factors (sites) that approximate the lower bounds of clipped elements. Each Gaussian factor acts on the
+  /// saturation deficit along m_j, and is stored as precision and precision * mean.
   Eigen::Vector3d bound_precision = Eigen::Vector3d::Zero();
   Eigen::Vector3d bound_shift = Eigen::Vector3d::Zero();
   bool soft_bounds = false;  ///< false: lower bounds are hard, and act only if violated

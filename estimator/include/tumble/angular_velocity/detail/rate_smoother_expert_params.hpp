@@ -5,10 +5,8 @@
 #include "tumble/angular_velocity/rest_detector.hpp"
 #include "tumble/common/parameters.hpp"
 
-/// The structs in rate_smoother_expert_params.hpp are parts of RateSmootherParams::Expert.
 namespace tumble {
 
-/// RateDescentParams contains the parameters of the Gauss-Newton solver that finds the most likely rates.
 struct RateDescentParams {
   int iterations_max = 15;
   double tolerance_rad_s = 2e-3;          ///< converged if every rate changes by less than this
@@ -37,16 +35,13 @@ struct RateDescentParams {
   }
 };
 
-/// RateSmootherExpertParams contains the rarely changed parameters of RateSmoother, grouped by topic.
 struct RateSmootherExpertParams {
   RailPlaneFinder::Params planes = {};  ///< if no range is stated, the range of RateSmootherParams::rails applies
-  /// parameters of the search for the accelerometer's saturation planes
   RailPlaneFinder::Params accel_planes = RailPlaneFinder::Params::for_accelerometer();
   RestDetector::Params rests = {};
   RateDescentParams descent = {};
-  /// Maximum number of optimisations. Each optimisation uses readings corrected by the sensor errors of the previous
-  /// optimisation. If error_rounds_max is 1, the covariance includes sensor errors, but RateSmoother does not estimate
-  /// the errors.
+  /// Maximum number of optimisations, each with readings corrected by the sensor errors of the previous one. If
+  /// error_rounds_max is 1, sensor errors are not estimated, but still increase the covariance.
   int error_rounds_max = 3;
 
   template <class Self, class Visitor>

@@ -5,22 +5,19 @@
 #include "tumble/angular_velocity/rest_detector.hpp"
 #include "tumble/common/parameters.hpp"
 
-/// The structs in rate_stream_expert_params.hpp are parts of RateStreamParams::Expert.
 namespace tumble {
 
-/// RigInflationParams increases the calibration's uncertainty until enough flight samples have updated the calibration.
-/// The formulas use the number n of flight samples. A sample shorter than `model_error_s` counts as a fraction of a
-/// sample.
+/// The calibration's uncertainty is increased until enough flight samples (number n) have updated the calibration. A
+/// sample shorter than `model_error_s` counts as a fraction of a sample.
 struct RigInflationParams {
-  /// The calibration's covariance is multiplied by 1 + covariance / (1 + n / samples), up to the prior covariance. The
-  /// covariance of the gyro's bias is unchanged.
+  /// The calibration's covariance is multiplied by 1 + covariance / (1 + n / samples), up to the prior covariance.
   double covariance = 60.0;
   double samples = 30.0;
-  /// Rates that are recovered in contact depend on the calibration. The standard deviation of such a rate is at least
-  /// contact / (1 + n / samples) times the saturation deficit.
+  /// The standard deviation of a rate recovered in contact is at least contact / (1 + n / samples) times the saturation
+  /// deficit.
   double contact = 0.5;
-  /// Minimum standard deviation of a rate in a run of clipped samples in contact. The slopes of the rate before and
-  /// after the run predict a saturation deficit. The minimum is slopes * predicted deficit - estimated deficit.
+  /// Minimum standard deviation of a rate in a clipped run in contact: slopes * predicted deficit - estimated deficit.
+  /// The slopes of the rate before and after the run predict the saturation deficit.
   double slopes = 1.0;
 
   template <class Self, class Visitor>
@@ -39,10 +36,8 @@ struct RigInflationParams {
   }
 };
 
-/// RateStreamExpertParams contains the rarely changed parameters of RateStream, grouped by topic.
 struct RateStreamExpertParams {
   RailPlaneFinder::Params planes = {};  ///< if no range is stated, the range of RateStreamParams::rails applies
-  /// parameters of the search for the accelerometer's saturation planes
   RailPlaneFinder::Params accel_planes = RailPlaneFinder::Params::for_accelerometer();
   RestDetector::Params rests = {};
   double initial_threshold_factor = 8.0;  ///< factor on a clipped sample's contact threshold; halved in each step
@@ -51,8 +46,7 @@ struct RateStreamExpertParams {
   double bound_damping = 0.5;             ///< weight of a new lower bound in each step
   int flight_run_min = 6;                 ///< minimum number of consecutive flight samples that update the calibration
   RigInflationParams inflation = {};
-  /// Prior probability of an uncalibrated device. If `uncalibrated` is 0, the device is assumed to match its data
-  /// sheet.
+  /// prior probability of an uncalibrated device; 0: the device is assumed to match its data sheet
   double uncalibrated = 0.3;
 
   template <class Self, class Visitor>

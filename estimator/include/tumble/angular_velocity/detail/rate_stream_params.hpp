@@ -12,12 +12,11 @@
 
 namespace tumble {
 
-/// RateStreamParams contains the parameters of RateStream.
 struct RateStreamParams {
-  /// Parameters of the rate model. Two priors are narrower than the defaults of RateModelParams, because RateStream
+  /// The priors of accelerometer bias and inertia are narrower than the defaults of RateModelParams, because RateStream
   /// reports rates before the data outweigh the priors. The prior accelerometer bias of 2 mg is typical after a factory
-  /// calibration. The prior inertia fits a box. The mean has equal moments. Moments of 3 : 2 : 2 are one standard
-  /// deviation from the mean, a disc is 1.8 and a rod 3.6 standard deviations from the mean.
+  /// calibration. The prior inertia fits a box: equal moments, with moments of 3 : 2 : 2 at one standard deviation. A
+  /// disc is 1.8 and a rod 3.6 standard deviations from equal moments.
   RateModelParams model = {.accel_bias_sigma_m_s2 = 0.02, .inertia_sigma = 0.15};
   RailDetector::Params rails = {};
   double period_s = 0.01;                    ///< nominal time between samples
@@ -27,17 +26,16 @@ struct RateStreamParams {
   double gap_max_s = 1.0;                    ///< longest time between samples
   double step_s = 0.005;                     ///< minimum time between Gauss-Newton steps; 0: with each sample
 
-  /// Sensor errors from an earlier run, used unchanged instead of model.errors. If calibrated_errors is empty,
-  /// RateStream corrects the readings by model.errors and estimates the remaining uncertainty from the readings.
+  /// Sensor errors from an earlier run, used unchanged instead of model.errors. If empty, RateStream corrects the
+  /// readings by model.errors and estimates the remaining uncertainty.
   std::shared_ptr<const KnownSensorErrors> calibrated_errors;
 
   using Expert = RateStreamExpertParams;
   Expert expert = {};  ///< rarely changed parameters
 
-  /// Returns the maximum length of a window: the duration of 4096 samples, but at most 10 s.
+  /// maximum length of a window: the duration of 4096 samples, but at most 10 s
   double lag_max_s() const { return std::min(10.0, 4096.0 * period_s); }
 
-  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit.group("", p.model);

@@ -23,10 +23,9 @@
 #include "tumble/angular_velocity/sensor_errors.hpp"
 #include "tumble/common/time.hpp"
 
-/// State of RateStream.
 namespace tumble {
 
-/// RateStreamForce is the accelerometer's reading at the time stamp of a sample.
+/// accelerometer's reading at the time stamp of a sample
 struct RateStreamForce {
   Eigen::Vector3d force_m_s2 = Eigen::Vector3d::Zero();
   std::uint8_t device_clip_flags = 0;  ///< flags of the accelerometer
@@ -34,15 +33,14 @@ struct RateStreamForce {
   bool operator==(const RateStreamForce&) const = default;
 };
 
-/// RateStreamKnot is one sample in the sliding window of RateStream.
 struct RateStreamKnot {
   RateObservation observation;  ///< with the force at the sample's own time; `read` has the received force
   RateStreamForce read;
   Clipping by_axis_aligned_rails;  ///< clipping from flags and equal readings; the observation also uses planes
   RateEstimate estimate;
   Eigen::Matrix3d covariance_rad2_s2 = Eigen::Matrix3d::Zero();
-  /// Increase of each axis' magnitude per sample before this sample: the smaller increase of the last two steps, at
-  /// least 0.
+  /// increase of each axis' magnitude per sample before this sample: the smaller increase of the last two steps, at
+  /// least 0
   Eigen::Vector3d reading_growth_rad_s = Eigen::Vector3d::Zero();
   int age = 0;
   bool repeats = false;      ///< the gyro repeats the previous reading: RepeatDetector
@@ -50,8 +48,7 @@ struct RateStreamKnot {
   std::uint8_t near = 0;     ///< axes that may be saturated during a part of the sample: rails.md (R76)
 };
 
-/// RateStreamDelay contains the estimated delay of the accelerometer relative to the gyro, see rate_stream.md (R104) to
-/// (R107).
+/// See rate_stream.md (R104) to (R107).
 struct RateStreamDelay {
   ImpactSums impacts;
   double applied_delay_s = 0.0;      ///< delay in use; the prior until a delay is found
@@ -62,8 +59,7 @@ struct RateStreamDelay {
   bool operator==(const RateStreamDelay&) const = default;
 };
 
-/// RateStreamDevice contains the information about sensor errors from all samples that have left the window. See
-/// rate_stream.md (R100).
+/// Contains the information about sensor errors from all samples that have left the window, see rate_stream.md (R100).
 struct RateStreamDevice {
   struct Work {
     arrow::BorderErrors border, calibration_by_errors;
@@ -80,7 +76,6 @@ struct RateStreamDevice {
   Work work;                              ///< buffer
 };
 
-/// RateStreamState is the complete state of a RateStream, created by RateStream::start(). The state can be copied.
 struct RateStreamState {
   StreamingClippingFinder::State rails;
   RestDetector::State rests;
@@ -90,18 +85,16 @@ struct RateStreamState {
   std::vector<RateStreamKnot> window;  ///< oldest first
   RigConstants rig;
   RigConstants::Matrix rig_covariance;
-  // Gaussian prior on the oldest sample and on the calibration, from all samples that have left the window, with its
-  // linearisation point.
+  // Gaussian prior on the oldest sample and on the calibration, from all samples that have left the window
   arrow::Block prior;
   arrow::Corner prior_corner;
-  /// State of the sensor errors, in a vector of one element. The vector stores the state on the heap, because threads
-  /// with a small stack use RateStream.
+  /// The state of the sensor errors is on the heap (in a vector of one element), because threads with a small stack use
+  /// RateStream.
   std::vector<RateStreamDevice> device = std::vector<RateStreamDevice>(1);
-  /// Smallest and largest readings of the gyro since the start of the run.
   std::array<Eigen::Vector3d, 2> extremes{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
   MinSaturationLevels min_levels;  ///< lower bounds from the readings so far
-  /// Data of a run of possibly saturated readings whose first samples have left the window:
-  /// RateStreamKnot::reading_growth_rad_s before the run, and the number of samples that have left.
+  /// slope of the readings before a run of possibly saturated readings, and number of the run's samples that have left
+  /// the window
   Eigen::Vector3d slope_before_clipping_rad_s = Eigen::Vector3d::Zero(), entry_samples = Eigen::Vector3d::Zero();
   std::optional<RateKnot> last_marginalised;  ///< sample that left the window last, and its time
   TimeNs last_marginalised_ns = 0;

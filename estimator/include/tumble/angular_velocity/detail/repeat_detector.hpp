@@ -9,8 +9,7 @@
 
 namespace tumble {
 
-/// RepeatedReading describes the gyro or accelerometer reading in a sample, which may repeat an earlier reading (sample
-/// and hold). Readings repeat if the sensor updates more slowly than the log.
+/// A reading repeats (sample and hold) if the sensor updates more slowly than the log.
 struct RepeatedReading {
   bool repeats = false;                              ///< repeats the reading of the previous sample
   double age_samples = 0.0;                          ///< mean age of the reading
@@ -21,18 +20,15 @@ struct RepeatedReading {
   /// Returns the time from the middle of the reading's window to the middle of the sample's window, in samples. The
   /// reading's window has the length of the update period, and ends when the sensor takes the reading.
   double delay_samples() const { return is_slower_than_log() ? age_samples + 0.5 * (period_samples - 1.0) : 0.0; }
-  /// Returns the change of the measured quantity during delay_samples(), extrapolated with the slope of the last
-  /// change.
+  /// The change is extrapolated with the slope of the last change.
   Eigen::Vector3d change_since_reading() const;
   bool operator==(const RepeatedReading&) const = default;
 };
 
-/// Detects causally whether a log has a higher sample rate than the sensor. RepeatDetector is the causal form of
-/// find_repeated(). RepeatDetector does not estimate the phase of the sensor's clock, so a new reading has an age of
-/// 0.5 +- 0.29 samples. See docs/maths/rate_stream.md (R95).
+/// Detects causally whether a log has a higher sample rate than the sensor. RepeatDetector does not estimate the phase
+/// of the sensor's clock, so a new reading has an age of 0.5 +- 0.29 samples. See docs/maths/rate_stream.md (R95).
 class RepeatDetector {
  public:
-  /// Memory is the detection state of the gyro or of the accelerometer.
   struct Memory {
     Eigen::Vector3d reading = Eigen::Vector3d::Zero();
     double equal_samples = 0.0;           ///< consecutive samples with this reading
@@ -46,8 +42,8 @@ class RepeatDetector {
     bool operator==(const State&) const = default;
   };
 
-  /// Processes the next finite sample. Cost: O(1), no allocation. A clipped gyro repeats its reading at any update
-  /// rate, so RepeatDetector ignores samples that are `clipped`.
+  /// The sample must be finite. Cost: O(1), no allocation. A clipped gyro repeats its reading at any update rate, so
+  /// RepeatDetector ignores samples that are `clipped`.
   void observe(const ImuSample& sample, bool clipped, State& state) const;
 };
 

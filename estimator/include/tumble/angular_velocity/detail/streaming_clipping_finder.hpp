@@ -12,31 +12,26 @@
 
 namespace tumble {
 
-/// Detects saturation limits and saturation planes of gyro and accelerometer from all readings so far.
-/// StreamingClippingFinder is the causal form of ClippingFinder.
+/// Detects saturation limits and saturation planes from all readings so far; causal form of ClippingFinder.
 ///
-/// For each of the two sensors, StreamingClippingFinder stores up to `readings_max` distinct readings. The latest
-/// readings and readings near the extremes have priority. StreamingClippingFinder searches for saturation planes after
-/// each segment of readings near an extreme, with the method of ClippingFinder. Within a segment,
-/// StreamingClippingFinder also searches whenever the number of readings near the extremes has grown by an eighth. A
-/// run of n readings at the extreme therefore needs only O(log n) searches. A saturation plane remains valid after its
-/// readings were dropped, until readings contradict the plane. StreamingClippingFinder detects saturation some samples
-/// after the saturation first occurs, so users must classify the samples before the detection again. The limitations of
-/// RailPlaneFinder apply to StreamingClippingFinder.
+/// For gyro and accelerometer, up to `readings_max` distinct readings are stored. The latest readings and readings near
+/// the extremes have priority. The search for saturation planes repeats whenever the number of readings near the
+/// extremes has grown by an eighth. A run of n readings at the extreme therefore needs only O(log n) searches. A
+/// saturation plane remains valid after its readings were dropped, until readings contradict the plane. Saturation is
+/// detected some samples after its first occurrence, so users must classify earlier samples again.
 class StreamingClippingFinder {
  public:
   struct Params {
     ClippingFinder::Params clipping;
     int readings_max = 1024;
 
-    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("", p.clipping);
       visit(p.readings_max, {"readings_max", "1", 64, 65536, "maximum number of distinct readings stored per triad"});
     }
   };
-  /// Memory contains the stored readings of the gyro [rad/s] or of the accelerometer [m/s^2].
+  /// unit of the readings: rad/s for the gyro, m/s^2 for the accelerometer
   struct Memory {
     std::vector<Eigen::Vector3d> readings;           ///< distinct readings, in time order
     Eigen::Vector3d peak = Eigen::Vector3d::Zero();  ///< largest magnitude of each axis
@@ -55,16 +50,15 @@ class StreamingClippingFinder {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit StreamingClippingFinder(const Params& params);
 
-  /// Returns the state before the first sample, with all memory that observe() needs.
+  /// The returned state has all memory that observe() needs.
   State start() const;
 
-  /// Updates the state with one finite sample. Cost: O(1), sometimes a search. Returns true if the known saturation
-  /// limits or planes changed.
+  /// The sample must be finite. Cost: O(1), sometimes a search. Returns true if the known saturation limits or planes
+  /// changed.
   bool observe(const ImuSample& sample, State& state) const;
 
   /// Returns the clipped axes of a finite sample, according to the saturation limits found so far and the flags of the
-  /// device. Cost: O(1). The arguments `before` and `after` are the neighbours of the sample, or null at the ends. The
-  /// neighbours reveal saturation during a part of the sample.
+  /// device. Cost: O(1). `before` and `after` are the neighbours of the sample, or null at the ends.
   Clipping classify(const ImuSample* before, const ImuSample& sample, const State& state,
                     const ImuSample* after = nullptr) const;
 

@@ -25,7 +25,7 @@ struct AxisLabels {
 
 inline constexpr int kAxisLabels = 48;
 
-/// Returns all 48 assignments of axis labels. Index 0 is the identity.
+/// Index 0 is the identity.
 const std::array<AxisLabels, kAxisLabels>& axis_labels();
 
 }  // namespace tumble

@@ -8,22 +8,19 @@
 
 namespace tumble {
 
-/// The functions in hand_held_model.hpp formulate hand-held motion as a least-squares problem. The unknowns are a chain
-/// of states (nodes) at equal time steps, the biases and the lever arm. Each function adds one residual to the normal
-/// equations H d = g and returns the cost of the residual.
+/// Formulates hand-held motion as a least-squares problem over a chain of states (nodes) at equal time steps. Each
+/// function adds one residual to the normal equations H d = g and returns the cost of the residual.
 namespace hand_held {
 
 inline constexpr int kBlockSize = 18;  ///< size of a node's error vector: see Index
 inline constexpr int kBorderSize = 9;  ///< number of constants: see ConstantIndex
 using System = ArrowSystem<kBlockSize, kBorderSize>;
 
-/// Index of the first component of each part of a node's error vector. The attitude error phi is defined by q_true =
-/// q_WI Exp(phi).
+/// first index of each part of a node's error vector The attitude error phi is defined by q_true = q_WI Exp(phi).
 enum Index { kPhi = 0, kRate = 3, kAngularAcceleration = 6, kHandAcceleration = 9, kVelocity = 12, kPosition = 15 };
 enum ConstantIndex { kGyroBias = 0, kAccelBias = 3, kLever = 6 };
 
-/// Node is the motion at one time step. The held point is the point of the body at the hand; its acceleration, velocity
-/// and position are bounded.
+/// The held point is the point of the body at the hand; its acceleration, velocity and position are bounded.
 struct Node {
   Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
   Eigen::Vector3d w_WI_I_rad_s = Eigen::Vector3d::Zero();
@@ -34,7 +31,6 @@ struct Node {
   void move(const System::StateVector& step);
 };
 
-/// Constants are the unknowns that are constant over a recording.
 struct Constants {
   Eigen::Vector3d gyro_bias_rad_s = Eigen::Vector3d::Zero();
   Eigen::Vector3d accel_bias_m_s2 = Eigen::Vector3d::Zero();
@@ -42,8 +38,8 @@ struct Constants {
   void move(const System::BorderVector& step);
 };
 
-/// ElementSums contains sums over the readings z of one sensing element near a node. The times in the sums are relative
-/// to the node. The sums make the cost of a solver step independent of the IMU's sample rate.
+/// Sums over the readings z of one sensing element near a node; times are relative to the node. The sums make the cost
+/// of a solver step independent of the IMU's sample rate.
 struct ElementSums {
   double count = 0.0, time_sum_s = 0.0, time_squared_sum_s2 = 0.0, reading_sum = 0.0,
          reading_time_sum = 0.0;                           ///< count and sums of the unsaturated readings z
@@ -53,7 +49,6 @@ struct ElementSums {
   double partial_saturation_sigma = 0.0;  ///< standard deviation of readings that may be partly saturated
 };
 
-/// NodeReadings contains all IMU readings near a node.
 struct NodeReadings {
   std::array<ElementSums, 3> gyro;
   Eigen::Vector3d force_m_s2 = Eigen::Vector3d::Zero();  ///< mean force
@@ -65,7 +60,6 @@ struct NodeReadings {
   bool rest = false;
 };
 
-/// ReadingNoise contains standard deviations of readings and of rest, which determine the weights of the residuals.
 struct ReadingNoise {
   double gyro_rad_s = 0.0;               ///< standard deviation of one gyro reading
   double window_rate_sigma_rad_s = 0.0;  ///< standard deviation of (mean rate of a window - rate at its centre)
@@ -80,19 +74,16 @@ struct ReadingNoise {
   double rest_m_s2 = 0.0;                ///< standard deviation of the acceleration at rest
 };
 
-/// Adds the residuals of the gyro readings of one node, one residual per sensing element. Row i of `rows` is the
-/// sensing direction m_i of element i. Unsaturated readings measure m_i' (rate + bias). Clipped readings limit m_i'
-/// (rate + bias) from one side.
+/// Row i of `rows` is the sensing direction m_i of element i. Unsaturated readings measure m_i' (rate + bias). Clipped
+/// readings limit m_i' (rate + bias) from one side.
 double add_gyro(const NodeReadings& readings, const Eigen::Matrix3d& rows, const ReadingNoise& noise, const Node& node,
                 const Constants& constants, System::Block& block, System::Corner& corner);
 
-/// Adds the residual of the specific force of one node: f = R'(a - g) + alpha x r + w x (w x r) + bias. The symbols are
-/// the attitude R, the held point's acceleration a, gravity g, the rate w, the angular acceleration alpha and the lever
-/// arm r.
+/// Adds the residual of the specific force of one node: f = R'(a - g) + alpha x r + w x (w x r) + bias. Symbols:
+/// attitude R, held point's acceleration a, gravity g, rate w, angular acceleration alpha, lever arm r.
 double add_force(const NodeReadings& readings, const Eigen::Vector3d& g_W_m_s2, const ReadingNoise& noise,
                  const Node& node, const Constants& constants, System::Block& block, System::Corner& corner);
 
-/// Adds the residuals of a stationary node, whose rate, velocity and acceleration are close to zero.
 double add_rest(const ReadingNoise& noise, const Node& node, System::Block& block);
 
 /// Motion is the motion model between two nodes that are `step_s` apart. The angular jerk is white noise. The held
@@ -110,14 +101,12 @@ class Motion {
   };
   explicit Motion(const Params& params);
 
-  /// Adds the residual of a step between two nodes. The argument `hand` multiplies the power spectral density of the
-  /// held point's acceleration. The argument `jerk` multiplies the root power spectral density of the angular jerk.
+  /// `hand` multiplies the power spectral density of the held point's acceleration. `jerk` multiplies the root power
+  /// spectral density of the angular jerk.
   double add_step(const Node& from, const Node& to, double hand, System::Block& block, System::Block& next,
                   double jerk = 1.0) const;
-  /// Adds to one node the prior that velocity and position of the held point are close to zero.
   double add_bounds(const Node& node, System::Block& block) const;
-  /// Adds the prior of the first node. The prior fixes the heading. Every other unknown has the stationary variance of
-  /// its stochastic process.
+  /// The prior fixes the heading. Every other unknown has the stationary variance of its stochastic process.
   double add_initial_prior(const Node& node, System::Block& block) const;
 
  private:

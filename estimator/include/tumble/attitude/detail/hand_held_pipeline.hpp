@@ -22,7 +22,6 @@ class HandHeldPipeline {
     HandHeldStream::Params stream;
     StreamingClippingFinder::Params rails;
 
-    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("", p.stream);
@@ -40,12 +39,10 @@ class HandHeldPipeline {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit HandHeldPipeline(const Params& params);
 
-  /// Returns the state before the first sample.
   State start() const;
 
-  /// Processes one sample. The output `out` is the rate of the sample that is `lag_s` old, and is empty while the
-  /// window fills. On error (`non_finite`, `time_order`, `gap`), the saturation limits are unchanged and `out` is
-  /// empty.
+  /// `out` is the rate of the sample that is `lag_s` old, and is empty while the window fills. On error (`non_finite`,
+  /// `time_order`, `gap`), the saturation limits are unchanged and `out` is empty.
   Status push(const ImuSample& sample, State& state, std::optional<RateState>& out) const;
 
   /// Appends the unreported rates of the samples in the window to `out`, oldest first.

@@ -3,10 +3,9 @@
 
 #include "tumble/common/parameters.hpp"
 
-/// The structs in imu_merge_expert_params.hpp are parts of ImuMergeParams::Expert.
 namespace tumble {
 
-/// ImuOutlierParams defines when ImuMerge excludes a reading that differs from the readings of all other IMUs.
+/// Readings that differ more from the readings of all other IMUs are excluded.
 struct ImuOutlierParams {
   double rate_rad_s = 0.15;  ///< maximum difference from the median
   double rate_share = 0.03;  ///< additional difference, as a fraction of the rate
@@ -33,7 +32,6 @@ struct ImuOutlierParams {
   }
 };
 
-/// ImuMergeExpertParams contains the rarely changed parameters of ImuMerge, grouped by topic.
 struct ImuMergeExpertParams {
   ImuOutlierParams outliers = {};
 

@@ -11,11 +11,9 @@
 #include "tumble/common/detail/imu_average.hpp"
 #include "tumble/common/time.hpp"
 
-/// State of ImuMerge.
 namespace tumble {
 
-/// ImuRepeat describes a run of equal readings of one IMU: its duration, the readings of other IMUs at its start, and
-/// the rotation since its start.
+/// run of equal readings of one IMU, with the readings of other IMUs at its start and the rotation since its start
 struct ImuRepeat {
   Eigen::Vector3d reading = Eigen::Vector3d::Zero(), others = Eigen::Vector3d::Zero();
   Eigen::Vector3d turned_rad = Eigen::Vector3d::Zero();
@@ -24,7 +22,7 @@ struct ImuRepeat {
   bool operator==(const ImuRepeat&) const = default;
 };
 
-/// ImuMergeUnit contains the rate errors of one IMU relative to the mean of all IMUs.
+/// rate errors of one IMU relative to the mean of all IMUs
 struct ImuMergeUnit {
   static constexpr int kErrorCount = 13;  ///< bias, scale and misalignment, time offset
 
@@ -48,7 +46,6 @@ struct ImuMergeUnit {
   bool operator==(const ImuMergeUnit&) const = default;
 };
 
-/// ImuMergeState is the complete state of ImuMerge.
 struct ImuMergeState {
   static constexpr int kImus = 4;
   static constexpr int kAccelerationWindows = 3;  ///< windows needed for an angular acceleration

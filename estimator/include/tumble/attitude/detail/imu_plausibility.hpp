@@ -12,22 +12,19 @@ namespace tumble {
 
 /// Detects a gyro whose scale or sign contradicts gravity, and frozen sensors.
 ///
-/// If the magnitude of the force is constant for a fifth of a second, the force is probably gravity. The direction of
-/// gravity in sensor axes must rotate as the gyro measures: u(t + T) = R^T u(t). The vector u is the direction of the
-/// force, and R is the rotation of the sensor from t to t + T. A constant force of another magnitude than g has another
-/// cause, for example the centripetal force of a spin in flight. ImuPlausibility compares directions only if the force
-/// is close to g and the gyro is unsaturated.
+/// If the magnitude of the force is close to gravity and constant for a fifth of a second, the force is probably
+/// gravity. The direction of gravity in sensor axes must rotate as the gyro measures: u(t + T) = R^T u(t). The vector u
+/// is the direction of the force, and R is the rotation of the sensor from t to t + T. Directions are compared only if
+/// the gyro is unsaturated.
 ///
-/// ImuPlausibility fits a regression line to the rotation of the force as a function of the rotation of the gyro. The
-/// slope of the regression is 1 for a correct IMU, 2 for a half-scale gyro, and -1 for an inverted gyro. Pushes, and a
-/// force along a rod, scatter the measured rotations about the regression line but change its slope little.
+/// A regression line relates the rotation of the force to the rotation of the gyro. The slope of the regression is 1
+/// for a correct IMU, 2 for a half-scale gyro, and -1 for an inverted gyro. Pushes, and a force along a rod, scatter
+/// the measured rotations about the regression line but change its slope little.
 ///
-/// ImuPlausibility reports a gyro or an accelerometer as frozen if one reading repeats bit for bit for long enough. The
-/// repeated reading must last at least a second, and ten times longer than any earlier repeated reading.
-/// ImuPlausibility tests for repeated readings only if the readings of the sensor have changed before. Sensors whose
-/// readings often repeat do not count as frozen, for example sensors with coarse quantisation at rest. ImuPlausibility
-/// reports a gyro with constant readings as frozen if gravity rotates, or if forces differ from gravity for long
-/// enough. ImuPlausibility reports an accelerometer that always reads 0 as frozen if the gyro measures motion.
+/// A sensor is frozen if one reading repeats bit for bit for at least a second, and ten times longer than any earlier
+/// repetition. Sensors whose readings never changed, or often repeat at rest due to coarse quantisation, do not count
+/// as frozen. A gyro with constant readings is frozen if gravity rotates, or if forces differ from gravity for long
+/// enough. An accelerometer that always reads 0 is frozen if the gyro measures motion.
 ///
 /// ImuPlausibility does not detect errors of a few per cent, exchanged axes, or errors while the body is pushed.
 class ImuPlausibility {
@@ -36,7 +33,6 @@ class ImuPlausibility {
     double gravity_m_s2 = 9.80665;
     double gyro_range_rad_s = 1e6;  ///< windows with a faster rate on an axis are ignored
 
-    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-12, 100.0, "strength of gravity"});
@@ -45,7 +41,6 @@ class ImuPlausibility {
     }
   };
 
-  /// Repetition describes how long a gyro or accelerometer has repeated one reading.
   struct Repetition {
     Eigen::Vector3d reading = Eigen::Vector3d::Zero();
     double repeated_s = 0.0, longest_s = 0.0, changing_duration_s = 0.0;
@@ -72,7 +67,7 @@ class ImuPlausibility {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit ImuPlausibility(const Params& params);
 
-  /// Processes one IMU sample. Cost: O(1), no allocation. Samples that are not finite or out of order are ignored.
+  /// Cost: O(1), no allocation. Samples that are not finite or out of order are ignored.
   void step(const ImuSample& sample, State& state) const;
 
   /// Limits the memory to about a minute of evidence, so that a finding ends after its cause.
@@ -84,7 +79,7 @@ class ImuPlausibility {
   double rotation_slope(const State& state) const;
   /// Returns the correlation of the gyro's rotation with the force's rotation, from -1 to 1. The correlation is 1 for a
   /// gyro of any scale, -1 for an inverted gyro, and about 0 for swapped axes. Pushes that are mistaken for gravity
-  /// reduce the correlation to a value between 0 and 1. The function returns 1 while the rotation is too small for a
+  /// reduce the correlation to a value between 0 and 1. The correlation is 1 while the rotation is too small for a
   /// decision.
   double rotation_agreement(const State& state) const;
   /// Returns the longest time for which the gyro or the accelerometer was frozen [s], or 0 if both sensors always

@@ -8,10 +8,9 @@
 
 namespace tumble {
 
-/// LowPass filters a vector with a second-order Butterworth low-pass filter (bilinear transform, corner frequency
-/// sqrt(2) / (2 pi tau)). Until the time tau has passed, the output is the mean of all inputs, so that a single sample
-/// cannot determine the start value. The state of LowPass consists of the output and its slope. At a constant sample
-/// period, the transfer function equals that of a biquad filter. A change of the sample period causes no transient.
+/// LowPass is a second-order Butterworth low-pass filter (bilinear transform, corner frequency sqrt(2) / (2 pi tau)).
+/// Until the time tau has passed, the output is the mean of all inputs, so that a single sample cannot determine the
+/// start value. The state consists of output and slope, so a change of the sample period causes no transient.
 template <int Rows>
 struct LowPass {
   using Vector = Eigen::Matrix<double, Rows, 1>;
@@ -22,8 +21,7 @@ struct LowPass {
   double averaged_s = 0.0;
   double samples = 0.0;
 
-  /// Processes the next input, `dt_s` after the previous input. The argument `warp` is the result of low_pass_prewarp()
-  /// for tau and dt.
+  /// `dt_s` is the time since the previous input, and `warp` is the result of low_pass_prewarp().
   void advance(const Vector& next, double tau_s, double dt_s, double warp) {
     if (averaged_s < tau_s) {
       samples += 1.0;
@@ -42,8 +40,7 @@ struct LowPass {
   bool operator==(const LowPass&) const = default;
 };
 
-/// Returns the warped frequency tan(pi f_c dt) for LowPass. The warped frequency is bounded, so that a sample period
-/// much longer than tau passes the input unfiltered.
+/// Returns tan(pi f_c dt), bounded so that a sample period much longer than tau passes the input unfiltered.
 inline double low_pass_prewarp(double tau_s, double dt_s) {
   return std::tan(std::min(dt_s / (std::numbers::sqrt2 * tau_s), 1.5));
 }

@@ -12,16 +12,15 @@ namespace tumble {
 
 /// Checks whether rates are plausible for a body that never rests but is held by a hand, a hinge, or the ground. During
 /// one or two seconds, a held body rotates about one of its points (the pivot), which hardly moves. The forces, rotated
-/// by the rates, then integrate to gravity times the duration plus the effect of rotation about the pivot. PivotCheck
-/// evaluates the integral for the actual rates, for relabelled or inverted gyro axes, and for half or twice the rate.
-/// The rates are wrong if only one of the alternatives fits the integral, in many segments. If the pivot is near the
-/// sensor, as in hand-held motion, PivotCheck determines the gyro's scale to a per cent.
+/// by the rates, integrate to gravity times the duration plus the effect of rotation about the pivot. PivotCheck
+/// compares the integrated force for the actual rates, for relabelled or inverted gyro axes, and for half or twice the
+/// rate. The rates are wrong if only one of the alternatives fits the integral, in many segments. If the pivot is near
+/// the sensor, as in hand-held motion, PivotCheck determines the gyro's scale to a per cent.
 ///
 /// The equations of PivotCheck are imu_merge.md (I27), (I28), (I29), (I30). PivotCheck uses only unsaturated rates: a
-/// segment ends where the gyro saturates. PivotCheck does not detect wrong rates in three cases. First, no alternative
-/// explains the motion of a body that flies or rolls. Second, several axis labels explain rotation about a single axis
-/// equally well. Third, flipping all three axes of the accelerometer only moves the estimated pivot to the opposite
-/// side.
+/// segment ends where the gyro saturates. If a body flies or rolls, no alternative explains its motion. If a body
+/// rotates about a single axis, several axis labels explain the rotation equally well. If all three axes of the
+/// accelerometer are flipped, the estimated pivot only moves to the opposite side.
 struct PivotCheck {
   int reading = 0;                    ///< index of the best gyro alternative; 0: unchanged gyro
   double evidence = 0.0;              ///< evidence against the unchanged rates: sum of logarithms
@@ -31,8 +30,7 @@ struct PivotCheck {
   double scale_sigma = std::numeric_limits<double>::infinity();
   std::size_t scale_segments = 0, explained_segments = 0;  ///< segments that determine the scale; explained segments
 
-  /// Compares all alternatives of the gyro over a recording. The ranges are those of the data sheet; 0: unknown. Cost:
-  /// O(samples), about 1 ms per second of data at 100 Hz.
+  /// The ranges are from the data sheet; 0: unknown. Cost: O(samples), about 1 ms per second of data at 100 Hz.
   static PivotCheck of(std::span<const ImuSample> samples, double gravity_m_s2, double gyro_range_rad_s,
                        double accel_range_m_s2);
 

@@ -11,18 +11,14 @@
 #include "tumble/angular_velocity/detail/auxiliary_recording.hpp"
 #include "tumble/attitude/regime_smoother.hpp"
 
-/// The functions in recording_rates.hpp estimate the rates of a whole recording, and replace gyro readings by the
-/// estimated rates.
 namespace tumble {
 
-/// Estimates the rates of a recording with RegimeSmoother and additional IMUs. Returns `ok`, or an error of align() or
-/// RegimeSmoother::estimate().
+/// Returns `ok`, or an error of align() or RegimeSmoother::estimate().
 Status estimate_rates(std::span<const ImuSample> samples, std::span<const AuxiliaryRecording> auxiliary_imus,
                       const RegimeSmoother::Params& params, std::vector<RateState>& rates,
                       RegimeSmoother::Report& report);
 
-/// RecoveredRates contains a recording with replaced gyro readings, for methods that need gyro readings instead of
-/// rates.
+/// recording with replaced gyro readings, for methods that need gyro readings instead of rates
 struct RecoveredRates {
   std::vector<ImuSample> samples;  ///< the recording with replaced gyro readings
   std::vector<Eigen::Matrix3d>
@@ -34,19 +30,18 @@ struct RecoveredRates {
   SaturationLevels rails;
 };
 
-/// ReplacedReadings selects the gyro readings that recover_rates() replaces.
 enum class ReplacedReadings : std::uint8_t {
   clipped,  ///< readings with a clipped axis
-  /// Readings with a clipped or suspect axis. If the gyro updates more slowly than the log, recover_rates() replaces
-  /// all readings, because RateSmoother removes the gyro's delay. Smoothers with their own motion model perform better
-  /// with `clipped`.
+  /// readings with a clipped or suspect axis If the gyro updates more slowly than the log, all readings are replaced,
+  /// because RateSmoother removes the gyro's delay. Smoothers with their own motion model perform better with
+  /// `clipped`.
   unreliable,
 };
 
 /// Replaces all three axes of readings by estimated rates, because a tilted saturation plane also corrupts the
-/// unclipped axes. The function adds the gyro bias to the replaced readings, so that replaced and original readings
-/// have equal bias. If no reading clips or the estimation fails, the function keeps all readings. With `unreliable`,
-/// the function still interpolates the readings of a gyro that updates more slowly than the log. Cost: O(N).
+/// unclipped axes. The gyro bias is added to replaced readings, so that replaced and original readings have equal bias.
+/// If no reading clips or the estimation fails, all readings remain. With `unreliable`, the readings of a gyro that
+/// updates more slowly than the log are still interpolated. Cost: O(N).
 RecoveredRates recover_rates(std::span<const ImuSample> samples, std::span<const AuxiliaryRecording> auxiliary_imus,
                              const RegimeSmoother::Params& params, ReplacedReadings replaced);
 

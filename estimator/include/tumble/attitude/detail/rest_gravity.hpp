@@ -12,13 +12,12 @@
 
 namespace tumble {
 
-/// Checks estimated rates and the accelerometer with the measured force at rests. The force at rest must have the
-/// magnitude of gravity. A wrong magnitude reveals an accelerometer with another unit, for example g.
+/// Checks estimated rates and the accelerometer with the force at rest, which must have the magnitude of gravity. A
+/// wrong magnitude reveals another unit of the accelerometer, for example g.
 ///
-/// The velocity at a rest is zero. The forces between two rests, rotated by the estimated rates, therefore integrate to
-/// gravity times the duration, as measured at both rests. The relation also holds if flight, impacts and clipping
-/// happen between the rests. A gyro with wrong sign, scale or axis labels violates the relation. The covariance of the
-/// rates increases the tolerance.
+/// Between two rests, the force rotated by the estimated rates integrates to gravity times the duration, because the
+/// velocity at both rests is zero. A gyro with wrong sign, scale or axis labels violates the relation between
+/// integrated force and gravity.
 ///
 /// The equations of RestGravity are imu_merge.md (I23), (I24), (I25), (I26). RestGravity does not detect wrong rates if
 /// the body returns to its initial attitude (a pendulum), rotates about the vertical, or rests less than twice.
@@ -31,7 +30,6 @@ class RestGravity {
     double gravity_m_s2 = 9.80665;
     double accel_range_m_s2 = 0.0;  ///< range from the data sheet; 0: unknown
 
-    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-12, 100.0, "strength of gravity"});
@@ -39,7 +37,6 @@ class RestGravity {
             {"accel_range_m_s2", "m/s^2", 0.0, kUnbounded, "range stated by the device; 0: not stated"});
     }
   };
-  /// MagnitudeState contains the sums for checking the magnitude of the force at rest.
   struct MagnitudeState {
     RestDetector::State rest, weightless, above_gravity;
     double rest_s = 0.0, force_sum_m = 0.0;  ///< total duration of rests, and integral of the force at rest
@@ -64,23 +61,22 @@ class RestGravity {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit RestGravity(const Params& params);
 
-  /// Processes an IMU sample and its estimated rate. Cost: O(1), no allocation. Samples that are not finite or out of
-  /// order are ignored.
+  /// Cost: O(1), no allocation. Samples that are not finite or out of order are ignored.
   void step(const ImuSample& sample, const RateState& rate, State& state) const;
-  /// Processes a sample without a rate, for checking the magnitude of the force at rest only.
+  /// Without rates, only the magnitude of the force at rest is checked.
   void step(const ImuSample& sample, MagnitudeState& state) const { (void)follow(sample, state); }
 
-  /// Limits the memory of the force at rest to a minute of rest, so that the finding ends after the fault ends.
+  /// The memory is limited to a minute of rest, so that the finding ends after the fault ends.
   static void limit_memory(MagnitudeState& state);
 
   /// Returns the mean magnitude of the force at rest as a fraction of gravity. Returns 0 if every rest of a second was
   /// without force, and 1 if the body never rested.
   double magnitude_error_ratio(const MagnitudeState& state) const;
   /// Returns `out_of_range` if magnitude_error_ratio() differs from 1. If the magnitude is wrong by more than a factor
-  /// of three, the message names the unit of the force as the probable error.
+  /// of three, the message names the unit as the probable error.
   Status magnitude_verdict(const MagnitudeState& state) const;
-  /// Returns the error of magnitude_verdict(), if any, and otherwise checks the rates. Returns `out_of_range` if, for
-  /// the worst pair of rests, the final velocity is wrong by more than its limit.
+  /// Returns the error of magnitude_verdict(), if any, and otherwise checks the rates. Returns `out_of_range` if the
+  /// final velocity of the worst pair of rests is wrong by more than its limit.
   Status verdict(const State& state) const;
 
  private:

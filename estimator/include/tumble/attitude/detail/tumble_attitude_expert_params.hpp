@@ -4,10 +4,8 @@
 #include "tumble/angular_velocity/rest_detector.hpp"
 #include "tumble/common/parameters.hpp"
 
-/// The structs in tumble_attitude_expert_params.hpp are parts of TumbleAttitudeParams::Expert.
 namespace tumble {
 
-/// AttitudeRestParams contains the standard deviations of velocity and rate about zero while the body is at rest.
 struct AttitudeRestParams {
   double velocity_sigma_m_s = 0.005;   ///< standard deviation of the velocity at rest, per node
   double rate_sigma_rad_sqrts = 2e-3;  ///< standard deviation of the rate measured at rest, mean over 1 s
@@ -26,8 +24,6 @@ struct AttitudeRestParams {
   }
 };
 
-/// AttitudeRollingParams contains the parameters of a rolling sphere: accuracy of the rolling constraint, and detection
-/// of slip.
 struct AttitudeRollingParams {
   double velocity_sigma_m_s = 0.03;  ///< standard deviation of the velocity when rolling without slip, per node
   double slip_velocity_m_s = 0.12;   ///< velocity residual above which slip starts; slip ends below half of this value
@@ -48,7 +44,6 @@ struct AttitudeRollingParams {
   }
 };
 
-/// AttitudeGapParams contains the motion model during a gap of the IMU data.
 struct AttitudeGapParams {
   double duration_min_s = 0.05;  ///< a longer time between two samples is a gap
   /// Random walks of the rate and velocity of tumbling bodies during a gap. On hills, stairs and cliffs, the true
@@ -73,19 +68,17 @@ struct AttitudeGapParams {
   }
 };
 
-/// TumbleAttitudeExpertParams contains the rarely changed parameters of TumbleAttitude, grouped by topic.
 struct TumbleAttitudeExpertParams {
   double bias_walk_rad_s_sqrts = 2e-6;         ///< random walk of the bias per sqrt(s)
   double acceleration_noise_m_s_sqrts = 0.01;  ///< velocity random walk
   double recovered_tau_s = 0.05;               ///< correlation time of the error of a recovered rate
   double node_s = 0.04;                        ///< time between two corrections
-  /// Averaging time of the readings. The thresholds of TumbleAttitude assume the default averaging time. An averaging
-  /// time of 0 disables averaging.
+  /// averaging time of the readings, which the thresholds of TumbleAttitude assume; 0: no averaging
   double reading_s = 4e-3;
   double gap_max_s = 1.0;
-  /// Parameters of the rest detector. The mean rate may differ by 2 deg/s from the bias, and each reading by 2 deg/s
-  /// from the mean rate. Both limits are wide enough for low-cost sensors, and affect only the bias estimate. The mean
-  /// rate has a time constant of half a second, so TumbleAttitude detects rest after one second.
+  /// The mean rate may differ by 2 deg/s from the bias, and each reading by 2 deg/s from the mean rate. Both limits are
+  /// wide enough for low-cost sensors, and affect only the bias estimate. The mean rate has a time constant of half a
+  /// second, so TumbleAttitude detects rest after one second.
   RestDetector::Params rest = {.rate_max_rad_s = 3.4907e-2,
                                .rate_spread_rad_s = 3.4907e-2,
                                .force_spread_m_s2 = 0.5,

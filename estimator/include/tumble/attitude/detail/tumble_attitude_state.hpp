@@ -10,7 +10,6 @@
 
 namespace tumble {
 
-/// TumbleAttitudeState is the complete state of TumbleAttitude.
 struct TumbleAttitudeState {
   static constexpr int kStates = 10;
   using Covariance = Eigen::Matrix<double, kStates, kStates>;
@@ -20,13 +19,12 @@ struct TumbleAttitudeState {
   Eigen::Vector2d v_W_m_s = Eigen::Vector2d::Zero();
   Eigen::Vector2d displacement_W_m = Eigen::Vector2d::Zero();
   /// Covariance of the errors, in this order: tilt error (phi_x, phi_y) in W, bias in I, velocity, displacement, and
-  /// heading error phi_z. The attitude error is defined by q_true = Exp(phi) q_WI. TumbleAttitude does not correct the
-  /// heading error.
+  /// heading error phi_z. The attitude error is defined by q_true = Exp(phi) q_WI. The heading error is not corrected.
   Covariance covariance = Covariance::Zero();
   ImuAverage average;  ///< average of the readings that are not yet processed
   Eigen::Matrix3d recovered_covariance_rad2_s2 = Eigen::Matrix3d::Zero();  ///< mean rate covariance in `average`
   Eigen::Quaterniond q_processed_WI = Eigen::Quaterniond::Identity();      ///< attitude at the last processed average
-  // Integrals since the last node.
+  // integrals since the last node
   Eigen::Matrix3d R_WI_s = Eigen::Matrix3d::Zero();
   Eigen::Vector3d force_integral_W_m_s = Eigen::Vector3d::Zero();
   double squared_rate_integral_rad2_s = 0.0;
@@ -40,7 +38,7 @@ struct TumbleAttitudeState {
   CoarseAlignment alignment;
   RestDetector::State rest;
   bool at_rest = false;
-  // State of a rolling sphere.
+  // state of a rolling sphere
   Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();  ///< rate of the last sample, minus the bias
   double slip_duration_s = 0.0, grip_duration_s = 0.0;
   bool slipping = false;

@@ -20,8 +20,8 @@ struct UnitSignCheck {
 
   std::array<double, kAlternatives> explained_m2_s3{}, effect_m2_s3{};
 
-  /// Adds the readings of one IMU over the time `length_s`, in common axes. Cost: O(1), no allocation. The arguments
-  /// `force_m_s2` and `position_m` are the IMU's force and position, both relative to the mean of all IMUs.
+  /// Cost: O(1), no allocation. The readings cover the time `length_s`, in common axes. `force_m_s2` and `position_m`
+  /// are relative to the mean of all IMUs.
   void add(const Eigen::Vector3d& force_m_s2, const Eigen::Vector3d& position_m, const Eigen::Vector3d& rate_rad_s,
            const Eigen::Vector3d& acceleration_rad_s2, double length_s);
 

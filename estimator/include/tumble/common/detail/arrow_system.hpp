@@ -24,8 +24,8 @@ struct ArrowSystem {
   using BorderMatrix = Eigen::Matrix<double, Border, Border>;
   using BorderVector = Eigen::Matrix<double, Border, 1>;
 
-  /// Block is one block row of the arrow matrix. Before elimination, a Block contains D, E, B and g; after elimination,
-  /// L^-1, L^-1 E, L^-1 B and L^-1 g, with D = L L'.
+  /// Before elimination, a block row contains D, E, B and g; after elimination, L^-1, L^-1 E, L^-1 B and L^-1 g, with D
+  /// = L L'.
   struct Block {
     StateMatrix diagonal = StateMatrix::Zero();
     StateMatrix coupling = StateMatrix::Zero();  ///< coupling of this block (rows) to the next block (columns)
@@ -33,21 +33,21 @@ struct ArrowSystem {
     StateVector gradient = StateVector::Zero();
   };
 
-  /// Corner is the border block of the arrow matrix. Before elimination, a Corner contains C and its gradient; after
-  /// elimination, the Schur complements of both.
+  /// Before elimination, the border block contains C and its gradient; after elimination, the Schur complements of
+  /// both.
   struct Corner {
     BorderMatrix matrix = BorderMatrix::Zero();
     BorderVector gradient = BorderVector::Zero();
   };
 
-  /// Conditional is the distribution of a block for a known border: covariance of the block, and derivative of the
-  /// block's mean with respect to the border.
+  /// distribution of a block for a known border: covariance, and derivative of the block's mean with respect to the
+  /// border
   struct Conditional {
     StateMatrix state;
     CrossMatrix jacobian_border;
   };
 
-  /// Marginal contains the posterior covariance of a block, and its cross-covariance with the border.
+  /// posterior covariance of a block, and its cross-covariance with the border
   struct Marginal {
     StateMatrix state;
     CrossMatrix cross;
@@ -65,11 +65,10 @@ struct ArrowSystem {
   /// border.
   static StateVector back_substitute(const Block& block, const StateVector* next_step, const BorderVector& border_step);
 
-  /// Returns the conditional distribution of an eliminated block, computed from the conditional distribution of the
-  /// next block (null for the last block).
+  /// `next` is the conditional distribution of the next block (null for the last block).
   static Conditional back_conditional(const Block& block, const Conditional* next);
 
-  /// Returns the marginal covariance of a block, which includes the uncertainty of the border.
+  /// The marginal covariance of a block includes the uncertainty of the border.
   static Marginal marginal(const Conditional& conditional, const BorderMatrix& border_covariance);
 
  private:
@@ -106,8 +105,7 @@ bool ArrowSystem<State, Border>::invert_factor(StateMatrix& a) {
   return true;
 }
 
-// Subtracts border' border from the corner. The function computes one triangle of the symmetric product and copies it
-// to the other triangle.
+// Subtracts border' border from the corner, computing only one triangle of the symmetric product.
 template <int State, int Border>
 void ArrowSystem<State, Border>::subtract_square(const CrossMatrix& border, BorderMatrix& corner) {
   constexpr int kHead = Border > 16 ? 12 : Border > 8 ? 8 : Border - 1, kTail = Border - kHead;
@@ -122,7 +120,7 @@ void ArrowSystem<State, Border>::subtract_square(const CrossMatrix& border, Bord
 template <int State, int Border>
 bool ArrowSystem<State, Border>::eliminate(Block& block, Block* next, Corner& corner) {
   if (!invert_factor(block.diagonal)) return false;
-  // The compiler unrolls and vectorises products with the inverse factor, because their sizes are fixed.
+  // Fixed sizes let the compiler unroll and vectorise products with the inverse factor.
   const StateMatrix& L_inv = block.diagonal;
   block.border = (L_inv.lazyProduct(block.border)).eval();
   block.gradient = (L_inv.lazyProduct(block.gradient)).eval();

@@ -8,7 +8,7 @@
 
 namespace tumble {
 
-/// Averages IMU readings over windows of one length. The bandwidth and thresholds of a filter after the average do not
+/// Averages IMU readings over windows of one length. After averaging, bandwidth and thresholds of a filter do not
 /// depend on the IMU's sample rate. If one reading fills the window, the average equals the reading bit for bit.
 ///
 /// ImuAverage neglects coning and sculling within the window.
@@ -19,7 +19,7 @@ struct ImuAverage {
   double force_peak_m_s2 = 0.0;
   std::int64_t readings = 0;
 
-  /// Adds a reading that covers the time `dt_s` before its time stamp.
+  /// The reading covers the time `dt_s` before its time stamp.
   void add(const ImuSample& sample, double dt_s) {
     length_s += dt_s;
     if (++readings == 1) {
@@ -35,8 +35,7 @@ struct ImuAverage {
     force_peak_m_s2 = std::max(force_peak_m_s2, sample.specific_force_m_s2.cwiseAbs().maxCoeff());
   }
 
-  /// Returns true if the average is complete. The length is then closer to `window_s` than with another reading of
-  /// length `dt_s`.
+  /// Returns true if the length is closer to `window_s` than with another reading of length `dt_s`.
   bool full(double window_s, double dt_s) const { return length_s >= window_s - 0.5 * dt_s; }
 
   bool operator==(const ImuAverage& other) const {

@@ -8,7 +8,6 @@
 
 namespace tumble {
 
-/// ImuNeighbours contains the two samples next to a given time, and the interpolation weight.
 struct ImuNeighbours {
   std::size_t before = 0, after = 0;  ///< neighbouring samples; outside the recording, the two samples at the end
   double share = 0.0;                 ///< interpolation weight; outside of [0, 1] outside the recording

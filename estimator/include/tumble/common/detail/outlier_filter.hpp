@@ -11,28 +11,27 @@
 
 namespace tumble {
 
-/// Rejects single outliers among the readings of an IMU. Outliers result from bus faults. A rejected reading counts as
+/// Rejects single outliers among the readings of an IMU. Outliers result from bus faults; a rejected reading counts as
 /// missing.
 ///
-/// A reading is an outlier if it is far above or far below two neighbours that agree with each other, and nothing else
-/// explains the jump. A change of the force explains a jump of the gyro, and a change of the rate explains a jump of
-/// the accelerometer. A reading whose time stamp is later than the next time stamp is also an outlier. The equations of
-/// OutlierFilter are outliers.md (O1) to (O6).
+/// An outlier is far above or far below two neighbours that agree with each other, and nothing else explains the jump.
+/// A change of the force explains a jump of the gyro, and a change of the rate explains a jump of the accelerometer. A
+/// reading whose time stamp is later than the next time stamp is also an outlier. The equations of OutlierFilter are
+/// outliers.md (O1) to (O6).
 ///
-/// The filter is causal. OutlierFilter delays an unexplained jump by one sample, until the next reading confirms or
-/// refutes the jump. All other readings pass without delay, unchanged. Readings beyond kRateMax_rad_s or kForceMax_m_s2
-/// never pass. If the first reading is an outlier, it passes, but the next two readings refute it (first_is_outlier()).
-/// Cost: O(1) per reading, no allocation. OutlierFilter does not detect two outliers in a row, or an outlier during a
-/// hard impact.
+/// The filter delays an unexplained jump by one sample, until the next reading confirms or refutes the jump. All other
+/// readings pass without delay, unchanged. Readings beyond kRateMax_rad_s or kForceMax_m_s2 never pass. If the first
+/// reading is an outlier, the reading passes, but the next two readings refute it (first_is_outlier()). Cost: O(1) per
+/// reading, no allocation. OutlierFilter does not detect two outliers in a row, or an outlier during a hard impact.
 class OutlierFilter {
  public:
-  /// Limits of plausible readings. No gyro measures rates above kRateMax_rad_s (57 000 deg/s), and no accelerometer of
-  /// a robot measures forces above kForceMax_m_s2 (10 000 g).
+  /// No gyro measures rates above kRateMax_rad_s (57 000 deg/s), and no robot's accelerometer measures forces above
+  /// kForceMax_m_s2 (10 000 g).
   static constexpr double kRateMax_rad_s = 1000.0, kForceMax_m_s2 = 1e5;
-  /// Maximum reading of a device, as a multiple of the range in its data sheet.
+  /// maximum reading of a device, as a multiple of the range in its data sheet
   static constexpr double kStatedRangesMax = 2.0;
 
-  /// Device contains the properties of the IMU from its data sheet; 0 means unknown.
+  /// properties of the IMU from its data sheet; 0: unknown
   struct Device {
     double gyro_range_rad_s = 0.0;
     double accel_range_m_s2 = 0.0;
@@ -54,22 +53,20 @@ class OutlierFilter {
   /// the call, no sample is delayed.
   std::optional<ImuSample> filter_sample(const ImuSample& next, State& state) const;
 
-  /// The second sample of a run is delayed if it contradicts the first sample. Returns true if filter_sample() will
-  /// confirm the second sample. The first sample is then an outlier, and the run should restart with the second. Call
-  /// first_is_outlier() before filter_sample().
+  /// Returns true if the first sample of a run is an outlier, because the next samples contradict it. The run should
+  /// then restart with the second sample. Call first_is_outlier() before filter_sample().
   bool first_is_outlier(const ImuSample& next, const State& state) const {
     return state.count == 1 && state.delayed && jumps(*state.delayed, state) && confirms(next, state);
   }
 
-  /// Returns true if a finite sample must not be used now, because the filter delays it, or because it exceeds all
-  /// plausible readings. Call filter_sample() before must_delay().
+  /// Returns true if a finite sample must not be used now, because the sample is delayed or implausibly large. Call
+  /// filter_sample() before must_delay().
   bool must_delay(const ImuSample& sample, State& state) const;
 
-  /// Records that a sample was used. Call pass() for each sample that filter_sample() returned or for which
-  /// must_delay() returned false.
+  /// Call pass() for each sample that filter_sample() returned or for which must_delay() returned false.
   static void pass(const ImuSample& sample, State& state);
 
-  /// Rejects the delayed sample, if any, because no further reading can confirm the sample.
+  /// No further reading can confirm the delayed sample, so it is rejected.
   static void finish(State& state);
 
  private:

@@ -5,10 +5,9 @@
 #include <cstddef>
 
 /// A program and the compiled library must use the same memory layout for Eigen's matrices and the standard library's
-/// containers. With different layouts, program and library would corrupt each other's data. The CMake targets of the
-/// library ensure equal layouts. A program that changes the layout, for example by EIGEN_MAX_STATIC_ALIGN_BYTES,
-/// EIGEN_DONT_VECTORIZE or _GLIBCXX_DEBUG, does not link. The linker then reports SameCompilerSettings<...>::linked as
-/// missing, and the template arguments show the settings of the program.
+/// containers. The CMake targets of the library ensure equal layouts. A program that changes the layout, for example by
+/// EIGEN_MAX_STATIC_ALIGN_BYTES, EIGEN_DONT_VECTORIZE or _GLIBCXX_DEBUG, does not link. The linker then reports
+/// SameCompilerSettings<...>::linked as missing, and the template arguments show the settings of the program.
 namespace tumble::detail {
 
 #ifdef _GLIBCXX_DEBUG
@@ -35,7 +34,7 @@ using CompiledHere = SameCompilerSettings<EIGEN_MAX_STATIC_ALIGN_BYTES, EIGEN_MA
 template <>
 const char CompiledHere::linked;  // a declaration; src/common/same_compiler_settings.cpp has the definition
 
-/// Each source file of the program has a separate reference to `linked`, so that the linker checks each source file.
+/// A separate reference to `linked` in each source file makes the linker check each source file.
 [[gnu::used]] static const char* const kSameCompilerSettings = &CompiledHere::linked;
 
 }  // namespace tumble::detail

@@ -7,11 +7,11 @@
 
 namespace tumble {
 
-/// Largest plausible component of a rate [rad/s] or a force [m/s^2]. Squares of components up to kReadingMax remain
-/// finite. The function check_sample() returns `out_of_range` for larger readings.
+/// Largest plausible component of a rate [rad/s] or a force [m/s^2], whose square remains finite. check_sample()
+/// returns `out_of_range` for larger readings.
 inline constexpr double kReadingMax = 1e6;
 
-/// Checks the magnitude of a time stamp. Returns `out_of_range` beyond kStampMax_ns.
+/// Returns `out_of_range` for a magnitude beyond kStampMax_ns.
 Status check_stamp(TimeNs stamp_ns, const char* field);
 
 /// Returns the first error in a sequence of samples: `empty`, the error of a single sample (check_sample()), or the

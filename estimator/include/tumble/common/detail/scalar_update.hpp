@@ -14,8 +14,8 @@ namespace tumble {
 // and the noise variance positive (Kalman, J. Basic Eng. 82, 1960). The functions do not use Joseph's form, because P
 // is well conditioned.
 
-/// Updates state and covariance with one measured number. The argument `row` (N numbers) is the derivative of the
-/// measurement with respect to the state, and `innovation` is the measurement minus its prediction.
+/// `row` (N numbers) is the derivative of the measurement with respect to the state, and `innovation` is the
+/// measurement minus its prediction.
 template <typename Row, int N>
 Eigen::Matrix<double, N, 1> scalar_update(const Eigen::MatrixBase<Row>& row, double innovation, double variance,
                                           Eigen::Matrix<double, N, N>& P) {
@@ -28,7 +28,7 @@ Eigen::Matrix<double, N, 1> scalar_update(const Eigen::MatrixBase<Row>& row, dou
   return PHt * (innovation / s);
 }
 
-/// Updates with a measurement of component `index` of the state.
+/// The measurement is component `index` of the state.
 template <int N>
 Eigen::Matrix<double, N, 1> component_update(Eigen::Index index, double innovation, double variance,
                                              Eigen::Matrix<double, N, N>& P) {
@@ -38,9 +38,8 @@ Eigen::Matrix<double, N, 1> component_update(Eigen::Index index, double innovati
   return column * (innovation / s);
 }
 
-/// Updates state and covariance with M measured numbers. The matrix `H` (M x N) is the derivative of the numbers with
-/// respect to the state. The matrix `noise` (M x M) is the noise covariance, which may have correlations. M is at most
-/// 4, because the function inverts an M x M matrix.
+/// The matrix `H` (M x N) is the derivative of the numbers with respect to the state. The matrix `noise` (M x M) is the
+/// noise covariance, which may have correlations. M is at most 4, because the function inverts an M x M matrix.
 template <int M, int N>
 Eigen::Matrix<double, N, 1> vector_update(const Eigen::Matrix<double, M, N>& H,
                                           const Eigen::Matrix<double, M, 1>& innovation,

@@ -3,8 +3,7 @@
 
 #include "tumble/common/parameters.hpp"
 
-/// Descriptions of the parameters for the accuracy of the lidar's mounting and time offset. Several `Params` structs
-/// have these parameters.
+/// Several `Params` structs describe the accuracy of the lidar's mounting and time offset by these parameters.
 namespace tumble::calibration_fields {
 
 inline constexpr Field kMountSigma_rad{

@@ -6,20 +6,19 @@
 #include "tumble/common/parameters.hpp"
 #include "tumble/mapping/detail/flight_arc.hpp"
 
-/// The structs in inertial_params.hpp are parts of OdometryParams::Expert and describe the IMU in motion.
 namespace tumble {
 
-/// InertialNoiseParams contains the standard deviations of the errors of inertial integration over kSpan_s. The errors
-/// come in addition to the uncertainty in RateState, and grow in proportion to time. Choose larger standard deviations
-/// if unsure. Smaller standard deviations constrain the pose more strongly in a world with few features.
+/// Standard deviations of the errors of inertial integration over kSpan_s, in addition to the uncertainty in RateState.
+/// The errors of inertial integration grow in proportion to time. Choose larger standard deviations if unsure. Smaller
+/// standard deviations constrain the pose more strongly in a world with few features.
 struct InertialNoiseParams {
   static constexpr double kSpan_s = 0.1;  ///< time between two sweeps of most lidars
   double sigma_m = 0.003;
   double sigma_rad = 0.002;
   double sigma_m_s = 0.01;
-  /// Rotation error relative to the rotation angle, due to scale, misalignment, and rate changes within a sample.
+  /// rotation error relative to the rotation angle, due to scale, misalignment, and rate changes within a sample
   double rotation_noise_ratio = 0.001;
-  /// Velocity error relative to the integral of the specific force. The velocity error is important at impacts.
+  /// velocity error relative to the integral of the specific force, important at impacts
   double force_share = 0.03;
   /// Random walks of velocity and rate over a gap of the IMU, see mapping.md (R43), (R44). For tumbling rigs and gaps
   /// of 0.05 to 0.5 s, the true velocity walks are 2.4 to 4.1 m/s per sqrt(s). If the rate is known at both ends of the
@@ -54,9 +53,8 @@ struct InertialNoiseParams {
   }
 };
 
-/// SaturatedImuParams contains the parameters of a saturated IMU. Accelerometer readings are saturated if they are at
-/// or above `accel_m_s2` or if the device flags them. The standard deviation of a saturated force reading is
-/// `force_sigma_m_s2`.
+/// Accelerometer readings are saturated if they are at or above `accel_m_s2` or if the device flags them. The standard
+/// deviation of a saturated force reading is `force_sigma_m_s2`.
 ///
 /// If `estimate_deficit` is true, the registration estimates the saturation deficit of the rate on clipped axes, at
 /// SweepTrajectory::kKnots knots per sweep. The saturation deficit changes only clipped samples, in proportion to the
@@ -71,8 +69,8 @@ struct SaturatedImuParams {
   double deficit_sigma_min_rad_s = 1.0;
   double deficit_time_s = 0.3;
   double deficit_carry_max = 3.0;  ///< maximum growth factor of the saturation deficit at a sweep boundary
-  /// Standard deviation of the change between adjacent knots, relative to the standard deviation of the saturation
-  /// deficit.
+  /// standard deviation of the change between adjacent knots, relative to the standard deviation of the saturation
+  /// deficit
   double knot_sigma_ratio = 0.05;
 
   template <class Self, class Visitor>
@@ -98,9 +96,8 @@ struct SaturatedImuParams {
   }
 };
 
-/// FlightParams contains the parameters of the ballistic arc of a body in flight. Where the specific force at the
-/// centre of mass is below force_m_s2, the force of free flight replaces the accelerometer's reading. The ballistic arc
-/// also bridges a gap of the IMU that begins in flight.
+/// Where the specific force at the centre of mass is below force_m_s2, the force of free flight replaces the
+/// accelerometer's reading. The ballistic arc also bridges a gap of the IMU that begins in flight.
 struct FlightParams {
   std::optional<FlyingBody> body;  ///< empty: always use the accelerometer
   double force_m_s2 = 4.0;

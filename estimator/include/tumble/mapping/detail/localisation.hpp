@@ -10,26 +10,25 @@
 namespace tumble {
 
 /// Detects tracking failure from the reports of LidarInertialOdometry for each sweep (docs/maths/mapping.md, section
-/// 11). The function verdict() reports one of two permanent findings. First, the position's standard deviation exceeded
-/// the matching distance of surfaces. A sweep could then match any nearby surface. Second, the registered poses of two
-/// or more sweeps are further from the predicted poses than the covariances allow. A single large correction may come
-/// from saturation, if the rate error is larger than its covariance reports. An IMU or a lidar that does not meet its
-/// data sheet causes several large corrections.
+/// 11). verdict() reports one of two permanent findings. First, the position's standard deviation exceeded the matching
+/// distance, so that a sweep could match any nearby surface. Second, the registered poses of two or more sweeps are
+/// further from the predicted poses than the covariances allow. A single large correction may come from saturation, if
+/// the rate error is larger than its covariance reports. An IMU or a lidar that does not meet its data sheet causes
+/// several large corrections.
 ///
 /// Before the first sweep with surfaces, there is no map, so tracking cannot fail. Localisation does not detect a map
 /// of wrong scale (see SweepScale), or errors of clocks or mounting that the calibration explains.
 ///
-/// The function current_verdict() reports findings about the pose of the newest sweep relative to the map. A finding
-/// ends when the position is certain again, or when the sweeps that contradict their predicted poses are older than
-/// kMemory_s.
+/// current_verdict() reports findings about the pose of the newest sweep relative to the map. A finding ends when the
+/// position is certain again, or when the sweeps that contradict their predicted poses are older than kMemory_s.
 class Localisation {
  public:
   static constexpr double kMemory_s = 30.0;
 
-  /// Constructs with the matching distance `matched_m` of the mapper (MatchingParams::distance_m).
+  /// `matched_m` is the matching distance of the mapper (MatchingParams::distance_m).
   explicit Localisation(double matched_m) : matched_m_(matched_m) {}
 
-  /// Processes a sweep that has a pose. Sweeps must be in time order. Cost: O(1).
+  /// Sweeps must have a pose and be in time order. Cost: O(1).
   void add(const SweepReport& sweep);
 
   /// Returns `out_of_range` with the finding and the violated limit, or `ok` without a finding.

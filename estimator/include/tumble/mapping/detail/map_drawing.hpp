@@ -11,8 +11,8 @@
 
 namespace tumble::mapping {
 
-/// ScanLines numbers the scan lines of a map. Sweeps at a constant attitude scan identical lines of the world, and
-/// therefore share line numbers. After a rotation of the sensor, the scan lines have new numbers.
+/// Sweeps at a constant attitude scan identical lines of the world, and therefore share line numbers. After a rotation
+/// of the sensor, the scan lines have new numbers.
 class ScanLines {
  public:
   /// Returns the line number of ring 0 of a sweep with the given spin axis, or VoxelMap::kUnknownScanLine if the device

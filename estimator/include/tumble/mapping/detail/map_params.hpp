@@ -3,10 +3,8 @@
 
 #include "tumble/common/parameters.hpp"
 
-/// The structs in map_params.hpp are parts of OdometryParams::Expert and describe the size and accuracy of the map.
 namespace tumble {
 
-/// LocalMapParams contains the size and resolution of the local map.
 struct LocalMapParams {
   static constexpr double kPruneRatio = 0.1;  ///< distant points are deleted after a motion of kPruneRatio * radius_m
   double voxel_m = 0.5;                       ///< edge of a cell of the map's hash table
@@ -30,8 +28,7 @@ struct LocalMapParams {
   }
 };
 
-/// WorldCovarianceParams contains the uncertainty of the map relative to the world, see docs/maths/mapping.md, section
-/// 8.
+/// See docs/maths/mapping.md, section 8.
 struct WorldCovarianceParams {
   double tilt_sigma_rad = 0.002;  ///< standard deviation of the tilt at the start: accelerometer bias of 2 mg
   /// Drift per sweep, relative to the standard deviation of the pose in the least constrained direction. The ratio was

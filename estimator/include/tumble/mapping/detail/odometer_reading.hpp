@@ -10,21 +10,20 @@
 
 namespace tumble {
 
-/// Odometer readings describe the motion of the robot within a sweep, measured by wheels, legs, a camera or a radar.
-/// LidarInertialOdometry fuses an odometer reading with the prediction from the IMU and earlier sweeps, weighted by
-/// their covariances. The registration of the sweep starts from the fused prediction. Times of odometer readings are in
-/// the IMU's clock. LidarInertialOdometry assumes that the errors of a reading are independent of all other errors.
-/// Wheel slip beyond the stated uncertainty therefore corrupts the estimate.
+/// Odometer readings describe the motion of the robot within a sweep, measured by wheels, legs, a camera or a radar. An
+/// odometer reading is fused with the prediction from the IMU and earlier sweeps, weighted by their covariances. The
+/// registration of the sweep starts from the fused prediction. Times of odometer readings are in the IMU's clock. The
+/// errors of an odometer reading are assumed independent of all other errors. Wheel slip beyond the stated uncertainty
+/// therefore corrupts the estimate.
 
-/// VelocityReading is a measured velocity of the IMU at one time.
 struct VelocityReading {
   TimeNs time_ns = 0;
   Eigen::Vector3d v_WI_I_m_s = Eigen::Vector3d::Zero();  ///< velocity in IMU axes at the reading's time
   double sigma_m_s = 0.0;                                ///< standard deviation of each axis
 };
 
-/// MotionReading is a measured motion of the IMU between two times. Many registration methods call it the initial
-/// guess. For poses in a drifting frame O, the motion is T_OI(from)^-1 T_OI(to).
+/// Motion of the IMU between two times, called initial guess by many registration methods. For poses in a drifting
+/// frame O, the motion is T_OI(from)^-1 T_OI(to).
 struct MotionReading {
   TimeNs from_ns = 0;
   TimeNs to_ns = 0;
@@ -36,11 +35,11 @@ struct MotionReading {
 
 using OdometerReading = std::variant<VelocityReading, MotionReading>;
 
-/// Checks one odometer reading. Returns `non_finite` if a number is not finite. Returns `out_of_range` if a standard
-/// deviation is not above 0, a covariance is not positive definite, or a rotation is invalid. Returns `time_order` if a
-/// motion does not end after its start.
+/// Returns `non_finite` if a number is not finite. Returns `out_of_range` if a standard deviation is not above 0, a
+/// covariance is not positive definite, or a rotation is invalid. Returns `time_order` if a motion does not end after
+/// its start.
 Status check_reading(const OdometerReading& reading);
-/// Return the start and the end of an odometer reading. A velocity reading has equal start and end.
+/// A velocity reading has equal start and end.
 TimeNs reading_start_ns(const OdometerReading& reading);
 TimeNs reading_end_ns(const OdometerReading& reading);
 

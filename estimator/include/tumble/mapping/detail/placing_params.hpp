@@ -5,11 +5,8 @@
 
 #include "tumble/common/parameters.hpp"
 
-/// The structs in placing_params.hpp are parts of OdometryParams::Expert and describe the registration of a sweep to
-/// the map.
 namespace tumble {
 
-/// MatchingParams contains the parameters for matching a sweep with the map.
 struct MatchingParams {
   int neighbours = 12;                    ///< number of nearest neighbours for a plane fit
   double distance_m = 1.0;                ///< maximum distance of matched map points
@@ -22,8 +19,8 @@ struct MatchingParams {
   double correction_max_rad = 1.1;  ///< a larger correction of the prior is rejected
   /// Growth rate of a point's standard deviation since the start of the sweep. Late points therefore have less weight.
   double skew_sigma_m_s = 0.25;
-  /// A sweep is `degenerate` if the standard deviation of the pose from its surfaces alone exceeds this value in some
-  /// direction. Attitude is converted to displacement by the root-mean-square lever arm.
+  /// A sweep is `degenerate` if the standard deviation of the pose from the sweep's surfaces alone exceeds
+  /// degenerate_sigma_m in some direction. Attitude is converted to displacement by the root-mean-square lever arm.
   double degenerate_sigma_m = 0.15;
 
   template <class Self, class Visitor>
@@ -53,11 +50,11 @@ struct MatchingParams {
   }
 };
 
-/// RegistrationStagesParams defines the stages of a registration. The stages are iterations with all points, further
-/// iterations with a subsample, and a coarse stage for starting poses far from the prior.
+/// Iterations with all points are followed by iterations with a subsample, and by a coarse stage for starting poses far
+/// from the prior.
 struct RegistrationStagesParams {
   int full_iterations = 8;  ///< number of iterations with all points, before iterations with a subsample
-  /// Number of points of the subsample. The iterations with the subsample decide whether a starting pose converges.
+  /// The iterations with the subsample decide whether a starting pose converges.
   std::size_t subsample_points = 1000;
   int coarse_iterations = 15;           ///< number of iterations for a starting pose far from the prior
   std::size_t coarse_points = 300;      ///< number of points in the coarse stage
@@ -89,7 +86,6 @@ struct RegistrationStagesParams {
   }
 };
 
-/// TrackingParams contains the parameters for sweeps without a registration, and for tracking failure.
 struct TrackingParams {
   /// A sweep with too few matches still extends the map, as `degenerate`, up to these standard deviations of its
   /// inertial prediction. Such sweeps occur because a lidar at rest scans only rings, which give no planes until the
@@ -97,8 +93,8 @@ struct TrackingParams {
   /// uncertain attitude.
   double extend_sigma_max_m = 0.1;
   double extend_sigma_max_rad = 0.1;
-  /// Maximum number of consecutive sweeps with points but without registration. After lost_sweeps_max sweeps,
-  /// LidarInertialOdometry continues by inertial prediction and reports `degenerate`.
+  /// Maximum number of consecutive sweeps with points but without registration. After lost_sweeps_max consecutive
+  /// sweeps without registration, inertial prediction continues with the verdict `degenerate`.
   int lost_sweeps_max = 30;
   /// Minimum fraction of a sweep's matches within three standard deviations that confirms a relocalisation. The
   /// expected fraction for normal errors is 0.997. A smaller fraction contradicts the relocalisation.
@@ -121,8 +117,7 @@ struct TrackingParams {
   }
 };
 
-/// RelocalisationParams defines the starting poses for a sweep that was not registered from its prior, see
-/// docs/maths/mapping.md, sections 5 and 10.
+/// Starting poses for a sweep that was not registered from its prior, see docs/maths/mapping.md, sections 5 and 10.
 struct RelocalisationParams {
   static constexpr double kShiftMin_m = 0.3, kRotationMin_rad = 0.1;  ///< closer starting poses converge to one pose
   int deficit_tries_max = 5;       ///< number of larger saturation deficits tried per sweep, on all axes together

@@ -3,12 +3,11 @@
 
 #include "tumble/common/parameters.hpp"
 
-/// The structs in rest_params.hpp are parts of OdometryParams::Expert and describe the detection of rest.
 namespace tumble {
 
-/// RestBoundsParams limits rate and force at rest (`mapper_rest.hpp`). At rest, the rate differs from the bias and from
-/// its mean by at most rate_rad_s. At rest, the specific force differs from gravity and from its mean by at most
-/// force_m_s2. During the initial rest, the mean rate becomes the estimate of the gyro's bias.
+/// At rest, the rate differs from the bias and from its mean by at most rate_rad_s (`mapper_rest.hpp`). At rest, the
+/// specific force differs from gravity and from its mean by at most force_m_s2. During the initial rest, the mean rate
+/// becomes the estimate of the gyro's bias.
 struct RestBoundsParams {
   double levelling_max_s = 0.5;  ///< maximum duration of the initial rest that determines the tilt
   double rate_rad_s = 0.05;
@@ -27,11 +26,10 @@ struct RestBoundsParams {
   }
 };
 
-/// OdometryStartParams contains the accuracy of the state at the start, which limits the corrections by the first
-/// sweeps.
+/// The accuracy of the initial state limits the corrections by the first sweeps.
 struct OdometryStartParams {
-  /// Standard deviation of the initial tilt for the registration: five times tilt_sigma_rad of WorldCovarianceParams,
-  /// to allow for a start in motion.
+  /// standard deviation of the initial tilt for the registration: five times that of WorldCovarianceParams, for a start
+  /// in motion
   double level_sigma_rad = 0.01;
   double speed_sigma_m_s = 0.05;  ///< standard deviation of the speed of a robot that seems to be at rest
   double bias_rest_s = 0.1;       ///< minimum duration of a rest that determines the gyro's bias
@@ -46,12 +44,11 @@ struct OdometryStartParams {
   }
 };
 
-/// StandstillParams contains the parameters of a stationary robot, at the start or while the IMU measures only gravity.
 struct StandstillParams {
   double start_sigma_m_s = 0.01;  ///< standard deviation of the velocity during the initial rest
   double sigma_m_s = 0.05;        ///< standard deviation of the velocity while the IMU measures only gravity
-  /// Maximum estimated speed of a robot that is treated as stationary while the IMU measures only gravity and no
-  /// surface constrains the pose. The zero velocity prevents slow drift in a world without features.
+  /// Maximum estimated speed of a robot that counts as stationary while the IMU measures only gravity and no surface
+  /// constrains the pose. The zero velocity prevents slow drift in a world without features.
   double creep_max_m_s = 0.5;
   int sweeps_min = 3;         ///< minimum number of consecutive sweeps at rest before creep_max_m_s applies
   double noise_share = 0.02;  ///< ratio of the inertial prediction's noise at rest to its noise in motion

@@ -8,14 +8,13 @@
 
 namespace tumble {
 
-/// SpatialHash is a hash table with open addressing that maps the integer coordinates of a cube to a number. Single
-/// keys cannot be removed.
+/// Maps the integer coordinates of a cube to a number (hash table with open addressing). Single keys cannot be removed.
 class SpatialHash {
  public:
   static constexpr std::uint32_t kAbsent = 0xffffffffu;
   static constexpr int kLimit = 1 << 20;  ///< coordinates must be in [-kLimit, kLimit)
 
-  /// Packs three coordinates within the limit into one number.
+  /// The coordinates must be in [-kLimit, kLimit).
   static std::uint64_t key(const Eigen::Vector3i& cube) {
     const auto part = [](int v) { return static_cast<std::uint64_t>(v + kLimit) & 0x1fffffu; };
     return part(cube.x()) | (part(cube.y()) << 21) | (part(cube.z()) << 42);
@@ -23,7 +22,7 @@ class SpatialHash {
 
   explicit SpatialHash(std::size_t expected = 64);
 
-  /// Returns the value of a key, or kAbsent if the key is not stored.
+  /// Returns kAbsent if the key is not stored.
   std::uint32_t find(std::uint64_t key) const {
     for (std::size_t slot = slot_of(key);; slot = (slot + 1) & mask_) {
       if (keys_[slot] == key) return values_[slot];
@@ -31,10 +30,10 @@ class SpatialHash {
     }
   }
 
-  /// Inserts a key with a value if the key is new. Cost: amortised O(1). Returns the stored value.
+  /// Inserts a key if the key is new, and returns the stored value. Cost: amortised O(1).
   std::uint32_t insert(std::uint64_t key, std::uint32_t value);
 
-  /// Inserts a key without a value. Cost: amortised O(1). Returns true if the key was new.
+  /// Returns true if the key was new. Cost: amortised O(1).
   bool add(std::uint64_t key);
 
   /// Removes all keys and keeps the memory.

@@ -9,9 +9,8 @@
 
 namespace tumble {
 
-/// SweepUnknowns defines the unknowns of a sweep and their order in vectors and matrices. The order is position,
-/// attitude (left perturbation in W) and velocity at the start of the trajectory, saturation deficit of clipped axes,
-/// calibration.
+/// The order of the unknowns is position, attitude (left perturbation in W) and velocity at the start of the
+/// trajectory, saturation deficit of clipped axes, calibration.
 struct SweepUnknowns {
   static constexpr int kMotionSize = 9;              ///< position, attitude, velocity
   static constexpr int kDeficitStart = kMotionSize;  ///< first unknown of the saturation deficit, knot after knot
@@ -22,13 +21,12 @@ struct SweepUnknowns {
   using Matrix = Eigen::Matrix<double, kUnknowns, kUnknowns>;
   using Deficit = SweepTrajectory::Deficit;
 
-  /// Estimate contains the current values of the unknowns.
   struct Estimate {
     MotionState state;  ///< motion state; its covariance is not used
     SweepCalibration calibration;
     Deficit deficit_rad_s = Deficit::Zero();
 
-    /// Adds small errors, in the order of the unknowns.
+    /// The errors have the order of the unknowns.
     void add(const Vector& error);
     /// Returns the errors that transform `other` to this estimate, in the order of the unknowns.
     Vector minus(const Estimate& other) const;
@@ -43,7 +41,7 @@ struct SweepUnknowns {
     std::optional<MotionState> start;               ///< initial value of the motion; empty: the mean
 
     Prior() = default;
-    /// Constructs the prior from the motion state with its covariance; all other unknowns are fixed.
+    /// All unknowns other than the motion are fixed.
     explicit Prior(const MotionState& state) : mean{state, {}, Deficit::Zero()} {
       covariance.topLeftCorner<kMotionSize, kMotionSize>() = state.covariance;
     }

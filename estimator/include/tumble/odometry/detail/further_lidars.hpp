@@ -13,8 +13,8 @@
 
 namespace tumble {
 
-/// FurtherLidar is a lidar in addition to the lidar of TumblingParams. The mounting relative to the first lidar and the
-/// clock offset must be exact, because TumblingOdometry estimates only the mounting of the first lidar.
+/// The mounting of a further lidar relative to the first lidar and the clock offset are not estimated, so both must be
+/// exact.
 struct FurtherLidar {
   Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< pose of the lidar in IMU axes
   LidarSheet sheet;
@@ -22,9 +22,8 @@ struct FurtherLidar {
   double time_offset_s = 0.0;      ///< clock of the first lidar minus clock of this lidar
 };
 
-/// Adds the points of further lidars to the sweeps of the first lidar. The class transforms each point to axes of the
-/// first lidar, and adds it to the sweep that contains the point's time. A copy of a FurtherLidars contains the
-/// complete state.
+/// Adds the points of further lidars, transformed to axes of the first lidar, to the sweeps that contain the points'
+/// times. A copy contains the complete state.
 class FurtherLidars {
  public:
   FurtherLidars() = default;
@@ -32,8 +31,8 @@ class FurtherLidars {
   /// offset beyond a second. `T_IL_first` is the pose of the first lidar.
   FurtherLidars(std::span<const FurtherLidar> lidars, const Eigen::Isometry3d& T_IL_first);
 
-  /// Stores a sweep of lidar `lidar`, counted from 1. See TumblingOdometry::add_sweep(). If more than `most` sweeps
-  /// wait, add() drops the oldest sweep.
+  /// Lidars are counted from 1. See TumblingOdometry::add_sweep(). If more than `most` sweeps wait, the oldest sweep is
+  /// dropped.
   Status add(std::size_t lidar, TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points, TimeNs latest_ns,
              std::size_t most);
   /// Adds the stored points whose times are within a sweep to the sweep, and drops earlier points. Cost: O(stored

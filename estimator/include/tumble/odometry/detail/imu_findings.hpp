@@ -17,33 +17,29 @@
 #include "tumble/common/sensor_health.hpp"
 #include "tumble/odometry/detail/merge_recordings.hpp"
 
-/// The functions in imu_findings.hpp check whether the readings of an IMU over a whole recording are plausible.
 namespace tumble {
 
-/// CheckedImu contains the known properties of the checked IMU.
 struct CheckedImu {
   double gyro_range_rad_s = 0.0, accel_range_m_s2 = 0.0;  ///< ranges from the data sheet; 0: unknown
   double gravity_m_s2 = 9.80665;
-  /// Lever arm from the centre of mass to the IMU, in IMU axes.
+  /// lever arm from the centre of mass to the IMU, in IMU axes
   Eigen::Vector3d lever_arm_I_m = Eigen::Vector3d::Zero();
-  /// True for several IMUs merged into one, which reports rates beyond the range of one IMU.
+  /// several IMUs are merged into one, which reports rates beyond the range of one IMU
   bool merged = false;
 };
 
-/// ImuFindings contains the findings about an IMU.
 struct ImuFindings {
   SensorHealth health;
   std::vector<FrozenAxis> frozen_axes;  ///< intervals of the findings `frozen_axis`, sorted by axis and time
 };
 
-/// Returns the parameters of ImuPlausibility for an IMU. The data sheet states `gyro_range_rad_s`; 0 means unknown.
+/// `gyro_range_rad_s` is the range in the data sheet; 0: unknown.
 ImuPlausibility::Params plausibility_params(double gravity_m_s2, double gyro_range_rad_s);
 
 /// Returns whether the rotation of gravity confirms the gyro's scale. If the gyro's scale is confirmed and forces
 /// contradict each other, the cause is a mounting or an accelerometer.
 bool confirms_gyro(const ImuPlausibility& plausibility, const ImuPlausibility::State& state);
 
-/// Adds the finding of ImuPlausibility::verdict().
 void add_findings(const ImuPlausibility& plausibility, const ImuPlausibility::State& state, const std::string& sensor,
                   SensorHealth& health);
 
@@ -51,22 +47,20 @@ void add_findings(const ImuPlausibility& plausibility, const ImuPlausibility::St
 /// about 1 ms per second of data at 100 Hz.
 SensorHealth check_readings(const CheckedImu& imu, std::span<const ImuSample> samples);
 
-/// Finds frozen axes. Cost: O(N).
+/// Cost: O(N).
 ImuFindings check_frozen(const CheckedImu& imu, std::span<const ImuSample> samples);
 
-/// Runs all checks of a recording with its estimated rates: check_readings(), the forces in flight, the motion from
-/// each rest to the next rest, and frozen axes. The argument `carried_share` is the fraction of hand-held samples. If
-/// the body was never hand-held, flights also reveal flipped and swapped axes, and include flights with a clipped axis.
+/// Checks readings, forces in flight, the motion from each rest to the next rest, and frozen axes. `carried_share` is
+/// the fraction of hand-held samples. If the body was never hand-held, flights also reveal flipped and swapped axes,
+/// and include flights with a clipped axis.
 ImuFindings check_recording(const CheckedImu& imu, std::span<const ImuSample> samples, std::span<const RateState> rates,
                             std::optional<double> carried_share);
 
-/// MergedFindings contains several IMUs merged into one IMU, and the findings about the IMUs.
 struct MergedFindings {
   MergedRecordings merged;
   SensorHealth health;
 };
 
-/// MergedChecks contains the live checks of several IMUs, and the states of the checks.
 struct MergedChecks {
   RestGravity rest_gravity;
   ImuPlausibility plausibility;                                                   ///< check of the merged readings
@@ -74,14 +68,14 @@ struct MergedChecks {
   ImuPlausibility::State plausibility_state{};
 };
 
-/// Checks merged IMUs: faults of single IMUs, the merged readings, and the differences between the IMUs. The
-/// differences also reveal an inverted sign and exchanged axes. Cost: O(N).
+/// Checks faults of single IMUs, the merged readings, and the differences between the IMUs. The differences also reveal
+/// an inverted sign and exchanged axes. Cost: O(N).
 SensorHealth check_merged(const CheckedImu& imu, const MergedRecordings& merged);
 
 /// Returns the covariance that the findings add to each rate, or an empty list without such findings. If the readings
-/// contradict each other, the standard deviation is the rate itself. A flipped sign gives an error of twice the rate,
-/// and a scale of one half gives an error of half the rate. While a gyro axis is frozen, the standard deviation is the
-/// largest reading of the recording. Cost: O(N).
+/// contradict each other, the standard deviation is the rate itself. For example, a flipped sign gives an error of
+/// twice the rate. While a gyro axis is frozen, the standard deviation is the largest reading of the recording. Cost:
+/// O(N).
 std::vector<Eigen::Matrix3d> suspect_covariance(const ImuFindings& findings, std::span<const ImuSample> samples,
                                                 std::span<const RateState> rates);
 

@@ -15,34 +15,30 @@
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 #include "tumble/odometry/detail/waiting_input.hpp"
 
-/// The functions in mapping_passes.hpp process a whole recording with LidarInertialOdometry, in one or several passes.
 namespace tumble {
 
 /// Sets the clip flags of saturated accelerometer readings that the device did not flag. Returns the saturation limits
 /// of the recording. Cost: O(N), plus the search of ClippingFinder.
 SaturationLevels flag_saturated_forces(const RailDetector::Params& stated, std::span<ImuSample> samples);
 
-/// MappingInput contains the data of a recording, in time order.
 struct MappingInput {
   std::span<const ImuSample> samples;  ///< samples after flag_saturated_forces()
   std::span<const RateState> rates;    ///< one per sample
   std::size_t sweeps = 0;
   std::function<WaitingSweep(std::size_t)> sweep;  ///< function that returns the sweep with the given index
-  /// Returns the odometer reading for a sweep that ends at `to_ns`, after a sweep that ended at `from_ns`. The function
-  /// may be empty.
+  /// Returns the odometer reading for a sweep from `from_ns` to `to_ns`; may be empty.
   std::function<std::optional<OdometerReading>(TimeNs from_ns, TimeNs to_ns)> reading = {};
   std::optional<Eigen::Isometry3d> start = std::nullopt;  ///< see LidarInertialOdometry::set_start_pose()
   /// See LidarInertialOdometry::set_start_tilt().
   std::optional<LidarInertialOdometry::StartTilt> start_tilt = std::nullopt;
 };
 
-/// MappedSweep contains the result of one sweep.
 struct MappedSweep {
   Status status;       ///< status of LidarInertialOdometry::add_sweep()
   SweepReport report;  ///< final poses; without a pose, `report.trajectory` is empty
 };
 
-/// MappedRecording contains the result of a recording. The map and all sweeps come from the last pass.
+/// The map and all sweeps come from the last pass.
 struct MappedRecording {
   explicit MappedRecording(const LidarInertialOdometry::Params& params);
 
@@ -52,18 +48,17 @@ struct MappedRecording {
   LidarInertialOdometry mapper;
   Localisation localisation;  ///< tracking failures over all sweeps
   int passes = 1;
-  /// Distance between the last calibration and the stated calibration (StatedCalibration::deviations).
+  /// distance between the last calibration and the stated calibration (StatedCalibration::deviations)
   double calibration_deviations = 0.0;
   bool calibration_converged = false;
 
-  /// Returns true if the estimated calibration differs from the stated calibration by more than the stated uncertainty
-  /// allows.
+  /// The estimated calibration differs from the stated calibration by more than the stated uncertainty allows.
   bool calibration_is_off() const;
   /// Adds findings about the scale of the lidar's ranges, the vertical, tracking, and the calibration of the lidar.
   void add_findings(const SweepScale& scale, SensorHealth& health) const;
 };
 
-/// Processes a recording in one pass. If the IMU covers most of the last sweep, the sweep is cut at the last sample.
+/// If the IMU covers most of the last sweep, the sweep is cut at the last sample.
 MappedRecording map_once(const MappingInput& input, const LidarInertialOdometry::Params& params);
 
 /// Processes a recording until the lidar's calibration has converged. The first pass estimates the calibration. The
@@ -72,7 +67,6 @@ MappedRecording map_once(const MappingInput& input, const LidarInertialOdometry:
 /// than one sweep in five is rejected, because such a pass does not determine the calibration.
 MappedRecording map_with_calibration(const MappingInput& input, const LidarInertialOdometry::Params& params);
 
-/// Estimates the scale of the lidar's ranges over all sweeps (see sweep_scale.hpp).
 SweepScale find_sweep_scale(std::span<const ImuSample> samples, const MappedRecording& mapped, double gravity_m_s2);
 
 }  // namespace tumble

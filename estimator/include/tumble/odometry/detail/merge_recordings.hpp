@@ -17,16 +17,15 @@
 
 namespace tumble {
 
-/// UnitRecording contains all readings of one of several IMUs on a body, in time order.
+/// all readings of one of several IMUs on a body, in time order
 struct UnitRecording {
   ImuSheet sheet;
   Eigen::Isometry3d T_BI = Eigen::Isometry3d::Identity();
   std::vector<ImuSample> samples;
 };
 
-/// MergedRecordings contains one IMU that replaces several IMUs.
 struct MergedRecordings {
-  /// Unit contains the calibration of one IMU relative to the mean of all IMUs.
+  /// calibration of one IMU relative to the mean of all IMUs
   struct Unit {
     std::size_t unit = 0;                                   ///< index of the IMU
     double time_offset_s = 0.0, time_offset_sigma_s = 0.0;  ///< positive: the IMU is late
@@ -35,8 +34,8 @@ struct MergedRecordings {
   std::vector<ImuSample> samples;                         ///< samples of the merged IMU, in body axes
   Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Zero();  ///< position of the merged IMU, in body axes
   std::vector<Unit> units;                                ///< units in use
-  /// Excluded units: units that are silent, frozen, or in disagreement with the other units. A unit with a frozen axis
-  /// is excluded only during the fault. The function unit_name() gives the names of units.
+  /// Excluded IMUs (units) that are silent, frozen, or in disagreement with the other units. A unit with a frozen axis
+  /// is excluded only during the fault.
   SensorHealth faults;
   std::size_t excluded_readings = 0;                        ///< readings that ImuMerge excluded
   std::optional<double> lever_arm_agreement;                ///< ImuMerge::lever_arm_agreement
@@ -48,10 +47,9 @@ std::string unit_name(std::size_t unit, std::size_t units);
 
 /// Merges the recordings of up to ImuMerge::kImus units on one body, with the saturation limits and faults of the whole
 /// recording. ClippingFinder flags the clipped readings, UnitAlignment resamples the units to common times, and
-/// ImuMerge merges the units. The function excludes a unit while an axis is frozen or readings are missing. If ImuMerge
-/// finds a frozen or contradicting unit, a second pass excludes the unit from the start of the fault. The function
-/// ignores units without samples. `params` states ranges and gaps; the function sets the number, mountings and sensing
-/// elements of the units.
+/// ImuMerge merges the units. A unit is excluded while an axis is frozen or readings are missing. If ImuMerge finds a
+/// frozen or contradicting unit, a second pass excludes the unit from the start of the fault. Units without samples are
+/// ignored. `params` states ranges and gaps; the function sets the number, mountings and sensing elements of the units.
 ///
 /// Returns `empty` if no IMU has a sample, or an error of ImuMerge. Returns `out_of_range` with the axis if frozen axes
 /// leave no IMU; `out.faults` then lists the excluded IMUs. Cost: O(N).

@@ -16,12 +16,12 @@
 namespace tumble {
 
 /// Processes IMU samples and lidar sweeps once, in time order. RegimeStream estimates the rates. LidarInertialOdometry
-/// processes the samples and the sweeps for which rates are available. TumblingOdometry runs one OdometryPass live, and
+/// processes the samples and sweeps for which rates are available. TumblingOdometry runs one OdometryPass live, and
 /// SecondPass runs a second OdometryPass with the estimated calibration. A copy of an OdometryPass contains the
 /// complete state.
 class OdometryPass {
  public:
-  /// Queue is a first-in, first-out queue of samples that reuses its memory.
+  /// first-in, first-out queue of samples that reuses its memory
   struct Queue {
     std::vector<ImuSample> samples;
     std::size_t head = 0;
@@ -33,11 +33,11 @@ class OdometryPass {
   /// Throws InvalidParams if a parameter is out of bounds.
   OdometryPass(const RegimeStream::Params& rate, const LidarInertialOdometry::Params& mapping);
 
-  /// Processes a sample like RegimeStream::push(), and passes the rate that becomes available to the mapper.
+  /// The rate that becomes available is passed to the mapper.
   Status add_imu(const ImuSample& sample);
-  /// Sets the pose at which the map starts; see LidarInertialOdometry::set_start_pose().
+  /// See LidarInertialOdometry::set_start_pose().
   void set_start_pose(const Eigen::Isometry3d& T_WI) { mapper_.set_start_pose(T_WI); }
-  /// Sets the prior map; see LidarInertialOdometry::use_map().
+  /// See LidarInertialOdometry::use_map().
   Status use_map(PriorMap map) { return mapper_.use_map(std::move(map)); }
   void use_map_of(const OdometryPass& other) { mapper_.use_map_of(other.mapper_); }
   /// Returns true if rates are available up to the time `end_ns` of the lidar's clock.
@@ -46,10 +46,10 @@ class OdometryPass {
   std::optional<TimeNs> covered_ns() const;
   /// Returns the time stamp of the first sample at or after the lidar time `end_ns` whose rate is not yet available.
   std::optional<TimeNs> covering_ns(TimeNs end_ns) const;
-  /// Registers a sweep. The argument `reading` is the odometer reading within the sweep, if any.
+  /// `reading` is the odometer reading within the sweep, if any.
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points,
                    const std::optional<OdometerReading>& reading, LidarInertialOdometry::SweepReport& report);
-  /// Predicts the newest pose like TumblingOdometry::newest().
+  /// See TumblingOdometry::newest().
   Status newest(PoseState& pose, Eigen::Matrix3d* velocity_covariance_I_m2_s2) const;
 
   /// Converts a time from the lidar's clock to the IMU's clock.
@@ -59,8 +59,7 @@ class OdometryPass {
   /// Restarts the rate estimation with other parameters; the mapper continues.
   void start_rate_estimation(const RegimeStream::Params& rate);
   /// Replaces the map, the state that depends on the map, and the sample buffers by those of `other`. The rate
-  /// estimation of this OdometryPass continues after the last sample of `other`. The argument `other` must not be used
-  /// afterwards.
+  /// estimation continues after the last sample of `other`, which must not be used afterwards.
   void adopt_map(OdometryPass&& other);
 
   const RegimeStream& rates() const { return rates_; }

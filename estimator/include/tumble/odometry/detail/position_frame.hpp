@@ -13,8 +13,8 @@
 namespace tumble {
 
 /// PositionReading is the position of an antenna or tag A on the robot in a frame P with z up, for example from GPS (as
-/// local east, north, up) or from beacons. PositionAlignment assumes that the errors of the readings are independent.
-/// If the errors are correlated over time, state a larger covariance.
+/// local east, north, up) or from beacons. The errors of the readings are assumed independent; state a larger
+/// covariance if errors are correlated over time.
 struct PositionReading {
   TimeNs time_ns = 0;  ///< in the IMU's clock
   Eigen::Vector3d p_PA_m = Eigen::Vector3d::Zero();
@@ -27,18 +27,18 @@ struct PositionReading {
 struct PositionFrame {
   Eigen::Isometry3d T_PW = Eigen::Isometry3d::Identity();  ///< the rotation is about the vertical
   Eigen::Vector3d reference_W_m = Eigen::Vector3d::Zero();
-  /// Covariance in P of two errors: the displacement of the reference point [m], and the rotation about the vertical
-  /// through the reference point [rad].
+  /// covariance in P of the displacement of the reference point [m] and of the rotation about the vertical through this
+  /// point [rad]
   Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
 
-  /// Converts a pose from W to P, with the covariance of the position in P and the tilt errors of `in_W`.
+  /// The covariance contains the covariance of the position in P and the tilt errors of `in_W`.
   PoseState transform(const PoseState& in_W) const;
 };
 
 /// Estimates PositionFrame from position readings, causally, by a weighted least-squares fit of heading and translation
-/// to the last 64 distinct positions. PositionAlignment averages readings whose positions are within half a standard
-/// deviation of each other. The weight of earlier positions decreases with the drift of the poses. A chi-square test
-/// (99.9 %) rejects up to a fifth of the positions as outliers. The poses and the map in W do not change.
+/// to the last 64 distinct positions. Readings whose positions are within half a standard deviation of each other are
+/// averaged. The weight of earlier positions decreases with the drift of the poses. A chi-square test (99.9 %) rejects
+/// up to a fifth of the positions as outliers. The poses and the map in W do not change.
 class PositionAlignment {
  public:
   static constexpr std::size_t kReadingsMax = 1024, kPairsMax = 64;
@@ -47,7 +47,7 @@ class PositionAlignment {
     double variance_m2 = 0.0, path_m = 0.0, pose_variance_m2 = 0.0;
   };
 
-  /// Stores a reading until the sweep at its time is registered. Readings may arrive in any order. See
+  /// A reading waits until the sweep at its time is registered. Readings may arrive in any order. See
   /// TumblingOdometry::add_position().
   Status add(const PositionReading& reading, TimeNs done_ns, TimeNs latest_ns, std::size_t most);
   /// Processes a registered sweep and the readings up to its end. Cost: O(64^2) per sweep with readings.

@@ -16,8 +16,7 @@
 
 namespace tumble {
 
-/// RecordingEstimate contains the results of TumblingOdometry for a whole recording, in addition to the sweeps of
-/// take().
+/// results of TumblingOdometry for a whole recording, in addition to the sweeps of take()
 struct RecordingEstimate {
   explicit RecordingEstimate(const LidarInertialOdometry::Params& mapping) : mapped(mapping) {}
 

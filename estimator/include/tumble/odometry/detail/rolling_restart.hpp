@@ -5,10 +5,9 @@
 
 namespace tumble {
 
-/// RollingRestart is the start of a run of RollingOdometry after a gap or a step of the clock.
+/// start of a run of RollingOdometry after a gap or a step of the clock
 struct RollingRestart {
   Eigen::Vector3d p_WG_m = Eigen::Vector3d::Zero();  ///< position of the sphere's centre
-  /// Covariance of position and heading in the world.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
 };
 

@@ -15,10 +15,9 @@ namespace tumble {
 /// needs 28 bytes. Cost: O(points).
 std::vector<std::byte> save_map(std::span<const MapPoint> points);
 
-/// Loads a map that save_map() saved, for LidarInertialOdometry::use_map(). On error, `points` is unchanged, and the
-/// returned status names the field, the value and the bound. The error `too_few` means truncated bytes. The errors
-/// `non_finite` and `out_of_range` mean another kind of data, another version, damaged bytes, or points that
-/// check_prior_map() rejects.
+/// Loads a map of save_map(), for LidarInertialOdometry::use_map(). On error, `points` is unchanged, and the returned
+/// status names the field, the value and the bound. `too_few` means truncated bytes. `non_finite` and `out_of_range`
+/// mean other data, another version, damaged bytes, or points that check_prior_map() rejects.
 Status load_map(std::span<const std::byte> bytes, std::vector<MapPoint>& points);
 
 }  // namespace tumble

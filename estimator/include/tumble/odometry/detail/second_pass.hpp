@@ -16,20 +16,18 @@ namespace tumble {
 
 /// Processes the first seconds of motion again with the calibration estimated so far, while the first pass continues.
 ///
-/// The first pass maps the start of a tumble while lever arm, mounting and time offset are still uncertain. SecondPass
-/// therefore buffers samples and sweeps from the end of the initial rest. After `after_s` of motion, SecondPass
-/// processes the buffer with the current calibration, and with rates that are smoothed with a lag of `lag_s`.
-/// SecondPass processes `sweeps` buffered sweeps per new sweep. At the end of the second pass, map and pose of the
-/// second pass replace the map and pose of the first pass. SecondPass discards the result if tracking failed in the
-/// second pass, or if the second pass rejected clearly more sweeps than the first.
+/// The first pass maps the start of a tumble while lever arm, mounting and time offset are still uncertain. Samples and
+/// sweeps are therefore buffered from the end of the initial rest. After `after_s` of motion, the buffer is processed
+/// with the current calibration, and with rates smoothed with a lag of `lag_s`. The second pass processes `sweeps`
+/// buffered sweeps per new sweep. When the second pass ends, its map and pose replace those of the first pass. The
+/// result is discarded if tracking failed in the second pass, or if the second pass rejected clearly more sweeps.
 ///
-/// If tracking of the first pass has failed for `lost_s`, SecondPass processes the whole buffer immediately, once. The
-/// regular second pass still follows after `after_s`. SecondPass does not change earlier poses: the reported pose jumps
-/// by the error of the first pass.
+/// If tracking of the first pass has failed for `lost_s`, the whole buffer is processed immediately, once. The regular
+/// second pass still follows after `after_s`. SecondPass does not change earlier poses: the reported pose jumps by the
+/// error of the first pass.
 ///
-/// SecondPass stores samples and sweeps of `rest_s` at rest and of at most `abandon_after_s` of motion. The second pass
-/// also needs memory for a second map. If a jolt ends the rest long before the tumble, the second pass starts too
-/// early.
+/// Memory: samples and sweeps of `rest_s` at rest and of at most `abandon_after_s` of motion, and a second map. If a
+/// jolt ends the rest long before the tumble, the second pass starts too early.
 class SecondPass {
  public:
   struct Params {
@@ -38,11 +36,10 @@ class SecondPass {
     double lag_s = 0.5;             ///< lag of the rates of the second pass
     std::size_t sweeps = 3;         ///< number of buffered sweeps per new sweep, at least two
     double abandon_after_s = 10.0;  ///< duration of motion after which the second pass is abandoned
-    /// Factor on the calibration's variance, because the second pass uses the readings again.
+    /// factor on the calibration's variance, because the second pass uses the readings again
     double inflation = 4.0;
     double rest_s = 1.0;  ///< duration of the initial rest that is buffered
 
-    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.after_s, {"after_s", "s", 0.0, 100.0,
@@ -63,29 +60,26 @@ class SecondPass {
     }
   };
 
-  /// Constructs with the parameters `rate` and `mapping` of the first pass. Throws InvalidParams if a parameter is out
-  /// of bounds.
+  /// `rate` and `mapping` are the parameters of the first pass. Throws InvalidParams if a parameter is out of bounds.
   SecondPass(const Params& params, const RegimeStream::Params& rate, const LidarInertialOdometry::Params& mapping);
 
   /// Sets the gyro's zero offset, before the first sample.
   void set_gyro_offset(const Eigen::Vector3d& offset_rad_s) { rate_.rate.model.nominal.gyro_bias_rad_s = offset_rad_s; }
 
-  /// Buffers a sample that the first pass has processed, without allocating memory.
+  /// The first pass must have processed the sample. No memory is allocated.
   void store(const ImuSample& sample);
-  /// Buffers a sweep that the first pass has registered, with the odometer reading of the sweep, if any.
+  /// The first pass must have registered the sweep.
   void store(TimeNs start_ns, TimeNs end_ns, std::vector<LidarPoint> points,
              const std::optional<OdometerReading>& reading, SweepVerdict verdict);
 
   /// Continues the second pass after each sweep of the first pass. When the second pass has processed all buffered
   /// sweeps, `first` receives the map of the second pass.
   void advance(OdometryPass& first);
-  /// Runs the second pass to its end, if the second pass has started.
+  /// Runs a started second pass to its end.
   void complete(OdometryPass& first);
-  /// Clears the buffer and disables the second pass.
   void abandon();
 
   bool is_running() const { return pass_.has_value(); }
-  /// Returns true if the first pass received the map of the second pass.
   bool applied() const { return applied_; }
 
  private:

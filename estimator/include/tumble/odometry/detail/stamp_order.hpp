@@ -8,18 +8,18 @@
 
 namespace tumble {
 
-/// RejectedStamps contains the first and last of consecutive rejected time stamps.
+/// first and last of consecutive rejected time stamps
 struct RejectedStamps {
   TimeNs first_ns = 0, last_ns = 0;
 };
 
-/// Decides which IMU time stamps continue a run, and when the run restarts because the clock changed. TumblingOdometry
-/// and RollingOdometry use StampOrder. A time stamp that is not later than the last accepted time stamp is rejected
-/// with `time_order`. A time stamp more than `gap_max_s` after the last accepted time stamp is rejected with `gap`. The
-/// run restarts after a gap when the next time stamp confirms the rejected time stamp. After a backward step of the
-/// clock, the run restarts when rejected time stamps have increased for kStepBack_s. If the run consists of one sample,
-/// one confirming time stamp is enough, because the first sample may have the wrong time stamp. A single wrong time
-/// stamp causes the loss of one sample. OutlierFilter detects time stamps that are ahead by less than a gap.
+/// Decides which IMU time stamps continue a run, and when the run restarts because the clock changed. A time stamp that
+/// is not later than the last accepted time stamp is rejected with `time_order`. A time stamp more than `gap_max_s`
+/// after the last accepted time stamp is rejected with `gap`. The run restarts after a gap when the next time stamp
+/// confirms the rejected time stamp. After a backward step of the clock, the run restarts when rejected time stamps
+/// have increased for kStepBack_s. If the run consists of one sample, one confirming time stamp is enough, because the
+/// first sample may have the wrong time stamp. A single wrong time stamp causes the loss of one sample. OutlierFilter
+/// detects time stamps that are ahead by less than a gap.
 class StampOrder {
  public:
   static constexpr double kStepBack_s = 0.2;
@@ -33,11 +33,10 @@ class StampOrder {
 
   explicit StampOrder(double gap_max_s) : gap_max_s_(gap_max_s) {}
 
-  /// Classifies a time stamp. Returns `out_of_range` (beyond kStampMax_ns), `time_order` or `gap` if the sample must
-  /// not be used. If the function returns `ok`, `verdict` states whether the run must restart with this sample.
+  /// Returns `out_of_range` (beyond kStampMax_ns), `time_order` or `gap` if the sample must not be used. With `ok`,
+  /// `verdict` states whether the run must restart with this sample.
   Status classify_stamp(TimeNs stamp_ns, State& state, Verdict& verdict) const;
 
-  /// Records that the sample with the time stamp `stamp_ns` was used.
   static void accept(TimeNs stamp_ns, State& state);
 
  private:

@@ -15,15 +15,12 @@
 
 namespace tumble {
 
-/// Detects the saturation limits of several IMUs on one body from their readings, causally. UnitRails flags readings
-/// that a device clips without reporting saturation, before ImuMerge processes the readings. UnitRails uses only
-/// confirmed saturation limits, as defined by ConfirmedSaturation.
+/// Detects the saturation limits of several IMUs on one body from their readings, causally. Only confirmed saturation
+/// limits count, as defined by ConfirmedSaturation.
 ///
-/// UnitRails classifies a sample by the saturation limits that earlier samples revealed. The first two to ten samples
-/// at a saturation limit are therefore not flagged.
+/// Earlier samples reveal the saturation limits, so the first two to ten samples at a limit are not flagged.
 class UnitRails {
  public:
-  /// Unit contains the detection state of one IMU.
   struct Unit {
     StreamingClippingFinder::State rails;
     std::optional<ImuSample> before;  ///< last finite sample
@@ -31,8 +28,7 @@ class UnitRails {
   using State = std::array<Unit, ImuMerge::kImus>;
   using Samples = std::array<ImuSample, ImuMerge::kImus>;
 
-  /// Constructs from the data sheets of the IMUs, at most ImuMerge::kImus. Throws InvalidParams if a stated range is
-  /// out of bounds.
+  /// At most ImuMerge::kImus data sheets. Throws InvalidParams if a stated range is out of bounds.
   explicit UnitRails(std::span<const ImuSheet> sheets);
 
   /// Sets the saturation limits and planes of an IMU as known from an earlier run.
@@ -41,11 +37,11 @@ class UnitRails {
   /// Returns the state before the first samples, with all memory that observe() needs: 110 KiB per IMU.
   State start() const;
 
-  /// Copies `samples`, one per IMU, to `out` and sets the flags of saturated axes, without allocating memory. The
-  /// function copies samples that are not finite unchanged.
+  /// Copies `samples` (one per IMU) to `out` and flags saturated axes, without allocating memory. Samples that are not
+  /// finite are copied unchanged.
   void flag_clipped(std::span<const ImuSample> samples, const State& state, Samples& out) const;
 
-  /// Updates the state with unflagged samples. Cost: O(1), sometimes a search; no allocation.
+  /// The samples must be unflagged. Cost: O(1), sometimes a search; no allocation.
   void observe(std::span<const ImuSample> samples, State& state) const;
 
  private:

@@ -14,19 +14,18 @@ namespace tumble {
 
 inline constexpr double kLidarSilent_s = 1.0;  ///< silence of the lidar after which an empty sweep is inserted
 
-/// WaitingSweep is a sweep that waits for the rates of its samples.
+/// A sweep waits for the rates of its samples.
 struct WaitingSweep {
   TimeNs start_ns = 0, end_ns = 0;
   std::vector<LidarPoint> points;
 };
 
-/// WaitingReadings stores odometer readings until their sweep ends. A copy of a WaitingReadings contains the complete
-/// state.
+/// Odometer readings wait until their sweep ends. A copy contains the complete state.
 class WaitingReadings {
  public:
-  /// Maximum number of waiting readings: 500 Hz over the longest silence of the lidar plus a lag of a second.
+  /// maximum number of waiting readings: 500 Hz over the longest silence of the lidar plus a lag of a second
   static constexpr std::size_t kReadingsMax = 1024;
-  /// Time by which a reading may extend beyond its sweep, because clocks differ.
+  /// time by which a reading may extend beyond its sweep, because clocks differ
   static constexpr auto kExtrapolation_ns = static_cast<TimeNs>(1e9 * SweepTrajectory::kExtrapolation_s);
 
   /// Stores an odometer reading; readings may arrive in any order. The reading's time must be after `done_ns`, the end
@@ -34,15 +33,13 @@ class WaitingReadings {
   /// reading's sweep is already registered, or `out_of_range` (too late, or more than `most` waiting readings).
   Status add(const OdometerReading& reading, TimeNs done_ns, TimeNs latest_ns, std::size_t most = kReadingsMax);
 
-  /// Returns the odometer reading of the sweep from `from_ns` to `end_ns`. If the sweep has several readings, the
-  /// function returns only the last reading, because the errors of the readings are correlated. The function deletes
-  /// all readings up to `end_ns`.
+  /// Returns the last odometer reading of the sweep, because the errors of several readings are correlated. All
+  /// readings up to `end_ns` are deleted.
   std::optional<OdometerReading> take(TimeNs from_ns, TimeNs end_ns);
 
   /// Returns the last odometer reading within a sweep, like take(), but keeps all readings. Cost: O(log n).
   std::optional<OdometerReading> find(TimeNs from_ns, TimeNs end_ns) const;
 
-  /// Returns the number of dropped readings that span two sweeps.
   std::size_t spanning_two_sweeps() const { return spanning_two_sweeps_; }
 
  private:

@@ -3,23 +3,21 @@
 
 #include "tumble/common/parameters.hpp"
 
-/// The structs in rolling_floor_params.hpp are parts of RollingParams::Expert and describe the floor. All parameters
-/// have unique names without a group prefix.
+/// All parameters have unique names without a group prefix.
 namespace tumble {
 
-/// RollingContactParams contains the accuracy of the rolling constraint and the properties of floors.
 struct RollingContactParams {
   double grip_sigma_m_s = 3e-3;      ///< standard deviation of the contact velocity while gripping
   double grip_sigma_ratio = 1.5e-3;  ///< additional standard deviation, relative to the rolling speed
   double vertical_sigma_m_s = 8e-3;
-  /// Standard deviation of the vertical velocity on a rough floor, relative to the rolling speed.
+  /// standard deviation of the vertical velocity on a rough floor, relative to the rolling speed
   double rough_share = 0.055;
   double rough_radius_walk_m_sqrts = 1e-4;  ///< random walk of the rolling radius on a rough floor
   double slope_sigma = 0.15;                ///< standard deviation of both components of the slope when a slope begins
   double slope_walk_sqrts = 0.02;
-  /// Velocity error due to the uncertain timing and direction of an impact, relative to the impact's velocity change.
+  /// velocity error due to the uncertain timing and direction of an impact, relative to the impact's velocity change
   double impact_sigma_ratio = 0.06;
-  /// Mean velocity change per node by impacts that the model does not explain, while the sphere stays on the floor.
+  /// mean velocity change per node by impacts that the model does not explain, while the sphere stays on the floor
   double unexplained_impact_m_s = 0.03;
   double rest_velocity_sigma_m_s = 2e-3;
   double rest_rate_sigma_rad_s = 3e-3;  ///< standard deviation of a node's mean rate at rest
@@ -58,7 +56,6 @@ struct RollingContactParams {
   }
 };
 
-/// RollingModeParams contains the rates of changes between contact modes, and the parameters of events (slip or bump).
 struct RollingModeParams {
   double slip_begins_per_s = 0.5, slip_ends_per_s = 2.0;
   double bump_begins_per_s = 0.3, bump_ends_per_s = 5.0;

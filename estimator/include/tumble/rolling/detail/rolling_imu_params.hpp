@@ -3,12 +3,10 @@
 
 #include "tumble/common/parameters.hpp"
 
-/// The structs in rolling_imu_params.hpp are parts of RollingParams::Expert and describe the IMU in the sphere. All
-/// parameters have unique names without a group prefix.
+/// All parameters have unique names without a group prefix.
 namespace tumble {
 
-/// RollingPriorParams contains the prior standard deviations of the IMU's errors. A standard deviation of 0 marks an
-/// exact quantity.
+/// A prior standard deviation of 0 marks an exact quantity.
 struct RollingPriorParams {
   double tilt_sigma_rad = 6e-3;
   double velocity_sigma_m_s = 2e-3;
@@ -17,8 +15,8 @@ struct RollingPriorParams {
   double accel_scale_sigma = 3.5e-3;  ///< each entry of the scale and misalignment matrix
   double gyro_scale_sigma = 2.5e-3;
   double accel_delay_sigma_s = 3e-3;  ///< delay of the accelerometer relative to the gyro
-  /// Minimum rate of the first sample that indicates a start in motion. If the sphere starts in motion, RollingFilter
-  /// increases the initial uncertainty of attitude and velocity.
+  /// Minimum rate of the first sample that indicates a start in motion, with a larger initial uncertainty of attitude
+  /// and velocity.
   double start_rate_rad_s = 0.1;
 
   template <class Self, class Visitor>
@@ -43,7 +41,6 @@ struct RollingPriorParams {
   }
 };
 
-/// Noise of the IMU.
 struct RollingImuNoiseParams {
   double attitude_walk_rad_sqrts = 1e-4;  ///< 0.006 deg/sqrt(s)
   double rate_error_sqrts = 6e-4;         ///< angle random walk per rad/s of rotation
@@ -68,11 +65,10 @@ struct RollingImuNoiseParams {
   }
 };
 
-/// RollingRailParams contains the standard deviations of the saturation deficit for saturated readings.
 struct RollingRailParams {
   double clipped_rate_sigma_rad_s = 5.0;
-  /// Standard deviation of rates that ImuMerge recovered. A rate counts as recovered if it is beyond the range and has
-  /// no clip flag. The value 0 means that ImuMerge recovers no rates.
+  /// Standard deviation of rates that ImuMerge recovered; 0: no rates are recovered. A rate counts as recovered if it
+  /// is beyond the range and has no clip flag.
   double recovered_rate_sigma_rad_s = 0.0;
   double clipped_force_sigma_m_s2 = 4.0;
   /// Standard deviation of the force deficit due to saturation shorter than a sample, relative to the force. A short
@@ -95,9 +91,8 @@ struct RollingRailParams {
   }
 };
 
-/// RollingGapParams contains the parameters of gaps in the readings. If two readings are further apart than
-/// gap_min_duration_s, the force between the readings is unknown. RollingFilter interpolates the rate linearly, with
-/// the uncertainty of an angular acceleration of gap_acceleration_rad_s2.
+/// If two readings are further apart than gap_min_duration_s, the force between the readings is unknown. The rate is
+/// interpolated linearly, with the uncertainty of an angular acceleration of gap_acceleration_rad_s2.
 struct RollingGapParams {
   double gap_min_duration_s = 0.06;
   double gap_max_s = 1.0;  ///< a longer gap ends the run
