@@ -4,7 +4,7 @@
 #include "state_estimate.hpp"
 #include "world_covariance.hpp"
 
-/// See mapping.md, section 6.
+/// See mapping.md, heading "Inertial noise".
 namespace tumble::mapping {
 
 /// Gravity is exactly vertical in the world frame, so a wrong tilt is an error of the attitude.

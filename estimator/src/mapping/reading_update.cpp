@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// See mapping.md, section 3.
+// See mapping.md, heading "Prediction from sweep to sweep".
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <memory>
@@ -221,7 +221,7 @@ void fuse_reading(const OdometerReading& reading, const SweepBoundary& boundary,
   const Sweep sweep(prediction.prior.mean, window);
   if (!holds(sweep, reading)) return;
   const auto work = std::make_unique<Work>();
-  // The gains follow from the covariance C, as in the registration: mapping.md, section 6.
+  // The gains follow from the covariance C, as in the registration: mapping.md (R37).
   propagate_covariance(prediction.jacobian_boundary, boundary.state_estimate.weight, work->at_start);
   Matrix& before = work->before;  // noise at the start: saturation deficit, earlier saturation
   before = prediction.noise;

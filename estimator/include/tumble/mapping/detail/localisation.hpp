@@ -9,12 +9,12 @@
 
 namespace tumble {
 
-/// Detects tracking failure from the reports of LidarInertialOdometry for each sweep (docs/maths/mapping.md, section
-/// 11). verdict() reports one of two permanent findings. First, the position's standard deviation exceeded the matching
-/// distance, so that a sweep could match any nearby surface. Second, the registered poses of two or more sweeps are
-/// further from the predicted poses than the covariances allow. A single large correction may come from saturation, if
-/// the rate error is larger than its covariance reports. An IMU or a lidar that does not meet its data sheet causes
-/// several large corrections.
+/// Detects tracking failure from the reports of LidarInertialOdometry for each sweep (docs/maths/mapping.md,
+/// heading "Localisation check"). verdict() reports one of two permanent findings. First, the position's standard
+/// deviation exceeded the matching distance, so that a sweep could match any nearby surface. Second, the registered
+/// poses of two or more sweeps are further from the predicted poses than the covariances allow. A single large
+/// correction may come from saturation, if the rate error is larger than its covariance reports. An IMU or a lidar that
+/// does not meet its data sheet causes several large corrections.
 ///
 /// Before the first sweep with surfaces, there is no map, so tracking cannot fail. Localisation does not detect a map
 /// of wrong scale (see SweepScale), or errors of clocks or mounting that the calibration explains.

@@ -28,7 +28,7 @@ struct LocalMapParams {
   }
 };
 
-/// See docs/maths/mapping.md, section 8.
+/// See docs/maths/mapping.md, heading "Reported covariance".
 struct WorldCovarianceParams {
   double tilt_sigma_rad = 0.002;  ///< standard deviation of the tilt at the start: accelerometer bias of 2 mg
   /// Drift per sweep, relative to the standard deviation of the pose in the least constrained direction. The ratio was

@@ -117,7 +117,8 @@ struct TrackingParams {
   }
 };
 
-/// Starting poses for a sweep that was not registered from its prior, see docs/maths/mapping.md, sections 5 and 10.
+/// Starting poses for a sweep that was not registered from its prior, see docs/maths/mapping.md, heading
+/// "Verdicts and relocalisation".
 struct RelocalisationParams {
   static constexpr double kShiftMin_m = 0.3, kRotationMin_rad = 0.1;  ///< closer starting poses converge to one pose
   int deficit_tries_max = 5;       ///< number of larger saturation deficits tried per sweep, on all axes together
