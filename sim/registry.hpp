@@ -10,8 +10,7 @@
 
 namespace tumble::sim {
 
-/// Returns the registry entry with this name. For an unknown name, throws InvalidSituation with the nearest known name.
-/// Error messages start with `what` ("world").
+/// For an unknown name, throws InvalidSituation with the nearest known name.
 template <typename Type>
 const Type& find_entry(std::span<const Type* const> registry, std::string_view name, const std::string& what) {
   std::vector<std::string> names;

@@ -11,7 +11,6 @@ namespace tumble::sim {
 
 namespace {
 
-/// Returns the pose of a sensor's site in the true body frame.
 Eigen::Isometry3d site_pose(const engine::World& world, const SensorSpec& sensor) {
   const mjModel& model = *world.model;
   const int site = mj_name2id(&model, mjOBJ_SITE, sensor.site.c_str());

@@ -23,7 +23,6 @@ std::string name_of(const BenchDraw& draw) {
   return draw.scenario + " " + std::to_string(draw.seed);
 }
 
-/// Returns the scenarios and seeds of the bench suite, with empty results.
 std::vector<BenchDraw> draws_of(const Suite& suite) {
   std::vector<BenchDraw> draws;
   for (const DrawClass& each : suite.classes)
@@ -42,8 +41,7 @@ std::optional<double> value_of(const BenchDraw& draw, const std::string& metric)
   return it->second;
 }
 
-/// Returns true if the run does not count for the metric: at least one method completed the run with status `ok` but
-/// without a value.
+/// Returns true if at least one method completed the run with status `ok` but without a value of the metric.
 bool has_nothing(const BenchDraw& draw, const std::string& metric, std::span<const BenchResult> beside) {
   const auto says_so = [&](const BenchDraw* each) {
     return each != nullptr && each->status == OutcomeStatus::ok && !each->values.contains(metric);
@@ -139,7 +137,6 @@ void require_of_suite(const BenchResult& result, const Suite& suite) {
 std::string other_recording(const BenchResult& a, const BenchResult& b) {
   for (const BenchDraw& draw : a.draws) {
     const BenchDraw* other = b.find(draw);
-    // The digest of the recording is missing if the method's process crashed.
     if (other != nullptr && !draw.recording.empty() && !other->recording.empty() && draw.recording != other->recording)
       return name_of(draw);
   }

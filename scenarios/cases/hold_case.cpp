@@ -20,13 +20,11 @@ std::string four_digits(double value) {
   return text.str();
 }
 
-/// Returns the value of the metric in an outcome; empty if the value is missing or not finite.
 std::optional<double> finite_value_of(const Outcome& outcome, const std::string& metric) {
   const double value = value_of(outcome.scores, metric);
   return std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
-/// Describes a shrunk run (simplified failing run) in one line.
 std::string doc_of(const Shrunk& shrunk, const std::string& method, const std::string& scenario, std::uint64_t seed) {
   std::string needed;
   std::size_t not_tried = 0;

@@ -14,7 +14,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Returns true if the metric is worse than its limit, and false if the metric is missing.
+/// A missing metric gives false.
 bool is_beyond(const Outcome& outcome, const std::string& metric, double limit) {
   const double value = value_of(outcome.scores, metric);
   if (std::isnan(value)) return false;

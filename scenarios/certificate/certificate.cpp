@@ -18,7 +18,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Registers a measurement of the simulation (a row of the certificate) with its default settings.
 template <auto kMeasure>
 std::vector<CertificateEntry> as_certified(const CertificateInput& input) {
   return kMeasure(input, {});

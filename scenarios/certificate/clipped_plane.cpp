@@ -21,8 +21,8 @@ Matrix3d matrix(const std::vector<Vector3d>& rows) {
   return out;
 }
 
-/// Returns the sign of the saturated reading if, during all of sample k, element `j` is saturated and the others are
-/// not; otherwise 0.
+/// Returns the sign of the saturated reading if element `j`, and no other element, is saturated during all of sample k;
+/// otherwise 0.
 int side(const SensedTriad& triad, std::size_t k, int j) {
   constexpr double kMargin = 0.08;  // fraction of the limit, above the change of the signal between samples
   int sign = 0;

@@ -21,8 +21,6 @@ std::string digest_of(const CertificateInput& input, const sim::Situation& situa
   return digest(recording.sensors, &recording.truth);
 }
 
-/// Simulates a run in a new process and returns the digest of the recording. Throws std::runtime_error with the reason
-/// if the process fails.
 std::string digest_after_restart(const CertificateInput& input, const std::string& scenario, std::uint64_t seed) {
   const std::filesystem::path file =
       std::filesystem::temp_directory_path() / ("tumble_certify_" + std::to_string(getpid()) + ".h5");

@@ -16,13 +16,12 @@ namespace {
 
 constexpr double kRate_hz = 100.0;
 
-/// RestReadings contains the rates [rad/s] and specific forces [m/s^2] of an IMU at rest.
 struct RestReadings {
   std::vector<Eigen::Vector3d> gyro, accel;
 };
 
-/// Returns the sensor specification with noise and bias only. Filters would need a higher sample rate. Sensor errors
-/// other than noise and bias are constant at rest.
+/// Errors other than noise and bias are constant at rest, and filters would need a higher sample rate, so both are
+/// omitted.
 sim::SensorSpec resting(const DataSheet& sheet) {
   sim::SensorSpec sensor = imu_of_sheet(sheet);
   for (const char* off :
@@ -62,7 +61,6 @@ std::vector<sim::AllanPoint> curve_of(const std::vector<Eigen::Vector3d>& sample
   return sim::mean_deviation(axes);
 }
 
-/// Stated contains the data sheet values of a sensor triad (gyro or accelerometer) that apply at rest.
 struct Stated {
   double noise;
   sim::Bias::Params bias;
@@ -82,8 +80,8 @@ struct Stated {
   }
 };
 
-/// Computes the ratio of the measured Allan deviation to the data sheet's Allan deviation at one averaging time. The
-/// accepted range is the statistical interval of the ratio for three axes.
+/// Entry for the ratio of measured Allan deviation to the data sheet's Allan deviation at one averaging time; the
+/// accepted range is the ratio's statistical interval for three axes.
 CertificateEntry entry(const std::string& row, const std::string& subject, const std::string& law,
                        const sim::AllanPoint& measured, double stated, sim::AllanNoise noise) {
   constexpr double kSigmas = 4.0;  // wide enough that none of about twenty entries fails by chance

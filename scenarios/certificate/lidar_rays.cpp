@@ -10,8 +10,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Returns one scenario for each type of world: the scenario with the name of the world, or else the first scenario
-/// that uses the world.
 std::map<std::string, std::string> scenario_of_each_world(const DataRoot& data) {
   std::map<std::string, std::string> chosen;
   for (const std::string& name : scenario_names(data)) {

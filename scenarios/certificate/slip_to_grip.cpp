@@ -9,7 +9,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Returns the speed of the sphere's lowest point relative to the floor, along x.
 double slip_m_s(const sim::BodyState& state, double radius_m) {
   return state.v_WB_m_s.x() - radius_m * (state.q_WB * state.w_WB_B_rad_s).y();
 }

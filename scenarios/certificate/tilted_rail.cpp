@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Each sensing element saturates along its own axis, so its saturated readings form one plane per sign
-// (clipped_plane.hpp). The measurement simulates IMUs with random misalignments, scales and offsets, and saturates one
-// sensing element at a time. The measurement then compares the plane that fits the readings with the simulated plane.
-// The file real_rails.cpp contains the measurement with planes of real devices.
+// (clipped_plane.hpp). The measurement compares the plane that fits the readings with the simulated plane.
 #include <algorithm>
 #include <cmath>
 
@@ -30,7 +28,6 @@ sim::SensorSpec tilted(const DataSheet& sheet, const TiltedRailSetup& setup) {
   return sensor;
 }
 
-/// PlaneErrors contains the differences between fitted and simulated saturation planes.
 struct PlaneErrors {
   double slope = 0.0, distance_share = 0.0;
   int samples = 0;  ///< smallest number of samples over elements and signs

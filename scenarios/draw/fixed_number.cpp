@@ -41,8 +41,6 @@ void fix(const Scenario& scenario, const std::string& key, const std::string& na
   fix(scenario, key, name, value, find_type(types, part.type)->parameters, part.numbers);
 }
 
-/// Replaces one parameter of a sensor by a constant. `rest` is the part of the key after "sensors.", for example
-/// "imu.output_rate_hz".
 void fix_of_sensor(Scenario& scenario, const std::string& key, const std::string& rest, double value,
                    const Registry& registry) {
   const std::size_t dot = rest.find('.');

@@ -54,7 +54,6 @@ Distribution parse_checked(const YamlNode& node, const sim::Parameter& parameter
   return out;
 }
 
-/// Parses the parameters of a YAML map, except for the keys in `other`.
 Numbers parse_numbers(const YamlNode& map, std::span<const std::string> other, std::span<const sim::Parameter> known) {
   Numbers out;
   for (const auto& [name, value] : map.entries()) {

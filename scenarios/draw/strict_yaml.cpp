@@ -24,7 +24,7 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr std::uintmax_t kLargestFile = 4u << 20;
-/// Identifiers become file names. A file name has at most 255 bytes, including a seed and an extension.
+/// Identifiers become file names, which have at most 255 bytes, including a seed and an extension.
 constexpr std::size_t kIdentifierMax = 100;
 
 /// Counter counts the events of the YAML parser, because some invalid texts cause an endless loop. Each event consumes
@@ -151,7 +151,7 @@ double YamlNode::number_or_infinity() const {
 double YamlNode::parse_number(bool infinity_allowed) const {
   if (!node_.IsScalar()) fail(fmt::format("the value must be a number; it is {}", kind_of(node_)));
   const std::string& written = node_.Scalar();
-  // The parser gives the tag "!" to quoted text.
+  // The YAML parser gives the tag "!" to quoted text.
   if (node_.Tag() == "!") fail(fmt::format("the value must be a number; it is the text \"{}\"", written));
   if (infinity_allowed && written == ".inf") return std::numeric_limits<double>::infinity();
   if (infinity_allowed && written == "-.inf") return -std::numeric_limits<double>::infinity();
@@ -191,7 +191,7 @@ std::vector<std::pair<std::string, YamlNode>> YamlNode::entries() const {
     const std::string name = key.text();
     if (!seen.insert(name).second) key.fail(fmt::format("key '{}' is given twice", name));
     YamlNode value(entry.second, file_, join(place_, name));
-    // Blocks, aliases and empty values have no usable line number; their key has one.
+    // Blocks, aliases and empty values have no usable line number, so the line of their key is used.
     value.line_ = key.line_;
     out.emplace_back(name, std::move(value));
   }

@@ -9,8 +9,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-// AttitudeError contains the parts of the attitude error e = q_est (x) q_true*, in W, as in BROAD (Laidig et al., Data
-// 2021). The heading of the estimate is aligned with the truth at the first sample.
+// AttitudeError contains the parts of the attitude error e = q_est (x) q_true*, in world axes, as in BROAD (Laidig et
+// al., Data 2021). The heading of the estimate is aligned with the truth at the first sample.
 struct AttitudeError {
   double inclination_rad;
   double heading_rad;
@@ -49,7 +49,6 @@ bool rmse(const ScoredEstimate& scored, double& value) {
   return true;
 }
 
-/// Returns squared tilt errors divided by their reported variances, at samples during motion.
 std::vector<double> normalised_tilt_errors(const ScoredEstimate& scored) {
   const TruthTrack& truth = truth_track(scored);
   std::vector<double> normalised;

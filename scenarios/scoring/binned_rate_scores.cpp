@@ -14,7 +14,7 @@
 #include "scenarios/scoring/families.hpp"
 #include "scenarios/statistics/statistics.hpp"
 
-/// The binned metrics are rate errors over clipped samples with similar clipping depth, clipping duration or number of
+/// Binned metrics are rate errors over clipped samples with similar clipping depth, clipping duration or number of
 /// clipped axes.
 namespace tumble::scenarios {
 
@@ -34,7 +34,6 @@ constexpr const auto& edges() {
   if constexpr (kAxis == BinAxis::count) return kCountEdges;
 }
 
-/// Returns for each sample the duration of the clipping interval that contains it, or 0 for an unclipped sample.
 std::vector<double> segment_lengths_s(const ScoredEstimate& scored) {
   const ClippingTruth& truth = clipping_truth(scored);
   const double period_s = 1e-9 * static_cast<double>(scored.sensors().imus.front().period_ns);
@@ -50,7 +49,6 @@ std::vector<double> segment_lengths_s(const ScoredEstimate& scored) {
   return lengths;
 }
 
-/// Returns the quantity by which a clipped sample is assigned to a bin.
 template <BinAxis kAxis>
 double measure(const ScoredEstimate& scored, const PairedRate& pair) {
   if constexpr (kAxis == BinAxis::depth) return clipping_truth(scored).depth_rad_s(pair.sample);

@@ -18,8 +18,6 @@ constexpr double kMovingRate_rad_s = 0.3;
 constexpr double kImpact_m_s2 = 20.0;
 constexpr std::int64_t kQuiet_ns = 20'000'000;
 
-/// MovingSpan contains the indices of the first and the last physics sample at which the body moves. If the body never
-/// moves, `first` exceeds `last`.
 struct MovingSpan {
   std::size_t first = 1, last = 0;
 };

@@ -16,7 +16,6 @@ constexpr double kBeyondShare = 0.02, kBeyondErrors = 4.0;
 constexpr std::size_t kLeastSamples = 5;
 constexpr double kSlopePrior = 0.03, kSpread_rad_s = 0.02;
 
-/// Side is one axis and one sign of the gyro's readings, with the two other axes.
 struct Side {
   int axis, first, second;
   double sign;
@@ -31,8 +30,7 @@ double plane_at(const ReferenceRail& rail, const Side& side, const Eigen::Vector
   return rail.rail_rad_s + rail.slopes[0] * y[side.first] + rail.slopes[1] * y[side.second];
 }
 
-/// Fits the saturation plane s y_j = r + c . y to the readings y. The cross-axis sensitivities c have a prior with mean
-/// zero.
+/// The cross-axis sensitivities c of the saturation plane s y_j = r + c . y have a prior with mean zero.
 ReferenceRail fit(const Side& side, std::span<const Eigen::Vector3d> readings) {
   Eigen::Matrix3d N = Eigen::Matrix3d::Zero();
   Eigen::Vector3d b = Eigen::Vector3d::Zero();

@@ -16,8 +16,7 @@ struct Jumps {
   std::vector<double> rate_rad_s;
 };
 
-// Computes the error of the velocity change at each boundary between two sweeps. The velocity at a boundary is that of
-// the nearest step inside each sweep.
+// The velocity at a boundary between two sweeps is that of the nearest step inside each sweep.
 Jumps border_jumps(const ScoredEstimate& scored) {
   const Estimate& estimate = scored.estimate();
   Jumps jumps;

@@ -29,19 +29,16 @@ double middle_of(double below, double above) {
   return below == above ? below : 0.5 * (below + above);
 }
 
-/// Returns the median of a sorted list of values.
 double sorted_median(std::span<const double> sorted) {
   const std::size_t n = sorted.size();
   return middle_of(sorted[(n - 1) / 2], sorted[n / 2]);
 }
 
-/// Computes the acceleration of the BCa interval by the jackknife, equation (S3) of statistics.md. For an even number
-/// of values it is zero: removing one value gives each of two medians equally often.
+/// For an even number of values, the acceleration of the BCa interval, equation (S3) of statistics.md, is zero:
+/// removing one value gives each of two medians equally often.
 double acceleration(std::span<const double> sorted) {
   const std::size_t n = sorted.size(), m = n / 2;
   if (n % 2 == 0) return 0.0;
-  // Medians after removing one value, each with its count. The removed value is above the median, below it, or the
-  // median.
   const std::array<std::pair<double, double>, 3> left = {{{middle_of(sorted[m - 1], sorted[m]), static_cast<double>(m)},
                                                           {middle_of(sorted[m], sorted[m + 1]), static_cast<double>(m)},
                                                           {middle_of(sorted[m - 1], sorted[m + 1]), 1.0}}};

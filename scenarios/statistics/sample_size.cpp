@@ -29,18 +29,16 @@ double normal_quantile(double share) {
   return quantile(boost::math::normal(), share);
 }
 
-/// Returns the smallest number of differences that are significant if all have the same sign: 2 / 2^n <= risk.
 double fewest(double risk) {
   return std::ceil(1.0 - std::log2(risk));
 }
 
-/// Returns the fraction of pairs of differences whose sum is positive, equation (S10) of statistics.md. A pair with a
-/// sum of zero counts half.
+/// In the fraction of pairs of differences whose sum is positive, equation (S10) of statistics.md, a pair with a sum of
+/// zero counts half.
 double positive_sums(std::vector<double> differences) {
   std::sort(differences.begin(), differences.end());
   double count = 0.0;
   for (auto i = differences.begin(); i != differences.end(); ++i) {
-    // Each difference is paired with later differences only, so each pair counts once.
     const auto [first, last] = std::equal_range(i + 1, differences.end(), -*i);
     count += static_cast<double>(differences.end() - last) + 0.5 * static_cast<double>(last - first);
   }
@@ -62,7 +60,6 @@ double pairs_for_signed_rank(std::span<const double> differences, const Plan& pl
   const double share = static_cast<double>(counted.size()) / static_cast<double>(pairs);
   const double effect = positive_sums(std::move(counted)) - 0.5;
   if (effect == 0.0) return kInfinity;
-  // Equation (S11) of statistics.md gives the number of pairs for the signed-rank test.
   const double z = normal_quantile(1.0 - 0.5 * plan.risk) + normal_quantile(plan.power);
   return std::ceil(std::max(z * z / (3.0 * effect * effect), fewest(plan.risk)) / share);
 }
@@ -78,7 +75,6 @@ double pairs_for_failures(std::int64_t only_first, std::int64_t only_second, std
   const auto n = static_cast<double>(pairs);
   const double either = static_cast<double>(only_first + only_second) / n;
   const double difference = static_cast<double>(only_first - only_second) / n;
-  // Equation (S12) of statistics.md gives the number of pairs for the test of failures.
   const double root = normal_quantile(1.0 - 0.5 * plan.risk) * std::sqrt(either) +
                       normal_quantile(plan.power) * std::sqrt(either - difference * difference);
   return std::ceil(std::max(root * root / (difference * difference), fewest(plan.risk) / either));

@@ -14,7 +14,6 @@ namespace tumble::scenarios {
 double spent_by(double risk, double share) {
   if (!(share > 0.0)) return 0.0;
   const boost::math::normal normal;
-  // Equation (S13) of statistics.md: the risk that one side may have used so far.
   return 2.0 * cdf(complement(normal, quantile(complement(normal, 0.25 * risk)) / std::sqrt(share)));
 }
 
@@ -40,8 +39,6 @@ SequentialSignTest::Verdict SequentialSignTest::look(double share, std::int64_t 
   return verdict_;
 }
 
-/// Updates the distribution of the number of positive signs after further pairs, equation (S14) of statistics.md. Each
-/// pair adds one positive or one negative sign.
 void SequentialSignTest::toss(std::int64_t pairs) {
   for (std::int64_t k = 0; k < pairs; ++k) {
     going_on_.push_back(0.0);
@@ -51,11 +48,10 @@ void SequentialSignTest::toss(std::int64_t pairs) {
   pairs_ += pairs;
 }
 
-/// Removes the outcomes at which the test stops, equation (S15) of statistics.md. The distribution is symmetric, so the
-/// thresholds for both signs are equal.
+/// The distribution of the number of positive signs is symmetric, so the thresholds of equation (S15) of statistics.md
+/// are equal for both signs.
 void SequentialSignTest::stop_beyond(double allowed) {
   std::size_t stopped = 0;
-  // At least one count remains between the two thresholds.
   while (2 * stopped + 1 < going_on_.size()) {
     const double more = going_on_[going_on_.size() - 1 - stopped];
     if (spent_a_side_ + more > allowed) break;

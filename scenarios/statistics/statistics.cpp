@@ -34,7 +34,7 @@ struct RankPlace {
     part = place - static_cast<double>(below);
   }
   double between(double low, double high) const {
-    // No interpolation at an infinite value.
+    // The quantile is not interpolated at an infinite value.
     return part == 0.0 || std::isinf(low) ? low : low + part * (high - low);
   }
   std::size_t below, above;
@@ -48,7 +48,6 @@ double quantile(std::span<const double> values, double share) {
     throw BadInput(fmt::format("quantile: share is {}; it must be within [0, 1]", std::to_string(share)));
   std::vector<double> numbers = numbers_of(values);
   if (numbers.empty()) return kNaN;
-  // A partial sort, because reports compute quantiles of millions of values.
   const RankPlace place(share, numbers.size());
   const auto below = numbers.begin() + static_cast<std::ptrdiff_t>(place.below);
   std::nth_element(numbers.begin(), below, numbers.end());
@@ -78,7 +77,7 @@ std::size_t tail_rank(std::size_t values) {
     const auto count = static_cast<double>(k);
     return std::lgamma(n + 1) - std::lgamma(count + 1) - std::lgamma(n - count + 1) - n * std::log(2.0);
   };
-  // The terms of the binomial sum increase up to n / 2. For large n, most terms underflow to 0 and are skipped.
+  // The terms of the binomial sum increase up to n / 2; for large n, most terms underflow to 0 and are skipped.
   constexpr double kNothing = -750.0;
   std::size_t first = 0;
   for (std::size_t above = values / 2; first < above;) {
@@ -104,7 +103,6 @@ Interval median_interval(std::span<const double> values) {
   std::vector<double> numbers = numbers_of(values);
   Interval interval{kNaN, -kInfinity, kInfinity};
   if (numbers.empty()) return interval;
-  // A partial sort of four ranks is faster than a full sort.
   const RankPlace middle(0.5, numbers.size());
   const auto begin = numbers.begin(), below = begin + static_cast<std::ptrdiff_t>(middle.below);
   std::nth_element(begin, below, numbers.end());

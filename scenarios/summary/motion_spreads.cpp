@@ -14,13 +14,10 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Over states what the values of a quantity are: one value per run, the fraction of runs with a property, or the
-/// fraction of all clipped samples of all runs.
 enum class Over { draws, share_of_draws, clipped_samples };
 
-/// Quantity is a quantity of the motion with a published value from the tumbling rig (32 tumbles down a hill, ICRA
-/// 2024), and the target of this project. The plot shades the range from `low` to `high`, or shows a line if both are
-/// equal.
+/// A published value of the tumbling rig (32 tumbles down a hill, ICRA 2024) and the target of this project are shaded
+/// from `low` to `high`.
 struct Quantity {
   const char* metric;
   const char* name;
@@ -51,9 +48,8 @@ constexpr std::array kQuantities = {
              Over::share_of_draws},
 };
 
-/// Returns the mean of a metric over the runs, weighted by their numbers of clipped samples, with its 95 % interval.
-/// Samples within a run are correlated, so the method is the ratio estimator of a cluster sample (Cochran, Sampling
-/// Techniques, 1977, section 9A.2).
+/// Samples within a run are correlated, so the weighted mean has the interval of the ratio estimator of a cluster
+/// sample (Cochran, Sampling Techniques, 1977, section 9A.2).
 Interval pooled(std::span<const DrawValues* const> draws, const std::string& metric) {
   std::vector<std::pair<double, double>> weighted;  // clipped samples of a run, and fraction with the property
   double samples = 0.0, hits = 0.0, square = 0.0;

@@ -19,13 +19,11 @@ namespace {
 
 constexpr int kLooksMax = 1000;
 
-/// Returns the kind in a method's name, for example "rate" for "rate/tumble"; empty if the name has no kind.
 std::string kind_of(const std::string& name) {
   const std::size_t slash = name.find('/');
   return slash == std::string::npos ? std::string() : name.substr(0, slash);
 }
 
-/// Throws BadInput if the metric cannot rank two methods of this kind.
 void require_contest(const std::string& metric, const std::string& kind) {
   const MetricInfo& info = metric_info(metric);
   const auto all = metrics();
@@ -40,11 +38,9 @@ void require_contest(const std::string& metric, const std::string& kind) {
                                to_string(own->kind), kind));
 }
 
-/// AnswerPair contains the values of the two methods on one simulated run. A failed run has the worst value.
 struct AnswerPair {
   std::optional<double> own, other;
 };
-/// AnswerPairs contains the pairs of values by scenario, then by seed.
 using AnswerPairs = std::map<std::string, std::map<std::uint64_t, AnswerPair>, std::less<>>;
 
 std::optional<double> value_of(const OutcomeView& row, const Question& question) {
@@ -69,7 +65,6 @@ AnswerPairs pairs_of(const Results& results, const Question& question, std::uint
   return pairs;
 }
 
-/// Evaluates the interim analyses of one scenario in order, until an analysis gives an answer.
 Answer answer_of(const std::string& scenario, const std::map<std::uint64_t, AnswerPair>& pairs,
                  const Question& question, std::uint64_t last_seed) {
   SequentialSignTest test(question.risk / static_cast<double>(question.scenarios.size()));

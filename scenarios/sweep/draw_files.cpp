@@ -43,7 +43,6 @@ void DrawFiles::finish(const SimulatedDraw& draw, bool failed) {
     trouble_.clear();
     return folder_.reset();
   }
-  // If an estimate could not be written, for example because the disk is full, no file of the run is kept.
   if (!trouble_.empty()) return folder_.reset();
   try {
     RecordingInfo info = keeping_.versions;

@@ -30,7 +30,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-// Returns the resident memory of this process.
 double resident_mib() {
   std::ifstream file("/proc/self/statm");
   double pages = 0.0;
@@ -45,8 +44,7 @@ double peak_mib() {
   return static_cast<double>(usage.ru_maxrss) / 1024.0;
 }
 
-/// Writes the estimate of a method to the folder of a simulated run. A write error does not change the outcome;
-/// KeptDraws::holds detects the missing file. Returns the error in one line, or an empty text.
+/// A write error does not change the outcome and is returned in one line.
 std::string leave_estimate(const Method& method, const SimulatedDraw& draw, const Estimate& estimate,
                            const std::filesystem::path& folder) {
   if (folder.empty()) return {};
@@ -66,8 +64,8 @@ void run_method_child(const Method& method, const SimulatedDraw& draw, const Sim
   const double before_mib = resident_mib();
   Outcome outcome;
   const Estimate estimate = run_method(method, draw, outcome);
-  // Peak memory is recorded only for built-in methods: for an external command, the operating system also counts the
-  // memory of the forked process.
+  // For an external command, the operating system also counts the memory of the forked process, so peak memory is
+  // recorded only for built-in methods.
   const bool own = method.info.version.empty();
   if (own) outcome.scores.push_back({"estimate_peak_mib", std::max(0.0, peak_mib() - before_mib)});
   assess(method, scored, surface, estimate, outcome);
@@ -76,7 +74,7 @@ void run_method_child(const Method& method, const SimulatedDraw& draw, const Sim
   write_all(fd, to_line({outcome, {}}));
 }
 
-// Reads until the process closes its pipe. Returns false at the deadline.
+// Returns false at the deadline.
 bool read_until(Process& process, double deadline_s, std::string& buffer) {
   while (true) {
     const double left_s = deadline_s - now_s();
@@ -87,14 +85,12 @@ bool read_until(Process& process, double deadline_s, std::string& buffer) {
   }
 }
 
-/// Returns true if the method reads lidars: a built-in slam method, or an external method of a kind other than rate,
-/// which receives all sensor data.
+/// An external method of a kind other than rate receives all sensor data, so it counts as a reader of lidars.
 bool reads_lidars(const MethodInfo& info) {
   return info.kind == Kind::slam || (info.kind != Kind::rate && !info.version.empty());
 }
 
-/// Returns whether the simulation of a task needs its lidars. Methods of kind `rate` never read a lidar. A kept
-/// recording contains lidars if a method of the run reads them.
+/// A kept recording contains lidars if a method of the run reads them.
 Lidars lidars_for(const DrawTask& task, bool recordings_unseen) {
   const bool kept = task.keeping.when != Keeping::When::never && task.keeping.lidars;
   const bool read =
@@ -105,7 +101,6 @@ Lidars lidars_for(const DrawTask& task, bool recordings_unseen) {
   return read ? Lidars::simulated : Lidars::left_out;
 }
 
-/// Given is a simulated run whose sensor data a setting has changed; empty if there is no setting.
 struct Given {
   Setting setting;
   std::optional<SimulatedDraw> draw, scored;
@@ -131,18 +126,15 @@ Outcome unanswered(const DrawTask& task, const DrawTask::Run& run, OutcomeStatus
   return outcome;
 }
 
-/// Reports that the scenario cannot be simulated with this seed on any machine.
 void reject(const DrawTask& task, const std::exception& error, int fd) {
   write_all(fd, to_line({{}, RejectedDraw{task.name, task.seed, one_line(error.what()), task.setting}}));
 }
 
-/// Reports the outcome `status` for each method of a run that could not be simulated or read.
 void give_up(const DrawTask& task, OutcomeStatus status, const std::string& message, int fd) {
   for (const Outcome& outcome : without_answer(task, status, message)) write_all(fd, to_line({outcome, {}}));
 }
 
-/// MadeDraw is a run that was simulated or read from a recording. If a method builds maps, it also contains the true
-/// surface for map scores.
+/// If a method builds maps, the true surface is included for map scores.
 struct MadeDraw {
   SimulatedDraw draw;
   std::optional<sim::Surface> surface;
@@ -167,8 +159,7 @@ DrawValues motion_of(const DrawTask& task, const sim::Recording& recording) {
   return values;
 }
 
-/// Simulates the run, or reads it from a recording, and reports its motion values. On failure, reports the reason and
-/// returns null.
+/// On failure, reports the reason and returns null.
 std::unique_ptr<MadeDraw> made_draw(const DataRoot& data, const DrawTask& task, int fd, bool recordings_unseen) {
   try {
     std::unique_ptr<MadeDraw> made = make(data, task, recordings_unseen);
@@ -188,8 +179,7 @@ std::unique_ptr<MadeDraw> made_draw(const DataRoot& data, const DrawTask& task, 
   return nullptr;
 }
 
-/// Runs one method on the sensor data of a run. `given` contains the changed sensor data of the previous method, which
-/// are reused if the settings are equal.
+/// Changed sensor data of the previous method (`given`) are reused if the settings are equal.
 Outcome run_one(const DrawTask& task, const DrawTask::Run& run, const MadeDraw& made, double timeout_s, Given& given,
                 DrawFiles& files) {
   Outcome outcome;
@@ -262,7 +252,7 @@ std::vector<Outcome> without_answer(const DrawTask& task, OutcomeStatus status, 
 void run_draw(const DataRoot& data, const DrawTask& task, double timeout_s, int fd, bool recordings_unseen) {
   const std::unique_ptr<const MadeDraw> made = made_draw(data, task, fd, recordings_unseen);
   if (!made) return;
-  // Returns the memory that the simulation freed to the operating system; otherwise it would hide the memory use of the
+  // Memory that the simulation freed is returned to the operating system, because it would hide the memory use of the
   // method.
   malloc_trim(0);
   DrawFiles files(task.keeping);

@@ -72,7 +72,6 @@ OutcomeStatus status_of(NoAnswer::Why why) {
   return OutcomeStatus::killed;
 }
 
-/// Returns an empty estimate for a method without result, with the output of its program.
 Estimate no_estimate(const std::string& transcript = "") {
   Estimate none;
   none.transcript = transcript;

@@ -29,14 +29,11 @@ bool by_difference(const MetricInfo& info) {
   return info.compared == Compared::by_difference;
 }
 
-/// Returns the largest tolerated change of a metric.
 double margin_of(const MetricInfo& info, const GatePolicy& policy) {
   if (!by_difference(info)) return std::log1p(policy.margin);
   return info.unit == Unit::time_offset ? policy.time_margin_s : policy.share_margin;
 }
 
-/// Returns the change of a metric from the accepted value `before` to the new value `now`: a log ratio or a difference,
-/// as the metric states.
 double difference(const MetricInfo& info, double before, double now) {
   if (before == now) return 0.0;
   if (by_difference(info)) return now - before;
@@ -45,8 +42,7 @@ double difference(const MetricInfo& info, double before, double now) {
   return std::log(now / before);
 }
 
-/// Converts a value to a badness, for the check of the worst run (`GatePolicy::worst`). For a fraction, it is one minus
-/// the value. For a signed value, it is the distance from the target.
+/// The badness of a fraction is one minus the fraction; that of a signed value is its distance from the target.
 double badness(const MetricInfo& info, double value) {
   if (!by_difference(info)) return value;
   return info.unit == Unit::share ? 1.0 - value : std::abs(value - info.target);
@@ -57,8 +53,8 @@ struct GatePair {
   double before = 0.0, now = 0.0;  ///< infinite (worst) if the run was not ok
 };
 
-/// GatePairs contains the accepted and the new value of a metric on the same runs. Runs without an accepted value are
-/// omitted. `lost` contains the seeds of runs that are ok in both results but have no new value.
+/// Runs without an accepted value are omitted; `lost` contains the seeds of runs that are ok in both results but have
+/// no new value.
 struct GatePairs {
   std::vector<GatePair> pairs;
   std::vector<std::uint64_t> lost;
@@ -84,14 +80,11 @@ GatePairs pairs_of(const GateRun& all, const MethodRun& before, const MethodRun&
   return out;
 }
 
-/// Returns the p-value of the differences under the hypothesis that their median is at most `margin`.
 double chance_beyond(std::vector<double> differences, double margin) {
   for (double& each : differences) each -= margin;
   return signed_rank_chance(differences);
 }
 
-/// Checks that no new value is worse than `GatePolicy::worst` times the worst accepted value. The fault names the
-/// failing run.
 void hold_worst_draw(const MetricInfo& info, const std::vector<GatePair>& pairs, const GatePolicy& policy,
                      GateResult& result) {
   if (pairs.empty()) return;
@@ -109,9 +102,8 @@ void hold_worst_draw(const MetricInfo& info, const std::vector<GatePair>& pairs,
                              three_digits(now.now), now.seed, three_digits(before.before));
 }
 
-/// Tests whether the median change of a metric exceeds the margin, and adds the change and a fault, if any, to the
-/// result. Each metric counts as one statistical test: for a two-sided metric, the p-value is twice the smaller
-/// one-sided p-value.
+/// Each metric counts as one statistical test: for a two-sided metric, the p-value is twice the smaller one-sided
+/// p-value.
 void hold_middle(const std::vector<GatePair>& pairs, const MetricInfo& info, const GatePolicy& policy,
                  std::size_t tests, GateResult& result) {
   result.draws = pairs.size();
@@ -154,7 +146,6 @@ GateResult hold_metric(const GatePairs& found, const MethodRun& before, const Me
   return result;
 }
 
-/// Returns true if a pass-fail metric is 1 (a failure) on a run.
 bool is_condemned(const MethodRun& run, const MetricInfo& verdict, std::size_t draw) {
   return value_at(run, verdict.name, draw) > 0.0;
 }
@@ -201,7 +192,6 @@ MethodRun without_outcomes(const MethodRun& like) {
   return none;
 }
 
-/// Pooled contains the pairs of one metric of a method, over all scenarios with this metric.
 struct Pooled {
   Kind kind = Kind::rate;
   std::string method;
@@ -212,7 +202,6 @@ struct Pooled {
   }
 };
 
-/// Returns the metrics that occur in more than one scenario, in the order of the accepted results.
 std::vector<Pooled> pooled_metrics(const GateRun& accepted) {
   std::vector<Pooled> seen, out;
   const auto has = [](const std::vector<Pooled>& list, const MethodRun& run, const MetricInfo& info) {

@@ -38,7 +38,6 @@ std::vector<std::string> cells_of(const std::string& line) {
   return cells;
 }
 
-/// GateLine is one line in the table of a gate, with its location for error messages.
 struct GateLine {
   const std::string& file;
   int number;
@@ -73,7 +72,6 @@ Kind read_kind(const GateLine& line) {
   line.fail("unknown kind '" + line.cells[1] + "'" + suggestion(line.cells[1], known));
 }
 
-/// Throws BadInput if the method is neither built in nor in `described`.
 void require_method(const GateLine& line, const MethodRun& run, std::span<const MethodPointer> described) {
   if (std::any_of(described.begin(), described.end(), [&](const MethodPointer& method) {
         return method->info.kind == run.kind && method->info.name == run.method;

@@ -24,7 +24,6 @@ namespace fs = std::filesystem;
 constexpr std::size_t kCountMax = 1000;
 constexpr std::string_view kWorst = "worst:";
 
-/// Returns the first metric of a kind that ranks runs; empty if no metric ranks runs.
 std::string ranking_metric(Kind kind) {
   for (const std::string& name : headline_metrics(kind)) {
     const MetricInfo& info = metric_info(name);
@@ -50,7 +49,6 @@ std::optional<double> badness(const OutcomeView& row, const std::string& metric)
   return std::nullopt;
 }
 
-/// Worst contains the worst runs of one scenario and method, at most a given number.
 class Worst {
  public:
   void add(double badness, std::uint64_t seed, std::size_t count) {

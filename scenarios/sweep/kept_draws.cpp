@@ -15,7 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Converts a file system error to the exception BadInput with the path.
 template <typename Action>
 auto guarded(Action&& action) {
   try {

@@ -36,7 +36,6 @@ void read_seeds(const YamlNode& node, Suite& suite) {
   if (suite.last_seed < suite.first_seed) node.fail("the last seed is below the first");
 }
 
-/// Splits a text such as "a + b" into its keys.
 std::vector<std::string> keys_of(const std::string& text, const YamlNode& node) {
   std::vector<std::string> keys;
   std::stringstream stream(text + "+");  // a trailing "+" gives an empty key, which is rejected later
@@ -96,7 +95,6 @@ void read_scenarios(const DataRoot& data, const YamlNode& node, Suite& suite) {
   if (suite.scenarios.empty()) node.fail("the suite needs at least one scenario");
 }
 
-/// Reads classes of runs with their scenarios and seeds from the key `draws: {mild: {hill: [3, 8]}}`.
 void read_classes(const DataRoot& data, const YamlNode& node, Suite& suite) {
   const std::vector<std::string> known = scenario_names(data);
   std::set<std::pair<std::string, std::uint64_t>> seen;
@@ -140,7 +138,6 @@ void read_recordings(const YamlNode& node, Suite& suite) {
   if (suite.recordings.empty()) node.fail("the suite needs at least one recording");
 }
 
-/// Reads which runs the suite contains: recordings, listed runs, or scenarios with seeds.
 void read_draws(const DataRoot& data, const YamlNode& root, const std::map<std::string, YamlNode>& fields,
                 Suite& suite) {
   if (fields.contains("recordings")) {
@@ -170,7 +167,6 @@ std::string method_name(const std::string& text, const std::filesystem::path& fo
   return is_method_file(text) ? (folder / text).string() : text;
 }
 
-// Throws BadInput if the text is that of a scenario file.
 void require_no_scenario(const YamlNode& root) {
   if (!root.is_map()) return;
   for (const auto& [key, value] : root.entries()) {
@@ -217,7 +213,6 @@ Suite read_suite(const DataRoot& data, const std::filesystem::path& path) {
   return suite;
 }
 
-/// Returns a suite that runs all methods on one scenario.
 Suite suite_of_scenario(const std::string& name) {
   Suite suite;
   suite.name = name;

@@ -22,7 +22,7 @@ namespace {
 
 constexpr char kBetween = '\t';  // separates an input's name from its outcome; names contain no tab
 
-/// Runs the triage of one simulated run in its process. Writes each result as a line, then an empty line or an error.
+/// Writes each result as a line, then an empty line or an error.
 void report_rows(const DataRoot& data, const Scenario& scenario, std::uint64_t seed, const Method& method,
                  const SuiteTriageOptions& options, int fd) {
   const auto report_trouble = [&](const std::string& why) {
@@ -49,7 +49,7 @@ std::string doc_of(const std::string& input) {
   return "unchanged recording";
 }
 
-/// Reads the triage results that a process wrote. Returns false if the process did not complete.
+/// Returns false if the process did not complete.
 bool read_rows(const std::string& text, const Failure& failure, DrawTriage& out) {
   std::size_t begin = 0;
   for (std::size_t end; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1) {
@@ -76,7 +76,6 @@ struct Worker {
   std::string said;
 };
 
-/// Stores the result of a simulated run whose process has ended or timed out.
 void conclude(Worker& worker, bool late, const Failure& failure, DrawTriage& draw) {
   if (late) worker.process.kill();
   const Process::End end = worker.process.wait();
@@ -84,7 +83,7 @@ void conclude(Worker& worker, bool late, const Failure& failure, DrawTriage& dra
   draw.error_code = late ? "the draw did not end within its time limit" : "the draw's process " + end.describe();
 }
 
-/// Starts the process of a simulated run. Returns false if another process must end first.
+/// Returns false if another process must end first.
 bool begin(std::list<Worker>& workers, std::size_t index, double deadline_s, const std::function<void(int)>& work) {
   try {
     workers.push_back({index, deadline_s, Process(work, true), {}});

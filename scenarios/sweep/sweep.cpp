@@ -41,7 +41,8 @@ void claim(Results& results, const DataRoot& data, const Suite& suite, const std
   if (!suite.recordings.empty()) results.set_note("source", kRecordingsSource);
 }
 
-/// Stores absolute paths of the descriptions, so that each run can be repeated from any folder (run_again.hpp).
+/// The descriptions of external methods are stored with absolute paths, so that each run can be repeated from any
+/// folder.
 void note_descriptions(Results& results, const Suite& suite) {
   for (const std::string& name : suite.methods) {
     if (!is_method_file(name)) continue;
@@ -99,7 +100,6 @@ class Sweep {
   }
 
  private:
-  /// Ends the workers and removes the incomplete files of kept runs.
   void discard_unfinished() {
     for (DrawWorker& worker : workers_) worker.kill();
     workers_.clear();
@@ -115,7 +115,6 @@ class Sweep {
 
   bool stopped() const { return options_.stop != nullptr && options_.stop->load(); }
 
-  /// Runs until all tasks are complete or the sweep is stopped.
   void work(const NextDraw& next) {
     std::optional<DrawTask> waiting = next();
     while (!stopped()) {
@@ -142,7 +141,6 @@ class Sweep {
         std::count_if(workers_.begin(), workers_.end(), [](const DrawWorker& worker) { return worker.is_busy(); }));
   }
 
-  /// Returns the next task that has a method to run.
   std::optional<DrawTask> next_draw() {
     for (; !plan_.at_end() && !stopped(); plan_.advance()) {
       DrawTask task = plan_.next(results_);
@@ -156,7 +154,7 @@ class Sweep {
     return std::nullopt;
   }
 
-  /// Passes the task to an idle or new worker. Returns false if no worker is available.
+  /// Returns false if no worker is available.
   bool give(const DrawTask& task) {
     if (busy() >= options_.jobs) return false;
     const double deadline_s = now_s() + suite_.timeout_s * (static_cast<double>(task.runs.size()) + kSimulateTimeouts);
@@ -188,7 +186,7 @@ class Sweep {
     poll(waiting.data(), waiting.size(), kPollMs);
   }
 
-  /// Stores the messages of a worker. Returns true if the worker died during a task.
+  /// Returns true if the worker died during a task.
   bool serve(DrawWorker& worker) {
     if (!worker.is_busy()) return false;
     const bool open = hear(worker);
@@ -206,7 +204,7 @@ class Sweep {
     return true;
   }
 
-  /// Reads the messages of a worker. Returns false if the worker has ended.
+  /// Returns false if the worker has ended.
   bool hear(DrawWorker& worker) {
     std::vector<Message> said;
     const bool open = worker.hear(said);
@@ -220,7 +218,7 @@ class Sweep {
     return open;
   }
 
-  // The process of a task died: each of its remaining methods gets an outcome without scores.
+  // If the process of a task died, each of its remaining methods gets an outcome without scores.
   void account_for_death(const DrawTask& draw, bool late, const Process::End& end) {
     const std::string what =
         late ? "the draw did not end within its time limit" : "the draw's process " + end.describe();
@@ -238,8 +236,8 @@ class Sweep {
     if (outcome.status != OutcomeStatus::ok) ++progress_.failures[outcome.status];
   }
 
-  /// Updates the folder of kept runs to match the results: repeats missing runs, and removes runs that the rule does
-  /// not select. A file system error does not stop the sweep.
+  /// Repeats runs whose kept files are missing, and removes runs that the rule does not select. A file system error
+  /// does not stop the sweep.
   void update_kept() {
     updating_kept_ = true;
     const std::set<DrawName> wanted = draws_to_keep(results_, options_.keep);

@@ -56,7 +56,6 @@ const GivenError& given_error(const std::string& key) {
   throw BadInput("'" + key + "': unknown input error" + suggestion(name, known));
 }
 
-/// Splits a key into method and parameter, for example "rate/saave" and "jerk_psd_rad2_s5".
 std::pair<std::string, std::string> method_and_parameter(const std::string& key) {
   const std::size_t dot = key.find('.');
   return {key.substr(0, dot), dot == std::string::npos ? "" : key.substr(dot + 1)};

@@ -13,7 +13,6 @@ using Eigen::Vector3d;
 
 constexpr double kTouching_m = 1e-5;
 
-/// Pair is the closest pair of points that the search has found: one point on the strut's axis and one on the prism.
 struct Pair {
   double distance2_m2;
   Vector3d axis_m, prism_m;
@@ -30,8 +29,8 @@ double left_of(const Vector3d& edge_m, const Vector3d& beside_m) {
   return edge_m.x() * beside_m.y() - edge_m.y() * beside_m.x();
 }
 
-/// AxisBox is the bounding box of a strut's axis. The box quickly rejects geometry that is farther away than the
-/// closest pair of points found so far.
+/// The bounding box of a strut's axis quickly rejects geometry that is farther away than the closest pair of points
+/// found so far.
 class AxisBox {
  public:
   AxisBox(const Vector3d& a_m, const Vector3d& b_m)
@@ -74,7 +73,6 @@ void meet_edge(const Vector3d& p, const Vector3d& u, const Vector3d& q, const Ve
   closest.take(p + s * u, q + t * v);
 }
 
-/// Finds the closest points between one end of the strut's axis and the inside of the prism's top face.
 void meet_top(const Vector3d& end_m, const Prism& prism, const Vector3d& normal, Pair& closest) {
   const double above_m = normal.dot(end_m - prism.top_m[0]);
   if (above_m < 0.0 || above_m * above_m >= closest.distance2_m2) return;
@@ -85,8 +83,6 @@ void meet_top(const Vector3d& end_m, const Prism& prism, const Vector3d& normal,
   closest.take(end_m, on_top_m);
 }
 
-/// Finds the closest points between one end of the strut's axis and the inside of the prism's vertical face below edge
-/// `i`.
 void meet_side(const Vector3d& end_m, const Prism& prism, int i, Pair& closest) {
   const Vector3d& from_m = prism.top_m[i];
   const Vector3d edge_m = prism.top_m[(i + 1) % 3] - from_m, beside_m = end_m - from_m;

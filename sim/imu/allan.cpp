@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kLeastClusters = 9;
 
-/// Integrates the samples minus their mean. The subtraction keeps the sums of a slowly drifting rate small.
+/// The mean is subtracted first, to keep the sums of a slowly drifting rate small.
 std::vector<double> integrate(std::span<const double> samples) {
   double mean = 0.0;
   for (const double sample : samples) mean += sample;
@@ -22,9 +22,8 @@ std::vector<double> integrate(std::span<const double> samples) {
   return sums;
 }
 
-/// Computes the Allan deviation for an averaging time of `cluster` samples. `sums` contains the integrated samples, in
-/// units of the sample period. The second difference of `sums` over `cluster` samples is `cluster` times the difference
-/// of two means.
+/// `sums` contains the integrated samples, in units of the sample period. The second difference of `sums` over
+/// `cluster` samples is `cluster` times the difference of two means.
 double deviation_of(const std::vector<double>& sums, std::size_t cluster) {
   const std::size_t count = sums.size() - 2 * cluster;
   double total = 0.0;

@@ -11,7 +11,7 @@ namespace tumble::sim {
 
 namespace {
 
-// Ratio of successive correlation times. With a ratio of 10, the Allan deviation is flat within 2 %.
+// With a ratio of 10 between successive correlation times, the Allan deviation is flat within 2 %.
 constexpr double kRatio = 10.0;
 
 /// Returns the standard deviation of one Gauss-Markov process in an infinite series of processes whose combined Allan

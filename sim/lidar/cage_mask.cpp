@@ -12,7 +12,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Returns a shape that contains every point within `margin_m` of a bounded shape.
 Shape widened(Shape shape, double margin_m) {
   Vector3d& size = shape.size_m;
   switch (shape.kind) {

@@ -8,14 +8,12 @@ namespace tumble::sim {
 
 namespace {
 
-// Two limits of the signal avoid the power function for most returns. Above sure_signal_, a return is detected if its
-// uniform random number is below kSure. Above certain_signal_, a return is always detected, because its loss
-// probability is below the resolution of the random numbers.
+// Above sure_signal_, a return is detected if its uniform random number is below kSure. Above certain_signal_, a return
+// is always detected, because its loss probability is below the resolution of the random numbers.
 constexpr double kSure = 0.99;
 constexpr double kCertainOdds = 0x1p25;
 
-/// Rounds to the nearest multiple of `quantum`, ties to even. Adding 1.5 * 2^52 removes the fraction without a function
-/// call.
+/// Adding 1.5 * 2^52 removes the fraction without a function call; ties round to even.
 double rounded(double value, double quantum) {
   constexpr double kShift = 0x1.8p52;
   return quantum * ((value / quantum + kShift) - kShift);

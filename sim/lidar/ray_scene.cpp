@@ -30,15 +30,14 @@ struct SceneDeleter {
 using DevicePtr = std::unique_ptr<RTCDeviceTy, DeviceDeleter>;
 using ScenePtr = std::unique_ptr<RTCSceneTy, SceneDeleter>;
 
-/// The options select one Embree kernel on every CPU: AVX2 with its native packet width. By default, Embree chooses the
-/// kernel by CPU, and the results of different kernels differ in the last bits.
+/// By default, Embree chooses the kernel by CPU, and the results of different kernels differ in the last bits.
 constexpr const char* kDevice =
-    // "threads=1" would limit oneTBB in the whole process while the Embree device exists
+    // The option "threads=1" would limit oneTBB in the whole process while the Embree device exists.
     "start_threads=0,set_affinity=0,isa=avx2,frequency_level=simd256,ignore_config_files=1";
 constexpr int kKernelLanes = 8;
 static_assert(kKernelLanes == kShapeLanes && NearestHits::kNone == RTC_INVALID_GEOMETRY_ID);
-/// Embree divides with an approximate reciprocal that differs between CPU vendors. Embree's ranges therefore only
-/// select candidates: RayScene recomputes all faces within the factor kReach of the nearest hit.
+/// Embree divides with an approximate reciprocal that differs between CPU vendors. RayScene therefore recomputes all
+/// faces within the factor kReach of the nearest hit that Embree reports.
 constexpr float kReach = 1.0f + 4e-6f;
 
 struct MeshLabel {
@@ -53,8 +52,7 @@ struct MeshLabel {
   }
 };
 
-/// CastContext contains the data for the callback functions, which receive the address of its first member from Embree.
-/// The id of a ray is the index of its lane.
+/// Embree's callback functions receive the address of the first member; the id of a ray is the index of its lane.
 struct CastContext {
   RTCIntersectContext embree;
   const std::vector<MeshLabel>* meshes;
@@ -85,7 +83,6 @@ std::vector<std::array<std::uint32_t, 4>> paired(const std::vector<std::array<st
   return quads;
 }
 
-/// Computes the axis-aligned box of a bounded shape, slightly enlarged because Embree rounds to float.
 void shape_bounds(const RTCBoundsFunctionArguments* args) {
   const Shape& shape = static_cast<const SceneShape*>(args->geometryUserPtr)[args->primID].shape;
   const Vector3d half = shape.R_FS.cwiseAbs() * half_extent(shape);
@@ -104,9 +101,8 @@ Ray ray_at(RTCRayN* rays, unsigned int count, unsigned int i) {
           Vector3d(RTCRayN_dir_x(rays, count, i), RTCRayN_dir_y(rays, count, i), RTCRayN_dir_z(rays, count, i))};
 }
 
-/// Computes the range at which a ray meets the plane of a face that Embree reported, and a normal of the plane (of any
-/// length). For a quad, `second_half` selects the half through which the ray passes. Embree's approximate reciprocal is
-/// accurate enough for this selection, because the two halves are adjacent.
+/// For a quad, `second_half` selects the half through which the ray passes; Embree's approximate reciprocal is accurate
+/// enough for this selection.
 double meet_face(const MeshLabel& mesh, unsigned int face, const Ray& ray, bool second_half, Vector3d& normal) {
   // Corners are relative to the ray's origin; double represents the differences of floats exactly.
   const auto corner = [&](std::uint32_t i) -> Vector3d { return mesh.corner(face, i).cast<double>() - ray.origin; };
@@ -127,8 +123,7 @@ double meet_face(const MeshLabel& mesh, unsigned int face, const Ray& ray, bool 
   return normal.dot(a) / normal.dot(ray.direction);
 }
 
-/// Keeps the nearest hit of each ray. Embree calls this filter for every hit within the range of a ray, in unspecified
-/// order.
+/// Embree calls this filter for every hit within the range of a ray, in unspecified order.
 void keep_nearest(const RTCFilterFunctionNArguments* args) {
   CastContext& cast = cast_context(args->context);
   for (unsigned int i = 0; i < args->N; ++i) {
@@ -147,7 +142,7 @@ void keep_nearest(const RTCFilterFunctionNArguments* args) {
   }
 }
 
-/// Intersects eight rays with one shape. Embree always passes eight rays; some rays may be inactive.
+/// Embree always passes eight rays; some rays may be inactive.
 void intersect_shape(const RTCIntersectFunctionNArguments* args) {
   const Shape& shape = static_cast<const SceneShape*>(args->geometryUserPtr)[args->primID].shape;
   CastContext& cast = cast_context(args->context);
@@ -308,7 +303,6 @@ void RayScene::cast(RayPacket& packet) const {
   if (impl_->bounded.empty() && impl_->meshes.empty()) return;
   CastContext cast{{}, &impl_->meshes, NearestHits(packet)};
   rtcInitIntersectContext(&cast.embree);
-  // The rays of one channel have similar directions.
   cast.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   for (int first = 0; first < packet.count; first += kKernelLanes) impl_->cast_lanes(packet, first, cast);
   cast.nearest.write(packet);

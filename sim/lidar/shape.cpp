@@ -16,8 +16,8 @@ struct Roots {
   double first, second;
 };
 
-/// Returns the solutions of a x^2 + 2 b x + c = 0 in increasing order. Without real solutions, the result is NaN, so
-/// that comparisons are false.
+/// Returns the solutions of a x^2 + 2 b x + c = 0 in increasing order; NaN without real solutions, so that comparisons
+/// are false.
 Roots solve_quadratic(double a, double b, double c) {
   const double discriminant = b * b - a * c;
   if (!(discriminant > 0.0) || !(a > 0.0)) return {std::nan(""), std::nan("")};
@@ -131,7 +131,6 @@ double cast_box(const Vector3d& half, const Vector3d& o, const Vector3d& d, Vect
   return outside ? enter : leave;
 }
 
-/// Returns the signed distance of a point to a box of any dimension; negative inside.
 template <typename Vector>
 double signed_box_distance(const Vector& point, const Vector& half) {
   const Vector beyond = point.cwiseAbs() - half;
@@ -141,7 +140,6 @@ double signed_box_distance(const Vector& point, const Vector& half) {
 
 /// Returns the distance of a point y from an ellipsoid with the semi-axes a_i (Eberly, Distance from a point to an
 /// ellipsoid). The nearest point follows from the root of sum (a_i y_i / (t + a_i^2))^2 = 1 for t > -min a_i^2.
-/// Bisection finds the root, because the sum decreases monotonically for t > -min a_i^2.
 double ellipsoid_distance(const Vector3d& size, const Vector3d& point) {
   const double scale = size.maxCoeff();
   const Vector3d a = size / scale, y = point.cwiseAbs() / scale;

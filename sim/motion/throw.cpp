@@ -21,7 +21,6 @@ constexpr std::array kOwnThrowParameters = {
 };
 constexpr std::array kThrowParameters = joined(kOwnThrowParameters, kImpulseParameters);
 
-/// In the motion Throw, a stiff hand holds the robot, swings it and releases it.
 class Throw : public Motion {
  public:
   Throw(const Values& values, const engine::World& world)

@@ -14,12 +14,9 @@ class Stream {
  public:
   Stream(std::uint64_t seed, std::string_view name);
 
-  /// Returns 128 bits that depend only on (seed, name, index).
   std::array<std::uint32_t, 4> block(std::uint64_t index) const;
-  /// Returns two standard normal numbers that depend only on (seed, name, index).
   std::array<double, 2> normal_pair(std::uint64_t index) const;
 
-  /// Returns the next number of the random sequence.
   std::uint64_t bits();
   double uniform();  ///< in [0, 1)
   double uniform(double low, double high);

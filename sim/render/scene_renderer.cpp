@@ -23,7 +23,6 @@ struct ContextDeleter {
 };
 using ContextPtr = std::unique_ptr<osmesa_context, ContextDeleter>;
 
-/// Current makes an OSMesa context current during the object's lifetime.
 class Current {
  public:
   explicit Current(OSMesaContext context) {
@@ -56,7 +55,7 @@ class Scene {
   mjvScene scene_;
 };
 
-/// Halves a picture in both directions, and flips it vertically, because OpenGL's rows start at the bottom.
+/// The picture is flipped vertically, because OpenGL's rows start at the bottom.
 Picture averaged(const std::vector<std::uint8_t>& large, int width, int height) {
   Picture picture{width, height,
                   std::vector<std::uint8_t>(3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height))};
@@ -93,8 +92,7 @@ void set_look(mjModel& model, int shadow_pixels) {
   }
 }
 
-/// Restricts the shadow map to the visible area, because a smaller area gives sharper shadows. By default, MuJoCo uses
-/// one shadow map for the whole world.
+/// The shadow map is restricted to the visible area, because a smaller area gives sharper shadows.
 void aim_sun(const Framing& framing, mjvScene& scene, mjrContext& engine) {
   const double reach_m = 2.0 + framing.distance_m;
   engine.shadowClip = static_cast<float>(reach_m);
@@ -167,7 +165,7 @@ void SceneRenderer::Impl::add_robots(const View& view, const mjvOption& option, 
   if (world.robot_body < 0) return;
   if (!world.free) {
     for (const Eigen::Isometry3d& T_WB : view.robots_T_WB) {
-      // Starts from the previous pose, because neighbouring poses of a film strip are similar.
+      // The joint search starts from the previous pose, because neighbouring poses of a film strip are similar.
       engine::reach(world, T_WB, *data);
       mjv_addGeoms(&model, data.get(), &option, nullptr, mjCAT_DYNAMIC, &scene);
     }

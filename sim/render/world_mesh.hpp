@@ -10,8 +10,7 @@
 
 namespace tumble::sim {
 
-/// MeshPart is a part of a world or a robot as triangles, for drawing without Renderer. The triangles are anticlockwise
-/// seen from outside; triangles that share a vertex form a smooth surface.
+/// The triangles are anticlockwise seen from outside; triangles that share a vertex form a smooth surface.
 struct MeshPart {
   std::array<float, 4> rgba = {1, 1, 1, 1};
   std::vector<Eigen::Vector3f> vertices_m;
@@ -22,13 +21,12 @@ struct MeshPart {
   int rows = 0, columns = 0;
 };
 
-/// Returns the visible parts of the world in frame W: surfaces and marks, without ceilings and near walls that would
-/// hide the inside. Round parts have `segments` pieces about their axis, capsules half as many. Throws InvalidSituation
-/// for a geom without a surface.
+/// Returns the visible parts of the world in frame W, without ceilings and near walls that would hide the inside. Round
+/// parts have `segments` pieces about their axis, capsules half as many. Throws InvalidSituation for a geom without a
+/// surface.
 std::vector<MeshPart> world_mesh(const BuiltSituation& built, int segments = 12);
 
-/// Returns the visible parts of the body that carries the sensors, in frame B. For a robot on joints (pendulum), the
-/// sensors are on the last segment. The list of parts is empty without a robot.
+/// Returns the visible parts of the body that carries the sensors, in frame B; empty without a robot.
 std::vector<MeshPart> robot_mesh(const BuiltSituation& built, int segments = 20);
 
 }  // namespace tumble::sim

@@ -9,9 +9,9 @@
 
 namespace tumble::sim {
 
-/// Lets the robot settle at the motion's start, then simulates `duration_s`. Records the true motion at every step:
-/// pose, velocity, rate, specific force, contacts and their labels. The sensor parts of Truth stay empty. Throws
-/// SimulationFailure like Physics::step, and if the robot does not come to rest before the start or never moves.
+/// Lets the robot settle at the motion's start, then records the true motion of `duration_s` at every step; the sensor
+/// parts of Truth stay empty. Throws SimulationFailure like Physics::step, and if the robot does not come to rest
+/// before the start or never moves.
 Truth record_truth(engine::World& world, Motion& motion, double duration_s);
 
 /// Returns the mean specific force at a body-fixed point over one step, in the axes of the attitude halfway: R_mid^T
@@ -28,12 +28,11 @@ Eigen::Vector3d mean_rate_B(const BodyState& before, const BodyState& after);
 /// of the steps has no contact.
 /// - `air`: no contact.
 /// - `grip`: mean slip speed, weighted by normal force, below 0.02 m/s.
-/// - `slip`: the rotation is too fast for the motion of the geometric centre. The criterion is the mean of the
-///   rotation's speed minus the centre's speed along the ground, weighted by normal force.
+/// - `slip`: the rotation is too fast for the motion of the geometric centre.
 /// - `slide`: the rotation is too slow for the motion of the geometric centre.
-/// The labels show touchdown 10 ms too early and take-off 10 ms too late. The boundary between slide and grip agrees
-/// with Coulomb's law within 4 ms. For a body other than a sphere, the labels refer to the centre of mass instead of
-/// the geometric centre.
+///
+/// The labels show touchdown 10 ms too early and take-off 10 ms too late. For a body other than a sphere, the labels
+/// refer to the centre of mass instead of the geometric centre.
 std::vector<ContactLabel> label_contacts(const Truth& truth);
 
 }  // namespace tumble::sim

@@ -69,7 +69,6 @@ void add_patches(mjSpec* spec, engine::World& world, const Values& values) {
   }
 }
 
-/// Adds a horizontal cylinder across the path, whose top is `height_m` above the floor.
 mjsGeom* add_bar(mjSpec* spec, engine::World& world, const std::string& name, const Eigen::Vector2d& at_m,
                  double yaw_rad, double height_m, const Colour& colour) {
   mjsGeom* geom = add_surface(spec, world, name, mjGEOM_CYLINDER, {at_m.x(), at_m.y(), height_m - kBarRadius_m},

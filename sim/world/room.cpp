@@ -51,7 +51,6 @@ void add_furniture(mjSpec* spec, engine::World& world, const Values& values, Str
   }
 }
 
-/// Adds cupboards with their backs against the walls, wall after wall.
 void add_shelves(mjSpec* spec, engine::World& world, const Values& values, Stream& stream) {
   const double half_m = values.at("room_half_m");
   for (int i = 0; i < static_cast<int>(values.at("shelf_count")); ++i) {

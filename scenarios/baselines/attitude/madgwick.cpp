@@ -25,8 +25,7 @@ Eigen::Vector4d tilt_gradient(const Eigen::Quaterniond& q, const Eigen::Vector3d
           2.0 * x * f1 + 2.0 * y * f2, -2.0 * y * f1 + 2.0 * x * f2};
 }
 
-/// Returns the normalised tilt gradient. Returns zero if the specific force or the tilt error is zero, or if the
-/// estimated attitude is exactly upside down.
+/// Returns zero if the specific force or the tilt error is zero, or if the estimated attitude is exactly upside down.
 Eigen::Vector4d correction(const Eigen::Quaterniond& q, const Eigen::Vector3d& f_I) {
   const double force = f_I.norm();
   if (force < kForceMin_m_s2) return Eigen::Vector4d::Zero();
@@ -38,7 +37,6 @@ Eigen::Vector4d correction(const Eigen::Quaterniond& q, const Eigen::Vector3d& f
 
 }  // namespace
 
-/// Performs one step of Madgwick's filter, equation (A24) of attitude.md.
 Eigen::Quaterniond madgwick_step(const Eigen::Quaterniond& q_WI, const Eigen::Vector3d& w_I_rad_s,
                                  const Eigen::Vector3d& f_I_m_s2, double gain_rad_s, double dt_s) {
   const Eigen::Quaterniond rate(0.0, w_I_rad_s.x(), w_I_rad_s.y(), w_I_rad_s.z());

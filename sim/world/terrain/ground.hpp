@@ -11,18 +11,14 @@
 
 namespace tumble::sim {
 
-/// Ground contains heights of the ground on a square grid centred on the origin. Generators change the heights;
-/// add_to() then adds the ground to a world as one height field.
 class Ground {
  public:
-  /// Creates level ground at height 0, with `side` by `side` nodes over |x|, |y| <= half_extent_m. `side` must be at
-  /// least 2.
+  /// `side` is the number of nodes along each side of |x|, |y| <= half_extent_m, at least 2.
   Ground(int side, double half_extent_m);
 
   int side() const { return side_; }
   double half_extent_m() const { return half_extent_m_; }
   double cell_m() const { return 2.0 * half_extent_m_ / (side_ - 1); }
-  /// Returns the x coordinate of a grid column or the y coordinate of a grid row.
   double coordinate_m(int index) const { return index * cell_m() - half_extent_m_; }
   double node_m(int row, int column) const { return heights_m_[static_cast<std::size_t>(row) * side_ + column]; }
 
@@ -30,7 +26,6 @@ class Ground {
   /// differ from the bilinear height by the twist of a cell: 4 mm per 20 cm cell at 0.4 /m.
   double height_m(double x_m, double y_m) const;
 
-  /// Replaces each height by f(x_m, y_m, height_m).
   template <typename Function>
   void transform(Function f) {
     for (int row = 0; row < side_; ++row) {
@@ -41,7 +36,7 @@ class Ground {
     }
   }
 
-  /// Adds f(x_m, y_m) at the nodes within the square of half width `reach_m` about (x_m, y_m). Cost: O(nodes in reach).
+  /// Adds f(x_m, y_m) at the nodes within the square of half width `reach_m` about (x_m, y_m).
   template <typename Function>
   void add_near(double x_m, double y_m, double reach_m, Function f) {
     for (int row = nearest(y_m - reach_m); row <= nearest(y_m + reach_m); ++row) {
@@ -51,7 +46,6 @@ class Ground {
     }
   }
 
-  /// Adds the ground to a world as a height field and surface `name`.
   void add_to(mjSpec* spec, engine::World& world, const std::string& name, const Colour& colour) const;
 
  private:
