@@ -17,8 +17,7 @@ using scenarios::Kind;
 
 constexpr std::size_t kPathPointsMax = 600;
 
-/// Returns the index of the gyro axis with the most clipped samples according to the estimates; -1 if no sample is
-/// clipped.
+/// Returns -1 if no sample is clipped.
 int most_clipped_axis(const std::vector<RateState>& rates) {
   std::array<int, 3> count = {0, 0, 0};
   for (const RateState& rate : rates) {

@@ -64,7 +64,7 @@ fs::path list_file(const fs::path& folder) {
   return folder / "examples.json";
 }
 
-/// Replaces "/" in the scenario's name, so that the file stays in its folder.
+/// The "/" in the scenario's name is replaced, so that the file stays in its folder.
 std::string file_of(const Example& example, const std::string& ending) {
   std::string name = example.scenario + "-" + std::to_string(example.seed) + "-" + ending;
   for (char& c : name) {
@@ -77,7 +77,6 @@ std::string picture_file(const Example& example, const ExamplePicture& picture) 
   return file_of(example, picture.name + ".png");
 }
 
-/// Folder for files that no list names yet.
 fs::path unfinished(const fs::path& folder) {
   return folder / ".unfinished";
 }
@@ -92,7 +91,7 @@ std::vector<std::uint8_t> read_bytes(const fs::path& path) {
   }
 }
 
-/// Returns a file name from the list. The list may be untrusted, so only files in its folder are read or removed.
+/// The list may be untrusted, so only files in its folder are read or removed.
 std::string file_name(const std::string& name, const char* ending, const char* what) {
   if (name.empty() || fs::path(name).filename() != name || name.starts_with('.') || !name.ends_with(ending))
     throw BadInput(fmt::format("'{}' must be the name of a {} in the same folder", name, what));
@@ -103,7 +102,6 @@ std::string file_name(const json& picture) {
   return file_name(picture.at("file"), ".png", "picture");
 }
 
-/// Returns the file name of the replay; empty without a replay, for example in a list of an earlier version.
 std::string replay_name(const json& example) {
   const std::string name = example.value("replay", "");
   return name.empty() ? name : file_name(name, ".html", "replay");
@@ -111,7 +109,6 @@ std::string replay_name(const json& example) {
 
 constexpr const char* kMovingEnding = "moving.webp";
 
-/// Returns the file name of the animation; empty without an animation, for example in a list of an earlier version.
 std::string moving_name(const json& example) {
   if (!example.contains("moving")) return "";
   return file_name(example.at("moving").at("file"), ".webp", "moving picture");
@@ -151,7 +148,6 @@ Example read_example(const fs::path& folder, const json& from, Pictures pictures
   return example;
 }
 
-/// Reads the list of examples; returns null if there is no list.
 json read_list(const fs::path& folder) {
   const fs::path path = list_file(folder);
   std::error_code error;
@@ -189,7 +185,6 @@ std::set<std::string> files_of(const json& examples) {
   return files;
 }
 
-/// Returns the files that the list names; empty if the list is damaged, because its copy still names them.
 std::set<std::string> files_before(const fs::path& folder) {
   try {
     const json list = read_list(folder);

@@ -16,8 +16,7 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
-/// Shows the robot at the start of a simulated run. A rig is seen from below the slope, along the lane without trunks;
-/// a sphere is shown with the whole room.
+/// A rig is seen from below the slope, along the lane without trunks; a sphere is shown with the whole room.
 void show_start(const Scene& scene, sim::View& view) {
   const Isometry3d T_WB = sim::start_pose(*scene.built);
   view.robots_T_WB = {T_WB};

@@ -14,8 +14,7 @@ using Eigen::AlignedBox3f;
 using Eigen::Vector3f;
 using sim::MeshPart;
 
-/// Selects nodes at increasing `positions`: all nodes from `low` to `high`; beyond, the step is `coarser` times one
-/// eighth of the distance. The first and the last node are kept.
+/// Selects all nodes from `low` to `high`; beyond, the step is `coarser` times one eighth of the distance.
 std::vector<int> kept_nodes(const std::vector<float>& positions, float low, float high, float coarser) {
   const auto away = [&](float node) { return std::max({0.0f, low - node, node - high}); };
   std::vector<int> kept = {0};
@@ -48,7 +47,6 @@ MeshPart thinned_field(const MeshPart& field, const AlignedBox3f& near, float co
   return out;
 }
 
-/// Reduces the resolution of a height field until it has at most `most` triangles.
 MeshPart fitting_field(const MeshPart& field, const AlignedBox3f& near, std::size_t most) {
   MeshPart out = thinned_field(field, near, 1.0f);
   for (float coarser = 1.5f; triangle_count(out) > most && coarser < 100.0f; coarser *= 1.5f)
@@ -62,7 +60,6 @@ AlignedBox3f box_of(const MeshPart& part) {
   return box;
 }
 
-/// Returns the apparent size of a part as seen from the robot.
 float prominence(const MeshPart& part, const AlignedBox3f& near) {
   const AlignedBox3f box = box_of(part);
   if (box.isEmpty()) return 0.0f;
@@ -140,7 +137,7 @@ std::vector<MeshPart> plain_body(double sphere_radius_m) {
     }
     return {body};
   }
-  // A roof-shaped nose shows the forward direction. Each face has its own vertices, so edges are visible.
+  // A roof-shaped nose shows the forward direction.
   const Vector3f corners[] = {{-0.15f, -0.1f, -0.05f}, {0.1f, -0.1f, -0.05f},  {0.1f, 0.1f, -0.05f},
                               {-0.15f, 0.1f, -0.05f},  {-0.15f, -0.1f, 0.05f}, {0.1f, -0.1f, 0.05f},
                               {0.1f, 0.1f, 0.05f},     {-0.15f, 0.1f, 0.05f},  {0.18f, 0.0f, -0.05f},

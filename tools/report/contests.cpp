@@ -27,7 +27,6 @@ bool is_of(const MetricComparison& row, const Section& section) {
   return row.contest.scenario == section.scenario && row.contest.kind == section.kind;
 }
 
-/// Returns the rows of the first headline metric that any method of the section has.
 std::vector<const MetricComparison*> rows_of(const Section& section, const scenarios::Comparison& comparison) {
   std::vector<const MetricComparison*> rows;
   for (const std::string& metric : scenarios::headline_metrics(section.kind)) {
@@ -40,7 +39,7 @@ std::vector<const MetricComparison*> rows_of(const Section& section, const scena
   return rows;
 }
 
-/// Returns the difference between method and baseline with a positive sign if the method is worse.
+/// The sign is positive if the method is worse than the baseline.
 double badness(const MetricInfo& info, double difference) {
   return info.sense == Sense::higher ? -difference : difference;
 }
@@ -68,7 +67,6 @@ ContestResult result_of(const MetricComparison& row) {
   return out;
 }
 
-/// Returns the row with the best median; the first row among equal medians.
 const MetricComparison* best_of(const std::vector<const MetricComparison*>& rows) {
   const MetricComparison* best = nullptr;
   for (const MetricComparison* row : rows) {
@@ -100,7 +98,7 @@ Tally tally(const std::vector<ContestResult>& results) {
     out.won += result.won();
     out.lost += result.lost();
     out.open += !result.won() && !result.lost();
-    // Few runs give no interval; but a difference with the same sign on all runs indicates which method is better.
+    // Few runs give no interval, but a difference with the same sign on all runs indicates which method is better.
     const bool on_every_draw = result.certainty == Certainty::open && result.row.better == result.row.pairs;
     if (result.better && (on_every_draw || result.certainty == Certainty::interval)) {
       const std::string& method = result.row.contest.method;

@@ -22,7 +22,7 @@ using scenarios::MetricStyle;
 
 constexpr double kMetricDomainLow = 0.36, kFailureDomainHigh = 0.24;
 
-/// Returns null for a non-finite value: a gap in the plot.
+/// A non-finite value becomes null: a gap in the plot.
 json shown(double value) {
   return std::isfinite(value) ? json(five_digits(value)) : json();
 }
@@ -32,13 +32,11 @@ std::string transparent(const char* hex) {
   return fmt::format("rgba({:.0f},{:.0f},{:.0f},0.14)", 255 * colour[0], 255 * colour[1], 255 * colour[2]);
 }
 
-/// Returns properties of all traces of a method, by which one legend entry switches them together.
 json trace(const std::string& method, bool in_legend) {
   return {
       {"type", "scatter"}, {"name", plot_text(method)}, {"legendgroup", plot_text(method)}, {"showlegend", in_legend}};
 }
 
-/// Draws the band between the quartiles, as one polygon per range of points with finite quartiles.
 void add_bands(const CurveLine& line, double x_factor, double y_factor, const char* colour, json& data) {
   const auto finite = [](const CurvePoint& p) { return std::isfinite(p.quantile_25) && std::isfinite(p.quantile_75); };
   for (auto begin = line.points.begin(); begin != line.points.end();) {
@@ -127,7 +125,6 @@ json x_axis(const Curve& curve, const std::string& title) {
   return axis;
 }
 
-/// Adds a point without values for each bin in which the method has no samples, so that the line has a gap.
 CurveLine with_gaps(const CurveLine& line, const std::vector<std::string>& bins) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   CurveLine out{line.method, {}};

@@ -18,7 +18,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Describes the values that a histogram omits; empty if it shows all values.
+/// Returns an empty text if the histogram shows all values.
 std::string thinned_text(std::span<const Spread> spreads) {
   const auto is_thinned = [](const Spread& spread) { return spread.of_draws && spread.values.size() > kBoxPoints; };
   if (std::none_of(spreads.begin(), spreads.end(), is_thinned)) return "";
@@ -40,7 +40,6 @@ json shaded(const Spread& spread) {
           {"line", {{"width", is_line ? 2 : 0}, {"color", "rgba(128,128,128,0.8)"}, {"dash", "dash"}}}};
 }
 
-/// Returns the axes of a quantity, with the published range shaded.
 json layout_of(const Spread& spread) {
   json layout = {{"barmode", "overlay"},
                  {"xaxis", {{"title", {{"text", spread.quantity + " [" + spread.unit + "]"}}}}},
@@ -49,7 +48,6 @@ json layout_of(const Spread& spread) {
   return layout;
 }
 
-/// Returns the caption of the histograms of one quantity.
 std::string caption_of(std::span<const Spread> spreads) {
   const Spread& spread = spreads.front();
   std::string out = fmt::format("The histogram shows the distribution over the draws: {}.", spread.quantity);
@@ -66,10 +64,9 @@ std::string text(const Spread& spread, double value) {
   return number_text(value * spread.factor);
 }
 
-/// Hatchings by the number of earlier scenarios with the same colour (`colour_round`).
+/// Hatchings by the number of earlier scenarios with the same colour (`colour_round`)
 constexpr std::array kHatchings = {"", "/", "x", "."};
 
-/// Returns histograms of one quantity, one per scenario.
 Figure histograms(std::span<const Spread> spreads) {
   Figure figure;
   json traces = json::array();

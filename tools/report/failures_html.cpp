@@ -15,7 +15,7 @@ namespace {
 
 using html::escaped;
 
-/// Number of failed runs that are open; further ones are folded.
+/// Number of failed runs that are open; further ones are folded
 constexpr std::size_t kOpenDraws = 8;
 
 const ShownExample* example_of(const PageContent& content, const FailedDraw& draw) {
@@ -25,7 +25,6 @@ const ShownExample* example_of(const PageContent& content, const FailedDraw& dra
   return shown == content.examples.end() ? nullptr : &*shown;
 }
 
-/// Returns links to the example of the run and to the replay.
 std::string links_html(const ShownExample* shown) {
   if (shown == nullptr) return "";
   std::string out;

@@ -29,7 +29,6 @@ json density(const MotionMap& map) {
       each.push_back(five_digits(100.0 * map.share[row * MotionMap::kCells + i]));
     rows.push_back(std::move(each));
   }
-  // Values below the first contour are transparent.
   return {
       {"type", "contour"},
       {"name", "all draws"},

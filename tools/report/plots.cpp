@@ -61,7 +61,6 @@ bool wants_log(const json& traces) {
   return low > 0.0 && high > 10.0 * low;
 }
 
-/// Boxes contains box plots of one metric: one box per method, in groups.
 class Boxes {
  public:
   Boxes(const std::string& metric, const Palette& palette)
@@ -83,7 +82,7 @@ class Boxes {
     }
   }
 
-  /// Uses a logarithmic axis if values are positive and span more than a decade. Otherwise, the axis starts at 0 if
+  /// The axis is logarithmic if values are positive and span more than a decade; otherwise, it starts at 0 if
   /// `from_zero` is set, or else at the smallest value.
   void put_into(Figure& figure, bool from_zero) {
     json data = json::array();
@@ -101,7 +100,6 @@ class Boxes {
   }
 
  private:
-  /// Failures contains the failed runs of one box.
   struct Failures {
     std::string method, group;
     std::size_t count;
@@ -118,7 +116,6 @@ class Boxes {
     if (shown_failed > 0) failures_.push_back({trace["name"], plot_text(group), shown_failed});
   }
 
-  /// Adds the failed runs beyond the worst value of the figure, and a line with the word "failed".
   void add_failed(bool log, json& data, json& layout) const {
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (const json& trace : data) {
@@ -176,7 +173,6 @@ bool holds_more_than_shown(const Summary& summary, Kind kind, const std::string&
   return false;
 }
 
-/// Shades an interval of x over the whole height, behind the lines.
 json shaded(double begin, double end) {
   return {{"type", "rect"},
           {"xref", "x"},

@@ -44,7 +44,6 @@ std::vector<Fact> versions(const scenarios::Results& results, const Summary& sum
   return out;
 }
 
-/// Describes each method of the results.
 std::vector<Fact> listed_methods(const Summary& summary) {
   std::vector<Fact> out;
   for (const scenarios::Section& section : summary.sections) {
@@ -65,7 +64,7 @@ bool are_of_here(const scenarios::Results& results, const ReportOptions& options
          (made_of.empty() || options.data.empty() || made_of == options.data);
 }
 
-/// Returns the commands that repeat and extend the page, without commands that would reject these results.
+/// Commands that would reject these results are omitted.
 std::vector<Fact> commands(const scenarios::Results& results, const ReportOptions& options,
                            const PageContent& content) {
   const std::string database = scenarios::shell_word(options.database.string());
@@ -89,7 +88,7 @@ std::vector<Fact> commands(const scenarios::Results& results, const ReportOption
   return out;
 }
 
-/// Plots the headline metrics of each kind, without pass-fail metrics, whose fraction is in the table.
+/// Pass-fail metrics are omitted, because the table contains their fraction.
 std::vector<Figure> errors_of_all_draws(const Summary& summary, const Palette& palette) {
   std::vector<Figure> figures;
   for (const Kind kind : {Kind::rate, Kind::attitude, Kind::position, Kind::slam}) {
@@ -103,9 +102,8 @@ std::vector<Figure> errors_of_all_draws(const Summary& summary, const Palette& p
   return figures;
 }
 
-/// Returns true if the example belongs to these results: the database contains its rows, and the digests of the
-/// recordings are equal. Sweeps omit lidars that no method needs, so the digest may be that of the recording without
-/// lidars.
+/// Returns true if the database contains the example's rows, and the digests of the recordings are equal. Sweeps omit
+/// lidars that no method needs, so the digest may be that of the recording without lidars.
 bool is_of(const scenarios::Results& results, const Example& example) {
   if (example.made_of != scenarios::digest_of_rows(results, {example.scenario, example.seed})) return false;
   const std::vector<scenarios::Outcome> rows = results.outcomes_of(example.scenario, example.seed);
@@ -115,8 +113,6 @@ bool is_of(const scenarios::Results& results, const Example& example) {
   });
 }
 
-/// Explains why there are no pictures, and which command creates them. Only a sweep adds pictures, with the build and
-/// the data of the results.
 std::string how_to_get_pictures(const scenarios::Results& results, const ReportOptions& options) {
   const std::string none =
       fmt::format("There are no pictures of single draws in {}", examples_folder(options.database).string());
@@ -143,7 +139,6 @@ std::string how_to_get_pictures(const scenarios::Results& results, const ReportO
       scenarios::shell_word(options.database.string()));
 }
 
-/// Returns the URL, relative to the page, of a replay next to the database.
 std::string replay_address(const ReportOptions& options, const Example& example) {
   if (example.replay.empty()) return "";
   const std::filesystem::path replay = examples_folder(options.database) / example.replay;
@@ -167,7 +162,7 @@ void add_examples(const scenarios::Results& results, const ReportOptions& option
   if (content.examples.empty()) content.warnings.push_back(how_to_get_pictures(results, options));
 }
 
-/// Takes the colours in the examples' pictures first, because pictures cannot be recoloured.
+/// The colours in the examples' pictures are taken first, because pictures cannot be recoloured.
 Palette palette_of(const PageContent& content) {
   Palette palette;
   for (const ShownExample& shown : content.examples) {

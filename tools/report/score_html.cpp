@@ -31,7 +31,6 @@ std::string plain(double value) {
   return fmt::format("{:.{}f}", value, digits);
 }
 
-/// Returns the method without truth that has the best median.
 const MethodSummary* best_method(const Section& section, const std::string& metric) {
   const MethodSummary* best = nullptr;
   const MetricInfo& info = metric_info(metric);

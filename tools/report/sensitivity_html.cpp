@@ -26,13 +26,11 @@ std::string median_text(const Sensitivity& row, double value) {
   return styled_value(row.metric, value, true);
 }
 
-/// Draws a bar from 0 to 1 next to the number.
 std::string strength_cell(double strength) {
   return fmt::format("<td class=\"number\"><span class=\"strength\" style=\"width:{:.0f}px\"></span>{:.2f}</td>",
                      60.0 * strength, strength);
 }
 
-/// Draws the score as a function of the scenario parameter.
 std::string dependence_cell(const Sensitivity& row, const Influence& each) {
   const bool is_share = row.metric == kFailure || scenarios::metric_info(row.metric).unit == scenarios::Unit::verdict;
   const auto label_of = [&](const scenarios::DependenceClass& part) {

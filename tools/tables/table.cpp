@@ -22,7 +22,7 @@ void append_line(std::string& out, std::string line) {
   out += line + "\n";
 }
 
-/// Splits a text at spaces into lines of at most `width` characters. A longer word has its own line.
+/// A word longer than `width` has its own line.
 std::vector<std::string> wrapped(const std::string& text, std::size_t width) {
   std::vector<std::string> lines(1);
   std::istringstream words(text);

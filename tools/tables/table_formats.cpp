@@ -12,7 +12,6 @@ namespace {
 
 using Escape = std::string (*)(const std::string& cell);
 
-/// Joins the cells of one row with `between`.
 std::string joined(const std::vector<std::string>& cells, std::string_view between, Escape escape) {
   std::string out;
   for (std::size_t i = 0; i < cells.size(); ++i) {

@@ -44,7 +44,7 @@ struct BenchOptions {
   bool store = false;
 };
 
-/// A suite has one kind, so all methods must have this kind.
+/// A bench suite has one kind, so all methods must have this kind.
 std::vector<scenarios::MethodPointer> methods_of(const BenchOptions& options) {
   std::vector<scenarios::MethodPointer> methods = scenarios::find_methods(options.methods);
   for (const scenarios::MethodPointer& each : methods)
@@ -79,8 +79,7 @@ fs::path database_of(const scenarios::DataRoot& data, const BenchOptions& option
   return fmt::format("{}_{}_{}.db", suite.name, whose, scenarios::digest_of_texts(texts).substr(0, kDigestShown));
 }
 
-/// Reads the stored results in the source tree and the result files that the user names. Results of another suite are
-/// an error.
+/// Results of another suite are an error.
 std::vector<BenchResult> stored_results(const scenarios::DataRoot& data, const BenchOptions& options,
                                         const scenarios::Suite& suite) {
   std::vector<BenchResult> all = scenarios::read_bench_results(scenarios::bench_results_file(data, suite.name));
@@ -96,7 +95,7 @@ std::vector<BenchResult> stored_results(const scenarios::DataRoot& data, const B
   return all;
 }
 
-/// Returns the command with file names only: the page then contains no path of this machine.
+/// The command contains file names only, so that the page contains no path of this machine.
 std::string command_of(const BenchOptions& options) {
   std::string words = "tumble bench";
   for (const std::string& method : options.methods) {
@@ -128,22 +127,21 @@ BenchPage page_of(const scenarios::Results& results, const scenarios::Suite& sui
   return page;
 }
 
-/// Prints the page. With --json, prints one JSON line per method that ran.
+/// With --json, prints one JSON line per method that ran.
 void print(const Session& session, const std::vector<Table>& tables, const std::string& lines) {
   if (!session.json) return session.print(tables, {});
   if (std::fwrite(lines.data(), 1, lines.size(), stdout) != lines.size() || std::fflush(stdout) != 0)
     throw BadInput(std::string("standard output: ") + std::strerror(errno));
 }
 
-/// Returns the command of the sweep that measures the same runs, for a note in the database.
 std::string sweep_command(const BenchOptions& options, const scenarios::Suite& suite) {
   std::string words = scenarios::shell_word(options.suite.empty() ? suite.name : options.suite);
   for (const std::string& method : options.methods) words += " --method " + scenarios::shell_word(method);
   return words;
 }
 
-/// Writes a database with measured and stored results for `report`, and returns its path. The measured database never
-/// contains stored results: a sweep would take them for completed runs.
+/// The database for `report` is separate, because a sweep would take stored results in the measured database for
+/// completed runs.
 fs::path database_to_report(const fs::path& measured, const scenarios::Results& results, const BenchPage& page) {
   std::vector<BenchResult> others = page.stored;
   std::erase_if(others, [&](const BenchResult& stored) {
@@ -180,8 +178,8 @@ int bench(const Session& session, const BenchOptions& options) {
   scenarios::SweepOptions how;
   how.jobs = options.jobs;
   how.stop = &interrupt.raised();
-  how.again = {scenarios::OutcomeStatus::killed};  // a run that the operating system killed does not characterise the
-                                                   // method
+  how.again = {
+      scenarios::OutcomeStatus::killed};  // a run that the operating system killed says nothing about the method
   const scenarios::SweepProgress final = sweep_with_progress(session, data, suite, owner, how);
   if (final.draws_done < final.draws_total) return say_stopped(final);
 

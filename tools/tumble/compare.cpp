@@ -61,7 +61,6 @@ std::string title_of(const Contest& contest, const std::string& what) {
   return fmt::format("{}: {}, {}", contest.scenario, to_string(contest.kind), what);
 }
 
-/// ComparisonRow builds the cells of a row, and the column titles.
 struct ComparisonRow {
   std::vector<std::string> heads = {}, cells = {};
 
@@ -69,7 +68,7 @@ struct ComparisonRow {
     heads.push_back(head);
     cells.push_back(std::move(cell));
   }
-  /// Adds the two ends of an interval as numeric cells, for CSV. Infinite ends are empty.
+  /// Infinite ends of the interval are empty cells.
   void add_ends(const std::string& head, const scenarios::Interval& interval, double unit = 1.0) {
     const auto end = [&](double value) { return std::isfinite(value) ? fmt::format("{:.6g}", unit * value) : ""; };
     add(head + " low", end(interval.low));
@@ -132,7 +131,6 @@ ComparisonRow cells_of(const FailureComparison& row, bool apart) {
   return out;
 }
 
-/// Returns one table per contest; `cells(row)` builds a row.
 template <typename Comparisons, typename Cells>
 std::vector<Table> tables_of(const Comparisons& rows, const std::string& what, const Cells& cells) {
   std::vector<Table> tables;

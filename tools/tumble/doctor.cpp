@@ -22,7 +22,7 @@ void append_findings(std::vector<RecordingFinding> more, std::vector<RecordingFi
   std::move(more.begin(), more.end(), std::back_inserter(out));
 }
 
-/// Runs the causal slam method, whose health reports faults that only a map reveals.
+/// The health of the causal slam method reports faults that only a map reveals.
 std::vector<RecordingFinding> findings_of_odometry(const sim::Sensors& sensors) {
   const scenarios::MethodPointer method = chosen_method("slam/tumble_lag", {sensors.robot, true});
   const scenarios::Estimate estimate = run_method(*method, sensors);

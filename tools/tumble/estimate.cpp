@@ -37,7 +37,7 @@ struct EstimateOptions {
   PriorMapOptions prior_map;
 };
 
-/// ShownCounter is a health counter in the table. --json and estimate.json contain all counters.
+/// The options --json and estimate.json contain all counters.
 struct ShownCounter {
   const char *name, *meaning, *unit;
 };
@@ -48,7 +48,6 @@ constexpr ShownCounter kShownCounters[] = {
     {"end_sigma_rad", "standard deviation of the last attitude", "rad"},
 };
 
-/// Lists the content of an estimate, with units.
 Table summary(const scenarios::Estimate& estimate, scenarios::OutcomeStatus status) {
   Table table("", {"estimate", "value", "unit"});
   table.align_right_from(1);

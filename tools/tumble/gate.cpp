@@ -47,8 +47,8 @@ bool is_of(const scenarios::MethodRun& run, const scenarios::MethodPointer& meth
   return run.kind == method->info.kind && run.method == method->info.name;
 }
 
-/// Without --accept, only external methods may be named: the accepted results determine which methods of this build
-/// run. With --accept, named methods are added to the gate.
+/// Without --accept, only external methods may be named, because the accepted results determine which methods of this
+/// build run.
 std::vector<scenarios::MethodPointer> given_methods(const GateOptions& options) {
   for (const std::string& name : options.methods) {
     if (!options.accept && !scenarios::is_method_file(name))
@@ -60,7 +60,6 @@ std::vector<scenarios::MethodPointer> given_methods(const GateOptions& options) 
   return scenarios::find_methods(options.methods);
 }
 
-/// Restricts the suite to accepted methods. With --accept, newly named methods are added.
 void keep_accepted(const scenarios::Gate& gate, const GateOptions& options,
                    const std::vector<scenarios::MethodPointer>& given, scenarios::Suite& suite) {
   std::vector<std::string> methods = options.methods, names;
@@ -85,7 +84,7 @@ void keep_accepted(const scenarios::Gate& gate, const GateOptions& options,
   suite.scenarios = names;
 }
 
-/// Drops results that do not belong to the suite; the user's database may contain them.
+/// Results that do not belong to the suite are dropped; the user's database may contain them.
 scenarios::GateRun of_suite(scenarios::GateRun run, const scenarios::Suite& suite) {
   const std::vector<scenarios::MethodPointer> methods = scenarios::find_methods(suite.methods);
   std::erase_if(run.methods, [&](const scenarios::MethodRun& each) {
@@ -148,7 +147,7 @@ json to_json(const std::vector<GateResult>& results, bool passes) {
   return {{"verdict", passes ? "pass" : "fail"}, {"held", std::move(rows)}};
 }
 
-/// Loads the gate. Returns nothing if the gate does not exist and --accept creates it.
+/// Returns nothing if the gate does not exist and --accept creates it.
 std::optional<scenarios::Gate> load(const scenarios::DataRoot& data, const GateOptions& options,
                                     const std::vector<scenarios::MethodPointer>& given, const std::string& suite) {
   const fs::path file = gate_file(data, options, suite);
@@ -164,15 +163,13 @@ std::optional<scenarios::Gate> load(const scenarios::DataRoot& data, const GateO
   return gate;
 }
 
-/// Stores the new results as accepted results. The limits stay unchanged.
 void write_accepted(const fs::path& file, const scenarios::Gate& gate) {
   if (file.has_parent_path()) make_folder(file.parent_path());
   scenarios::replace_file(fs::path(file).replace_extension(".csv"), scenarios::to_csv(gate.accepted));
   if (!fs::exists(file)) scenarios::replace_file(file, scenarios::to_yaml(gate));
 }
 
-/// Stores the certificate of this build, if known, in a kept database, and describes its state. The certificate is not
-/// measured here, because gates run often.
+/// The certificate (checks of the simulation) is not measured here, because gates run often.
 std::string certificate_text(const Session& session, const scenarios::DataRoot& data, const fs::path& database) {
   scenarios::Results results(database, scenarios::Results::Mode::create_or_append);
   const auto certificate = scenarios::known_certificate(results, scenarios::CertificateStore(session.cache(), data));
@@ -180,7 +177,6 @@ std::string certificate_text(const Session& session, const scenarios::DataRoot& 
                      : "not measured for this build on this machine; run 'tumble certify' or 'tumble sweep'";
 }
 
-/// Runs named cases, which contain their own expectations.
 int run_case_gate(const Session& session, const scenarios::DataRoot& data, const GateOptions& options) {
   if (!options.accepted.empty() || !options.methods.empty())
     throw scenarios::BadInput(

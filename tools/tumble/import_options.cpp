@@ -36,7 +36,6 @@ void require_numbers(const std::string& option, const std::vector<double>& numbe
   }
 }
 
-/// Converts seven numbers x y z qx qy qz qw to a pose.
 Eigen::Isometry3d pose_of(const std::string& option, const std::vector<double>& numbers) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   if (numbers.empty()) return pose;

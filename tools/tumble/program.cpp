@@ -37,7 +37,7 @@ void check_verb(int argc, const char* const* argv) {
   }
 }
 
-/// Converts `help` and `help VERB` to --help, as other programs do.
+/// The words `help` and `help VERB` become --help, as in other programs.
 std::vector<const char*> without_help(int argc, const char* const* argv) {
   std::vector<const char*> words(argv, argv + argc);
   if (words.size() < 2 || std::string_view(words[1]) != "help") return words;
@@ -49,13 +49,11 @@ std::vector<const char*> without_help(int argc, const char* const* argv) {
   return words;
 }
 
-/// Returns the verb on the command line, or else the program itself.
 const CLI::App& parsed(const CLI::App& app) {
   const auto subcommands = app.get_subcommands();
   return subcommands.empty() ? app : *subcommands.front();
 }
 
-/// Returns a one-line hint for a command line that CLI11 rejected.
 std::string usage_line(const CLI::App& app, const CLI::ParseError& error) {
   const CLI::App& verb = parsed(app);
   const std::string place = &verb == &app ? "" : verb.get_name() + ": ";
@@ -91,7 +89,6 @@ int say(const char* prefix, const std::string& line, int status) {
   return status;
 }
 
-/// Prints the text of `tumble` without arguments.
 int show_the_way() {
   std::string text =
       "tumble simulates robots that tumble and roll, estimates their motion and scores the estimates\n\nfirst steps\n  "
@@ -124,7 +121,6 @@ void add_table_format(CLI::App& options, Session& session) {
       ->type_name("TEXT");
 }
 
-/// Parses the command line and runs the verb.
 int dispatch(int argc, const char* const* argv) {
   if (argc == 1) return show_the_way();
   CLI::App app("tumble simulates robots that tumble and roll, estimates their motion and scores the estimates.",

@@ -19,7 +19,6 @@ struct RecordOptions {
   std::filesystem::path file;
 };
 
-/// Returns a table with one row per sensor.
 Table contents(const sim::Sensors& sensors) {
   Table table("", {"sensor", "device", "samples", "points"});
   table.align_right_from(2);

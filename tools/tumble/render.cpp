@@ -39,7 +39,6 @@ struct RenderOptions {
   int width = 1280, height = 720;
 };
 
-/// RenderContent owns the data to which a scene refers.
 struct RenderContent {
   std::optional<sim::BuiltSituation> built;
   sim::Sensors sensors;
@@ -48,13 +47,12 @@ struct RenderContent {
 };
 
 bool is_recording(const std::string& what) {
-  // A name with the extension of a recording is a file, even if the file does not exist. A folder is no recording: the
-  // folder from 'tumble run hill' must not hide the scenario 'hill'.
+  // A name with the extension of a recording is a file, even if the file does not exist. A folder is no recording,
+  // because the folder from 'tumble run hill' must not hide the scenario 'hill'.
   if (std::filesystem::exists(what) && !std::filesystem::is_directory(what)) return !what.ends_with(".yaml");
   return what.ends_with(".h5") || what.ends_with(".hdf5");
 }
 
-/// Loads world, sensors and truth of a recording.
 void load_situation(const scenarios::DataRoot& data, const RenderOptions& options, RenderContent& content) {
   const scenarios::RecordingInfo info = scenarios::read_info(options.what);
   if (info.situation_yaml.empty())
@@ -96,7 +94,6 @@ void load_draw(const scenarios::DataRoot& data, const RenderOptions& options, Re
   content.built.emplace(scenarios::draw(data, scenario, seed_of(scenario, options.seed)), data.models());
 }
 
-/// Draws the maps of the estimates next to each other, coloured by error.
 int render_maps(const Session& session, const RenderOptions& options, const scenarios::DataRoot& data) {
   if (!is_recording(options.what) || options.estimates.empty()) {
     throw BadInput("--map needs a recording and at least one estimate: FILE.h5 ESTIMATE...");
@@ -128,10 +125,9 @@ int render_maps(const Session& session, const RenderOptions& options, const scen
   return kDone;
 }
 
-/// Maximum number of video frames: more would take minutes to render and to watch.
+/// More video frames would take minutes to render and to watch.
 constexpr std::size_t kFramesMax = 3000;
 
-/// Interval of progress lines for long renderings.
 constexpr double kSayEvery_s = 10.0;
 
 std::vector<std::uint8_t> video_of(const Session& session, const RenderOptions& options, const Scene& scene) {

@@ -49,7 +49,6 @@ std::string wins_text(const Wins& wins) {
   return wins.pairs == 0 ? "" : fmt::format("{} of {}", wins.count, wins.pairs);
 }
 
-/// Returns one row per method and metric: the headline metrics, or all metrics.
 Table score_table(const Section& section, bool all) {
   Table table(
       fmt::format("{}: {} (paired with {})", section.scenario, to_string(section.kind), section.baseline),
@@ -81,7 +80,6 @@ Table draws_table(const Summary& summary) {
   return table;
 }
 
-/// Returns the content of the tables in SI units.
 json to_json(const Summary& summary) {
   json rows = json::array();
   for (const Section& section : summary.sections) {
@@ -116,7 +114,7 @@ std::string read_text(const std::filesystem::path& path) {
   return text;
 }
 
-/// Returns the digest of the data that a sweep would use; empty if the data are missing, which a report does not need.
+/// A report does not need the data, so missing data give an empty digest.
 std::string data_found(const Session& session) {
   try {
     return scenarios::data_digest(session.data());
@@ -125,11 +123,10 @@ std::string data_found(const Session& session) {
   }
 }
 
-/// Maximum number of simulated runs per scenario for the sensitivity section of a page.
+/// Maximum number of simulated runs per scenario for the sensitivity section of a page
 constexpr std::size_t kSensitivityDraws = 2000;
 
-/// Adds the sensitivity of each method, for one score and for failures, from a limited number of runs. `tumble
-/// sensitivity` computes the complete table, which takes long.
+/// A limited number of runs is used, because the complete table of `tumble sensitivity` takes long.
 void add_sensitivity(const Session& session, const std::string& data_found, ReportInput& input) {
   const Summary some = scenarios::at_most_draws(*input.summary, kSensitivityDraws);
   NumbersByScenario numbers;
@@ -177,7 +174,7 @@ PageContent content_of(const Session& session, const ReportVerbOptions& options,
 void write_page(const Session& session, const ReportVerbOptions& options, ReportInput input) {
   const std::string plotly = options.page.empty() ? "" : read_text(session.plotly());
   const PageContent content = content_of(session, options, std::move(input));
-  // Page and badge are complete before the first is moved: a full disk then leaves neither.
+  // Page and badge are complete before the first is moved, so that a full disk leaves neither.
   std::list<scenarios::OutputFile> files;
   const auto write = [&](const std::filesystem::path& path, const std::string& text) {
     files.emplace_back(path).write(std::as_bytes(std::span(text)));
@@ -220,7 +217,6 @@ int report(const Session& session, const ReportVerbOptions& options) {
   for (const scenarios::Certificate& certificate : results.certificates()) {
     document["certificates"].push_back(json::parse(to_json(certificate)));
   }
-  // The page is written first, because it must not depend on the reader of standard output.
   if (!options.page.empty() || !options.badge.empty())
     write_page(session, options, {&results, &summary, draws, std::move(curves), std::move(motions), {}, {}});
   session.print(tables, document);

@@ -39,7 +39,6 @@ struct RunOptions {
   fs::path learnt;
 };
 
-/// Returns true if the command line has only a scenario and perhaps a seed, as for a first try of the program.
 bool is_bare(const RunOptions& options) {
   return options.methods.empty() && options.folder.empty() && options.learnt.empty() && options.parameters.empty() &&
          options.vary.empty();
@@ -52,7 +51,6 @@ fs::path free_folder(const std::string& name) {
   return folder;
 }
 
-/// Returns the first method of a kind without truth that fulfils the condition; null without such a method.
 template <class Is>
 const scenarios::MethodInfo* first_of(scenarios::Kind kind, Is is) {
   for (const scenarios::Method& method : scenarios::methods()) {
@@ -61,13 +59,12 @@ const scenarios::MethodInfo* first_of(scenarios::Kind kind, Is is) {
   return nullptr;
 }
 
-/// Returns the registered baseline of a kind, or else its first method.
 const scenarios::MethodInfo* baseline_of(scenarios::Kind kind) {
   const scenarios::MethodInfo* const baseline = first_of(kind, [](const auto& info) { return info.baseline; });
   return baseline != nullptr ? baseline : first_of(kind, [](const auto&) { return true; });
 }
 
-/// Selects the baseline and tumble's method of each kind in which both can run on this scenario.
+/// The first run uses the baseline and tumble's method of each kind in which both can run on this scenario.
 RunOptions first_run(RunOptions options, const scenarios::Scenario& scenario) {
   using scenarios::Kind;
   const scenarios::Subject subject = scenarios::subject_of(scenario);
@@ -83,7 +80,7 @@ RunOptions first_run(RunOptions options, const scenarios::Scenario& scenario) {
   return options;
 }
 
-/// Suggests further commands. `sweep` accepts only scenarios of the catalogue; a suite may have the name of a scenario.
+/// `sweep` accepts only scenarios of the catalogue; a suite may have the name of a scenario.
 void say_what_next(const Session& session, const RunOptions& options, const scenarios::RunResult& result,
                    bool in_catalogue) {
   const std::string folder = options.folder.string();
@@ -109,7 +106,6 @@ void say_what_next(const Session& session, const RunOptions& options, const scen
   say("tumble list methods", "lists all methods");
 }
 
-/// Writes recording, situation and estimates under the names that other verbs expect.
 void leave_files(const fs::path& folder, const scenarios::RunResult& result) {
   const scenarios::RecordingInfo info = recording_info(result.built->situation(), result.recording_digest);
   scenarios::write_recording(folder / "recording.h5", info, result.recording.sensors, &result.recording.truth);
@@ -123,7 +119,6 @@ void leave_files(const fs::path& folder, const scenarios::RunResult& result) {
   }
 }
 
-/// Writes pictures of the path, a film strip with all estimated paths, and the replay page.
 void leave_pictures(const fs::path& folder, const scenarios::RunResult& result) {
   Scene scene{&result.built.value(), &result.recording.sensors, &result.recording.truth, {}};
   for (const scenarios::Estimate& estimate : result.estimates) {
@@ -143,7 +138,6 @@ std::vector<scenarios::MethodPointer> pointers(const std::vector<scenarios::Meth
   return out;
 }
 
-/// Returns the point of a curve that the user names; empty by default.
 scenarios::Setting setting_of(const scenarios::DataRoot& data, const RunOptions& options, std::uint64_t seed) {
   if (options.vary.empty()) return {};
   const scenarios::Setting setting = scenarios::setting_from(options.vary);
@@ -154,7 +148,6 @@ scenarios::Setting setting_of(const scenarios::DataRoot& data, const RunOptions&
   return setting;
 }
 
-/// Reports the failed methods, and the health warnings of the other methods.
 void say_troubles(const Session& session, const scenarios::RunResult& result) {
   for (std::size_t i = 0; i < result.outcomes.size(); ++i) {
     const scenarios::Outcome& outcome = result.outcomes[i];
@@ -172,7 +165,7 @@ std::uint64_t asked_seed(const RunOptions& options, const scenarios::Scenario& s
   return any_draw ? 1 : seed_of(scenario, options.seed);
 }
 
-/// Returns the methods that the user names. Methods that calibrate start with the calibration in the --learnt file.
+/// Methods that calibrate the rig start with the calibration in the --learnt file.
 std::vector<scenarios::Method> asked_methods(const RunOptions& options, const scenarios::Scenario& scenario,
                                              LearntFile& learnt) {
   const auto selected = select_methods(options.methods);

@@ -31,8 +31,7 @@ struct SensitivityVerbOptions {
   bool motion = false, all = false, dependence = false;
 };
 
-/// Throws BadInput if the database comes from other models or scenarios: the parameters of its runs could not be
-/// computed.
+/// If the database comes from other models or scenarios, the parameters of its runs cannot be computed.
 void require_same_data(const scenarios::Results& results, const scenarios::DataRoot& data,
                        const std::filesystem::path& database) {
   const std::string made_of = results.note("data"), found = scenarios::data_digest(data);
@@ -54,7 +53,6 @@ std::map<std::string, scenarios::NumbersOfDraws> numbers_of(const Session& sessi
   return numbers_of_catalogue(session, data, summary);
 }
 
-/// Returns the strongest significant influences, or all on request.
 std::vector<Influence> shown(const Sensitivity& row, bool all) {
   std::vector<Influence> out;
   for (const Influence& each : row.influences) {
@@ -91,7 +89,6 @@ std::vector<Table> tables_of(const std::vector<Sensitivity>& rows, bool all) {
   return tables;
 }
 
-/// Returns one row per class of parameter values, for each influence that is shown.
 Table dependence_table(const std::vector<Sensitivity>& rows, bool all) {
   Table table("partial dependence: median score, or share of failures, for each class of values of a parameter",
               {"scenario", "method", "metric", "number", "from", "to", "draws", "score", "95 %"});

@@ -36,8 +36,7 @@ struct ShrinkVerbOptions {
   std::filesystem::path file;
 };
 
-/// Returns the oracle (method with true input) of the method's kind, if it can run on the robot. A run on which even
-/// the oracle fails is no useful case.
+/// A run on which even the oracle (method with true input) fails is no useful case.
 scenarios::MethodPointer control_of(const ShrinkVerbOptions& options, const scenarios::Method& method,
                                     const scenarios::Scenario& scenario, double time_limit_s) {
   if (options.control == "none") return nullptr;
@@ -98,7 +97,6 @@ json to_json(const Shrunk& shrunk, const std::string& metric, const ShrinkVerbOp
           {"case", options.file.string()}};
 }
 
-/// Returns the command that repeats the shrinking.
 std::string command_of(const ShrinkVerbOptions& options, std::uint64_t seed) {
   using scenarios::shell_word;
   std::string words = "tumble shrink " + shell_word(options.scenario) + " --seed " + std::to_string(seed) +
@@ -109,7 +107,7 @@ std::string command_of(const ShrinkVerbOptions& options, std::uint64_t seed) {
   return words + fmt::format(" --budget {} -o ", options.budget) + shell_word(options.file.filename().string());
 }
 
-/// Returns the name of the case: the file's name, which must be an identifier.
+/// The file's name must be an identifier.
 std::string name_of(const std::filesystem::path& file) {
   const std::string name = file.stem().string();
   const auto allowed = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; };

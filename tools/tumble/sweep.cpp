@@ -26,7 +26,7 @@ namespace tumble::tools {
 
 namespace {
 
-/// Defaults of `tumble sweep`. Each example costs one more simulated run, and its pictures.
+/// Each example costs one more simulated run, and its pictures.
 constexpr std::uint64_t kExamplesMax = 3, kDrawsPerExample = 8, kFailuresMax = 8, kDrawsPerFailure = 4;
 
 struct SweepVerbOptions {
@@ -42,7 +42,6 @@ struct SweepVerbOptions {
   double risk = 0.05;
 };
 
-/// Keeps only the named scenarios, in the order of the suite.
 void take_scenarios(const std::vector<std::string>& named, scenarios::Suite& suite) {
   if (named.empty()) return;
   if (!suite.recordings.empty() || !suite.classes.empty())
@@ -52,7 +51,7 @@ void take_scenarios(const std::vector<std::string>& named, scenarios::Suite& sui
   std::erase_if(suite.scenarios, [&](const std::string& name) { return std::ranges::count(named, name) == 0; });
 }
 
-/// Prints the content of the suite, because a scenario may have the same name.
+/// The content of the suite is printed, because a scenario may have the same name.
 void say_what_it_holds(const Session& session, const SweepVerbOptions& options, const scenarios::Suite& suite) {
   if (!options.scenarios.empty() || suite.scenarios.size() < 2) return;
   if (std::ranges::count(suite.scenarios, options.suite) == 0) return;
@@ -61,7 +60,7 @@ void say_what_it_holds(const Session& session, const SweepVerbOptions& options, 
       options.suite, fmt::join(suite.scenarios, " ")));
 }
 
-/// Builds the suite with the changes from the command line. Returns false if this shard has no seed.
+/// Returns false if this shard has no seed.
 bool select(const scenarios::DataRoot& data, const SweepVerbOptions& options, scenarios::Suite& suite) {
   suite = scenarios::load_suite(data, options.suite);
   take_scenarios(options.scenarios, suite);
@@ -85,8 +84,7 @@ bool select(const scenarios::DataRoot& data, const SweepVerbOptions& options, sc
   return options.shard.empty() || shard_seeds(parse_shard(options.shard), suite.first_seed, suite.last_seed);
 }
 
-/// Stores the certificate of this build (checks of its simulation) with the results. The certificate is measured at
-/// most once per build and machine.
+/// The certificate (checks of the simulation) is measured at most once per build and machine.
 void certify(const Session& session, const scenarios::DataRoot& data, const std::filesystem::path& database,
              const std::atomic<bool>& stop) {
   scenarios::Results results(database, scenarios::Results::Mode::create_or_append);
@@ -107,7 +105,6 @@ void certify(const Session& session, const scenarios::DataRoot& data, const std:
   }
 }
 
-/// Returns the command for this sweep, without the database.
 std::string command_of(const SweepVerbOptions& options) {
   using scenarios::shell_word;
   std::string words = shell_word(options.suite);
@@ -118,20 +115,20 @@ std::string command_of(const SweepVerbOptions& options) {
   return words;
 }
 
-/// Appends the command to the commands of earlier sweeps in this database.
 void note_command(scenarios::Results results, const SweepVerbOptions& options) {
   const std::string known = results.note(scenarios::kCommandNote);
   results.set_note(scenarios::kCommandNote, scenarios::with_commands(known, command_of(options)));
 }
 
-/// Generates examples if the complete suite was swept: typical runs of a part may be untypical of the suite. Errors in
-/// pictures are reported, but change neither table nor exit status. Returns false if the generation was stopped.
+/// Examples require the complete suite, because typical runs of a part may be untypical of the suite. Errors in
+/// pictures are reported, but change neither table nor exit status.
 bool leave_examples(const Session& session, const scenarios::DataRoot& data, const scenarios::Suite& suite,
                     const SweepVerbOptions& options, std::uint64_t draws, const std::atomic<bool>& stop) {
   if (!options.shard.empty()) return true;
   LeaveOptions leave;
   leave.count = options.examples.value_or(std::min(kExamplesMax, draws / kDrawsPerExample));
-  // `--examples 0` also disables pictures of failures. A sweep that is too small for typical runs still shows failures.
+  // The option `--examples 0` also disables pictures of failures. A sweep that is too small for typical runs still
+  // shows failures.
   const bool wants_none = options.examples && *options.examples == 0;
   leave.failures =
       options.failures.value_or(wants_none ? 0 : std::clamp(draws / kDrawsPerFailure, std::uint64_t{1}, kFailuresMax));
@@ -189,7 +186,7 @@ scenarios::SweepOptions sweep_options(const SweepVerbOptions& options, const std
   return out;
 }
 
-/// NewDatabase removes a database that a rejected sweep created, if it contains no runs.
+/// Removes a database that a rejected sweep created, if the database contains no runs.
 class NewDatabase {
  public:
   explicit NewDatabase(const std::filesystem::path& path) : path_(path), is_new_(!exists_at(path)) {}
@@ -222,7 +219,7 @@ class NewDatabase {
   bool is_new_, kept_ = false;
 };
 
-/// Stores the question in the results before the first run. Without --until, there is no question.
+/// The question must be stored in the results before the first run; without --until, there is no question.
 std::optional<scenarios::Question> ask(const SweepVerbOptions& options, const scenarios::DataRoot& data,
                                        const scenarios::Suite& suite) {
   if (options.until.empty()) return std::nullopt;
@@ -263,7 +260,7 @@ int run_sweep(const Session& session, const SweepVerbOptions& options) {
   const scenarios::DatabaseOwner owner(options.database);
   NewDatabase made(options.database);
   if (!any) {
-    // Creates an empty database, so that the databases of all parts can be merged.
+    // An empty database is created, so that the databases of all parts can be merged.
     scenarios::Results results = scenarios::open_results(data, suite, options.database);
     if (options.keep != "none") results.set_note(scenarios::kKeepNote, options.keep);
     made.keep();

@@ -10,7 +10,6 @@ namespace tumble::tools {
 
 namespace {
 
-/// Adds the progress before this step and that of this step, for a total of `draws`.
 scenarios::SweepProgress sum(const scenarios::SweepProgress& before, const scenarios::SweepProgress& since,
                              std::uint64_t draws) {
   scenarios::SweepProgress all = since;

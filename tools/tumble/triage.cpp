@@ -34,7 +34,6 @@ struct TriageVerbOptions {
   std::filesystem::path database;
 };
 
-/// Returns "cures" if the original run failed and the run with this true input succeeds.
 std::string verdict(const TriageRow& row, const TriageRow& base) {
   if (!base.fails) return "";
   return row.fails ? "" : "cures";
@@ -105,15 +104,14 @@ int run_triage_of_draw(const Session& session, const TriageVerbOptions& options)
   return kDone;
 }
 
-/// Throws BadInput for a name that is neither a suite nor a scenario, before CLI11 reports missing options. The content
-/// of a file is checked later, when all options are known.
+/// The check of the name runs before CLI11 reports missing options; the content of a file is checked later.
 std::function<void(const std::string&)> known_name(const Session& session) {
   return [&session](const std::string& text) {
     if (!text.ends_with(".yaml")) scenarios::load_suite(session.data(), text);
   };
 }
 
-/// Returns true for a seed or a named case; otherwise the name is a suite.
+/// Without a seed or a named case, the name is that of a suite.
 bool is_one_draw(const Session& session, const TriageVerbOptions& options) {
   const bool named = !options.what.ends_with(".yaml") && names_cases(session.data(), options.what);
   const bool one = !options.seed.empty() || (named && options.seeds.empty());
@@ -122,7 +120,6 @@ bool is_one_draw(const Session& session, const TriageVerbOptions& options) {
   return one;
 }
 
-/// Returns the options of the command that triages one simulated run of the suite.
 std::string words_of(const TriageVerbOptions& options) {
   std::string words = " --method " + scenarios::shell_word(options.method);
   if (!options.metric.empty()) words += " --metric " + scenarios::shell_word(options.metric);
