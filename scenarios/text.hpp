@@ -10,7 +10,6 @@
 
 namespace tumble::scenarios {
 
-/// Returns true if the whole `text` is one number.
 template <typename Number>
 bool read_number(std::string_view text, Number& value) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);

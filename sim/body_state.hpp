@@ -14,7 +14,6 @@ struct BodyState {
   Eigen::Vector3d w_WB_B_rad_s = Eigen::Vector3d::Zero();
 };
 
-/// Force at the centre of mass and torque, both in world axes
 struct Wrench {
   Eigen::Vector3d force_W_n = Eigen::Vector3d::Zero();
   Eigen::Vector3d torque_W_nm = Eigen::Vector3d::Zero();

@@ -12,8 +12,7 @@ namespace engine {
 struct World;
 }
 
-/// BuiltSituation is a situation whose world and robot are compiled to one MuJoCo model, for simulation, true surface
-/// and pictures. The model is constant; copies of a BuiltSituation share it, also between threads.
+/// The model is constant; copies of a BuiltSituation share it, also between threads.
 class BuiltSituation {
  public:
   /// The construction takes milliseconds for a floor and tenths of a second for a hill. Throws InvalidSituation with

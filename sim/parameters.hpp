@@ -30,7 +30,6 @@ constexpr std::array<Parameter, M + N> joined(const std::array<Parameter, M>& fi
   return all;
 }
 
-/// InvalidSituation is thrown for a value out of bounds, an unknown name or an unknown component.
 class InvalidSituation : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -48,11 +47,10 @@ class Values {
   std::map<std::string, double> numbers_;
 };
 
-/// Fills in the defaults of a component's parameters. Throws InvalidSituation, with a message that starts with `place`,
-/// for an unknown name, NaN, or a value outside its limits.
+/// Throws InvalidSituation, with a message that starts with `place`, for an unknown name, NaN, or a value outside its
+/// limits.
 Values resolve(const std::string& place, const Values& given, std::span<const Parameter> known);
 
-/// Returns the known name nearest to `name` by edit distance, or an empty text if no name is similar.
 std::string nearest_name(std::string_view name, std::span<const std::string> known);
 
 struct ComponentType {

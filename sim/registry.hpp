@@ -10,7 +10,6 @@
 
 namespace tumble::sim {
 
-/// For an unknown name, throws InvalidSituation with the nearest known name.
 template <typename Type>
 const Type& find_entry(std::span<const Type* const> registry, std::string_view name, const std::string& what) {
   std::vector<std::string> names;

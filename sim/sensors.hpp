@@ -36,7 +36,7 @@ enum class PointTimes : std::uint8_t {
   unknown  ///< the motion distortion of the sweep is unknown; offset_ns is 0
 };
 
-/// A firing without a hit gives no point.
+/// A lidar firing without a hit gives no point.
 struct LidarRecord {
   std::string name;
   std::string device;

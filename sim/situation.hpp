@@ -24,8 +24,7 @@ struct SensorSpec {
   bool operator==(const SensorSpec&) const = default;
 };
 
-/// Situation is one simulated case with every number fixed; equal situations give bit-identical recordings. Values with
-/// defaults may be omitted.
+/// Situation is one simulated case with every number fixed; equal situations give bit-identical recordings.
 struct Situation {
   std::string scenario;  ///< name of the scenario from which it was drawn
   std::uint64_t seed = 0;
@@ -61,7 +60,6 @@ class ResolvedSituation {
   Situation situation_;
 };
 
-/// Throws InvalidSituation with the location of the error.
 ResolvedSituation resolve(const Situation& situation);
 
 }  // namespace tumble::sim

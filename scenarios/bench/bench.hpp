@@ -23,7 +23,7 @@ std::string bench_suite_digest(const Suite& suite);
 BenchResult collect_bench_result(const Results& results, const Suite& suite, const MethodInfo& method);
 
 /// Adds published bench results to a database of measured results, without computing costs, because only costs from one
-/// machine are comparable. The database must not contain other results of the published methods.
+/// machine are comparable.
 void add_published(std::span<const BenchResult> published, Results& results);
 
 void require_of_suite(const BenchResult& result, const Suite& suite);
@@ -40,8 +40,6 @@ struct BenchCell {
   double median = 0.0;  ///< infinite if half of the runs failed; NaN if no run counts
 };
 
-/// An empty `group` selects all classes of simulated runs. `beside` contains the results of other methods, and may
-/// include `result`.
 BenchCell bench_cell(const BenchResult& result, const std::string& metric, const std::string& group,
                      std::span<const BenchResult> beside);
 

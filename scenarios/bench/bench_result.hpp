@@ -38,15 +38,12 @@ struct BenchResult {
 
 std::string to_line(const BenchResult& result);
 
-/// Throws BadInput, with a message that starts with `place`, if the line is not a bench result as written by `to_line`.
 BenchResult parse_bench_result(const std::string& line, const std::string& place);
 
 std::filesystem::path bench_results_file(const DataRoot& data, const std::string& suite);
 
-/// A missing file gives an empty list.
 std::vector<BenchResult> read_bench_results(const std::filesystem::path& file);
 
-/// A new result replaces the stored result of the same method.
 void store_bench_results(const std::filesystem::path& file, const std::vector<BenchResult>& results);
 
 }  // namespace tumble::scenarios

@@ -21,14 +21,12 @@ struct Ideal {
 
 enum class Sort { several, size, count };
 
-/// A ComplicationLine registers one removable detail; scenario parameters that a component type lacks are skipped.
 struct ComplicationLine {
   std::string_view what;
   std::vector<Ideal> numbers;
   Sort sort = Sort::several;
 };
 
-/// The ideal values remove details of a world, such as rocks; type and size of the world do not change.
 std::span<const ComplicationLine> of_world() {
   static const std::vector<ComplicationLine> kLines = {
       {"rocks", {{"rock_count"}}, Sort::count},
@@ -90,7 +88,7 @@ std::span<const ComplicationLine> of_motion() {
   return kLines;
 }
 
-// The saturation limits exceed every reading of a tumble, so no reading is clipped.
+// The saturation limits are so large that no reading of a tumbling robot is clipped.
 constexpr double kBeyondRates_rad_s = 100.0, kBeyondForces_m_s2 = 1000.0;
 
 std::span<const ComplicationLine> of_imu() {

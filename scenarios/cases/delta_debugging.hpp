@@ -6,11 +6,11 @@
 #include <optional>
 #include <vector>
 
-/// The search looks for the smallest set of items, or the smallest number, with which a run still fails. If the
-/// caller's trial returns nothing, the trial budget is used up and the search ends with its best result.
+/// The search finds the smallest set of items, or the smallest number, with which a simulated run still fails.
 namespace tumble::scenarios {
 
-/// A FailsWith runs a trial with only the items `kept` (ascending indices), and returns true if the trial fails.
+/// A FailsWith runs a trial with only the items `kept` (ascending indices), and returns true if the trial fails; empty
+/// means that the trial budget is used up.
 using FailsWith = std::function<std::optional<bool>(const std::vector<std::size_t>& kept)>;
 
 struct LeastSet {
@@ -21,12 +21,10 @@ struct LeastSet {
 
 /// Returns a 1-minimal failing subset of the items 0 to `count` - 1: without any single item of the subset, the run
 /// does not fail. The method is delta debugging (Zeller and Hildebrandt, IEEE TSE 28:183, 2002, algorithm ddmin) with
-/// tests of complements only. The run with all items must fail, and related items should be adjacent. A smaller failing
-/// set may exist if adding an item can prevent the failure. The search needs about 2 log2(count) trials if one item is
-/// needed, and at most O(count^2).
+/// tests of complements only. The run with all items must fail, and related items should be adjacent. The search needs
+/// about 2 log2(count) trials if one item is needed, and at most O(count^2).
 LeastSet least_failing_set(std::size_t count, const FailsWith& fails);
 
-/// A FailsAt runs a trial with the parameter value `value`, and returns true if the trial fails.
 using FailsAt = std::function<std::optional<bool>(double value)>;
 
 struct LeastNumber {

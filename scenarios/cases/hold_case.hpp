@@ -8,8 +8,6 @@
 
 namespace tumble::scenarios {
 
-/// The returned named case expects that `method` (a name for find_methods) fails; `command` is the command line that
-/// created the case.
 Scenario named_case_of(const Shrunk& shrunk, const std::string& name, const std::string& method, const Failure& failure,
                        const std::string& version, const std::string& command);
 
@@ -28,9 +26,8 @@ struct CaseResult {
   std::string fault;    ///< why the check fails; empty if the check passes
 };
 
-/// Compares an outcome with the expectation of a named case. An expected failure must have the accepted status, and a
-/// metric within the factor `kCaseFactor` of the accepted value. An improvement also fails the check, so that the
-/// developer updates the accepted value.
+/// An expected failure must have the accepted status, and a metric within the factor `kCaseFactor` of the accepted
+/// value. An improvement also fails the check, so that the developer updates the accepted value.
 CaseResult hold_case(const std::string& name, const Expectation& expected, const Outcome& outcome);
 
 Expectation accepted(const Expectation& expected, const Outcome& outcome);

@@ -14,7 +14,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// A missing metric gives false.
 bool is_beyond(const Outcome& outcome, const std::string& metric, double limit) {
   const double value = value_of(outcome.scores, metric);
   if (std::isnan(value)) return false;

@@ -12,7 +12,6 @@ namespace tumble::scenarios {
 /// clipped samples.
 class SameFailure {
  public:
-  /// Throws BadInput if `outcome` does not fail, or if its status is `killed`.
   SameFailure(const Failure& failure, const Outcome& outcome);
 
   bool holds(const Outcome& outcome) const;

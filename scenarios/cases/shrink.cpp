@@ -102,7 +102,6 @@ class Shrinking {
   }
 
  private:
-  /// The last entry of true_inputs() is not tried, because it replaces all inputs.
   void find_cure(const Run& run) {
     const std::span<const TrueInput> single = true_inputs().first(true_inputs().size() - 1);
     const auto cure = std::find_if(single.begin(), single.end(),
@@ -112,7 +111,6 @@ class Shrinking {
     shrunk_.cure = cure->name;
   }
 
-  /// Explains how the cause of a simpler run's failure differs from the original cause; empty if both causes are equal.
   std::string other_cause(const Run& run) const {
     if (shrunk_.controlled && options_.failure.holds(run.outcome(*options_.control, options_.timeout_s)))
       return fmt::format("the control method also fails: {}", options_.control->info.name);
@@ -122,7 +120,6 @@ class Shrinking {
     return "";
   }
 
-  /// Returns nothing if the trial budget is used up.
   std::optional<bool> try_out(const Scenario& simpler, const std::string& what, Outcome* outcome_out = nullptr) {
     if (shrunk_.runs >= options_.budget) return std::nullopt;
     bool fails = false;
@@ -160,7 +157,7 @@ class Shrinking {
       return try_out(shorter, text_of(length_s) + " s");
     };
     const double now_s = shrunk_.scenario.duration_s.numbers.front();
-    // The bisection is repeated, because a shorter duration may fail after details of the run were removed.
+    // The bisection of the duration is repeated, because a shorter run may fail after details of the run were removed.
     return least_failing_number(now_s, 0.0, kLengthResolution * drawn_s, false, fails).complete;
   }
 

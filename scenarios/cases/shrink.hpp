@@ -19,8 +19,8 @@ struct ShrinkTrial {
 
 struct ShrinkOptions {
   Failure failure;
-  /// The control is a method of the same kind, which must succeed on every accepted run; the control excludes scenarios
-  /// that no method can solve.
+  /// The control is a method of the same kind, which must succeed on every simulated run that the search accepts; the
+  /// control excludes scenarios that no method can solve.
   MethodPointer control;
   int budget = 60;           ///< number of simulated runs, at least 1
   double timeout_s = 300.0;  ///< time limit of one method run

@@ -52,9 +52,7 @@ struct CertifyOptions {
   std::function<void(const CertificateRow&, double elapsed_s)> on_row;  ///< called before each measurement
 };
 
-/// All measurements take about a minute on one core. If a measurement cannot be made, its entry contains the reason and
-/// the value NaN, and does not pass. Throws BadInput for missing models or an unknown name, and sim::InvalidSituation
-/// if a situation cannot be simulated.
+/// If a measurement cannot be made, its entry contains the reason and the value NaN, and does not pass.
 Certificate measure_certificate(const CertificateInput& input, const CertifyOptions& options);
 
 }  // namespace tumble::scenarios

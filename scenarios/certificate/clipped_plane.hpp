@@ -11,7 +11,6 @@
 /// The file sim/imu/elements.hpp defines the matrix M and the offset o; r is the saturation limit.
 namespace tumble::scenarios {
 
-/// Returns a motion that saturates the three gyro elements, and the three accelerometer elements, one after another.
 sim::Truth beyond_every_rail(double gyro_rail_rad_s, double accel_rail_m_s2);
 
 struct SensedTriad {
@@ -31,9 +30,8 @@ struct ClippedPlane {
 };
 ClippedPlane plane_of(const Eigen::Matrix3d& axes, const Eigen::Vector3d& offset, double rail, int j);
 
-/// Fits the saturation plane by least squares to the samples during which only sensing element j was saturated.
-/// `samples` receives the number of samples at the positive or the negative limit, whichever is smaller. The plane is
-/// NaN if `samples` is below kFewestClipped.
+/// Fits the saturation plane by least squares to the samples during which only sensing element j was saturated. The
+/// plane is NaN if `samples` is below kFewestClipped.
 inline constexpr int kFewestClipped = 10;
 ClippedPlane fit_clipped_plane(const SensedTriad& triad, int j, int& samples);
 

@@ -34,7 +34,6 @@ sim::Situation moving_lidar(const CertificateInput& input, const std::string& ro
   return situation;
 }
 
-/// Returns -1 if the surface is not a plane of the room.
 double off_plane_m(const std::string& surface, const Eigen::Vector3d& p_W_m) {
   if (surface == "floor") return std::abs(p_W_m.z());
   if (surface == "wall_front") return std::abs(p_W_m.x() - kRoomHalf_m);
@@ -49,7 +48,6 @@ struct RangeErrors {
   std::int64_t points = 0;
 };
 
-/// The true pose at each firing transforms the lidar point to world axes.
 RangeErrors against_planes(const sim::Recording& recording, double added_range_m) {
   const sim::LidarRecord& record = recording.sensors.lidars.at(0);
   const sim::LidarTruth& truth = recording.truth.lidars.at(0);

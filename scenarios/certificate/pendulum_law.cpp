@@ -27,8 +27,6 @@ class Chain {
       const double below = 2.0 - i;  // number of bars below
       weight_nm_[i] = kMass_kg * gravity_m_s2 * segment_m * (0.5 + below);
       for (int j = 0; j <= i; ++j) {
-        // Off-diagonal entries couple the end of the upper bar to the middle of the lower bar; a diagonal entry is the
-        // inertia of a bar about its end, with the lower bars as point masses at its other end.
         coupling_(i, j) = kMass_kg * segment_m * segment_m * (i == j ? 1.0 / 3.0 + below : 0.5 + below);
         coupling_(j, i) = coupling_(i, j);
       }
@@ -55,7 +53,6 @@ class Chain {
     return mass(angle).ldlt().solve(moment);
   }
 
-  /// Returns the specific force at a point of the lowest bar, in world axes [m/s^2].
   Vector3d specific_force_W(const Vector3d& angle, const Vector3d& rate, const Vector3d& p_B_m,
                             double gravity_m_s2) const {
     const Vector3d alpha = acceleration(angle, rate);
@@ -189,8 +186,6 @@ struct Joints {
   Vector3d angle, rate;
 };
 
-/// Returns the mean specific force over a simulation step by Simpson's rule, in axes midway between the attitudes at
-/// both ends of the step.
 Vector3d mean_force(const Chain& chain, const Joints& before, const Joints& after, double step_s,
                     const Vector3d& lever_m, double gravity_m_s2) {
   const Joints middle{0.5 * (before.angle + after.angle) + 0.125 * step_s * (before.rate - after.rate),
@@ -207,7 +202,6 @@ CertificateEntry force(const CertificateInput& input, const PendulumSetup& setup
   const double gravity_m_s2 = pendulum.trial().gravity_m_s2();
   const Chain chain(kSegment_m, gravity_m_s2);
 
-  // The closed form uses the joint angles, while the simulated reading uses the pose of the body.
   pendulum.set(kWildAngle, kWildRate);
   std::vector<Vector3d> expected;
   Joints before{pendulum.angle(), pendulum.rate()};
@@ -237,8 +231,8 @@ CertificateEntry force(const CertificateInput& input, const PendulumSetup& setup
   for (std::size_t k = 0; k < expected.size(); ++k) {
     largest_m_s2 = larger(largest_m_s2, (record.accel_m_s2.at(k) - expected[k]).norm());
   }
-  // The measured error is 1e-6 m/s^2: at the bars' turning points, Simpson's rule and RK4 have errors of a few parts in
-  // 1e8.
+  // The measured error of the specific force is 1e-6 m/s^2: at the bars' turning points, Simpson's rule and RK4 have
+  // errors of a few parts in 1e8.
   return {"pendulum_specific_force",
           "pendulum",
           "an ideal accelerometer on the lowest segment agrees with Lagrange's equations: maximum difference",

@@ -11,8 +11,7 @@
 // without cross-axis sensitivity. The accepted interval is three standard errors, because only one recording exists.
 //
 // Pendulum, z axis: Test02a (37 readings) and Test07 trial 3 (10 readings) have residuals of 0.0003 rad/s, or 0.07 and
-// 0.09 rad/s without cross-axis sensitivity. Fits with repeated readings and partly saturated windows have residuals of
-// 0.02 to 0.07 rad/s and are not used.
+// 0.09 rad/s without cross-axis sensitivity.
 #include <algorithm>
 #include <array>
 #include <cmath>

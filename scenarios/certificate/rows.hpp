@@ -8,9 +8,8 @@
 #include "scenarios/certificate/certificate.hpp"
 #include "sim/trial/trial.hpp"
 
-/// The structures contain the settings of the measurements that check the simulation; the defaults are those of the
-/// certificate. Tests change one setting and check that the measurement then fails. Members named `stated_*` replace a
-/// value that the closed form assumes.
+/// Tests change one setting and check that the measurement then fails. Members named `stated_*` replace a value that
+/// the closed form assumes.
 namespace tumble::scenarios {
 
 /// The free-flight measurement throws the rig with a rotation near its unstable axis; energy and angular momentum must
@@ -22,7 +21,6 @@ struct FreeFlightSetup {
 };
 std::vector<CertificateEntry> certify_free_flight(const CertificateInput& input, const FreeFlightSetup& setup = {});
 
-/// The specific force of an ideal IMU at the centre of mass must be zero in free flight.
 struct FlightForceSetup {
   double duration_s = 2.0;
   double rate_rad_s = 18.0;
@@ -64,14 +62,11 @@ struct ImpactSetup {
 std::vector<CertificateEntry> certify_impact(const CertificateInput& input, const ImpactSetup& setup = {});
 
 /// The range measurement compares the points of a moving lidar without range error with the walls of an empty room.
-/// `added_range_m` is an error that is added to every range.
 struct LidarRangeSetup {
   double added_range_m = 0.0;
 };
 std::vector<CertificateEntry> certify_lidar_range(const CertificateInput& input, const LidarRangeSetup& setup = {});
 
-/// The ray measurement compares the two copies of each world by ray casting: that of the lidar simulation and that of
-/// the physics engine.
 struct LidarRaysSetup {
   int rays = 2000;              ///< rays per world
   double mirror_shift_m = 0.0;  ///< error: the rays in the lidar simulation start this much higher
@@ -89,7 +84,7 @@ struct ImuNoiseSetup {
 std::vector<CertificateEntry> certify_imu_noise(const CertificateInput& input, const ImuNoiseSetup& setup = {});
 
 /// The plane measurement fits planes to the clipped readings of IMUs with tilted sensing elements, and compares them
-/// with the simulated planes. `assumed_tilt` is added to one entry of the misalignment matrix in the closed form.
+/// with the simulated planes.
 struct TiltedRailSetup {
   double misalignment = 0.02;  ///< standard deviation; scales use half of it, offsets use 0.5 % of the limit
   double assumed_tilt = 0.0;
@@ -97,8 +92,8 @@ struct TiltedRailSetup {
 };
 std::vector<CertificateEntry> certify_tilted_rail(const CertificateInput& input, const TiltedRailSetup& setup = {});
 
-/// The real-gyro measurement compares the saturation planes of two real gyros (a hand-held device, a pendulum) with the
-/// simulation, first with the elements of the real gyro, then with random elements from the data sheets.
+/// The measurement compares the saturation planes of two real gyros (a hand-held device, a pendulum) with those of
+/// simulated gyros.
 struct RealRailsSetup {
   double tilt_factor = 1.0;         ///< factor on the slopes of the measured plane; 0: aligned elements
   double added_tilt = 0.0;          ///< added to each slope

@@ -9,13 +9,10 @@
 
 namespace tumble::scenarios {
 
-/// `robot` is "rig", "sphere" or "pendulum"; the room has floor and walls, and the situation has no sensors.
 sim::Situation bare_room(const std::string& robot);
 
 sim::BuiltSituation build(const CertificateInput& input, const sim::Situation& situation);
 
-/// Returns a body state high enough above the floor for several seconds of free flight, with a rotation near the rig's
-/// axis of intermediate inertia.
 sim::BodyState thrown(double rate_rad_s);
 
 sim::Truth fly(sim::Trial& trial, double duration_s);

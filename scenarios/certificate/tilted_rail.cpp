@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Each sensing element saturates along its own axis, so its saturated readings form one plane per sign
-// (clipped_plane.hpp). The measurement compares the plane that fits the readings with the simulated plane.
+// (clipped_plane.hpp).
 #include <algorithm>
 #include <cmath>
 
@@ -72,7 +72,7 @@ std::vector<CertificateEntry> certify_tilted_rail(const CertificateInput& input,
     const bool enough = errors.samples >= kFewestClipped && errors.samples < kMany;
     const std::string note = enough ? "" : "an element has fewer than 10 fully clipped samples of one sign";
     const double none = std::nan("");
-    // The closed form is exact: the measured error of 1e-15 is rounding.
+    // The closed form of the saturation plane is exact: the measured error of 1e-15 is rounding.
     entries.push_back(
         {"tilted_rail_slope", subject,
          "clipped readings of simulated devices are on the saturation planes of their elements: maximum slope error",

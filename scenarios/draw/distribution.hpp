@@ -23,12 +23,10 @@ const char* to_string(Distribution::Shape shape);
 /// contain less than 1 % of the probability.
 std::string find_problem(const Distribution& distribution);
 
-/// For a normal distribution without limits, returns only the mean.
 std::vector<double> support_points(const Distribution& distribution);
 
 /// Draws the value of `place` from the random stream sim::Stream(seed, "draw." + place). A truncated normal
-/// distribution is sampled again until the value is within its limits. Throws BadInput if find_problem returns a
-/// problem.
+/// distribution is sampled again until the value is within its limits.
 double draw_number(const Distribution& distribution, std::uint64_t seed, std::string_view place);
 
 }  // namespace tumble::scenarios

@@ -12,7 +12,6 @@ namespace tumble::scenarios {
 /// scenario files change later.
 Scenario fixed_as(Scenario scenario, const sim::Situation& situation);
 
-/// Throws BadInput if a parameter is random.
 std::string to_yaml(const Scenario& scenario);
 
 }  // namespace tumble::scenarios

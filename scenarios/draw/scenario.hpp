@@ -15,7 +15,6 @@
 
 namespace tumble::scenarios {
 
-/// Each parameter of the situation is constant or random.
 struct Scenario {
   struct Part {
     std::string type;
@@ -39,8 +38,7 @@ struct Scenario {
 
 std::vector<std::string> scenario_names(const DataRoot& data);
 
-/// Returns the names of the files in scenarios/regressions, sorted. Functions that accept a scenario name also accept
-/// the name of a named case.
+/// Functions that accept a scenario name also accept the name of a named case.
 std::vector<std::string> case_names(const DataRoot& data);
 
 /// Loads the scenario scenarios/catalogue/NAME.yaml, the named case scenarios/regressions/NAME.yaml, or the file `name`

@@ -17,8 +17,6 @@ const sim::Parameter& duration_parameter();
 
 DataSheet parse_data_sheet(const std::string& text, const std::string& file, const Registry& registry);
 
-/// Draws every parameter that the scenario and the data sheets contain, without defaults; `sheets` contains one data
-/// sheet per sensor.
 sim::Situation draw_given(const Scenario& scenario, std::span<const DataSheet> sheets, std::uint64_t seed);
 
 }  // namespace tumble::scenarios

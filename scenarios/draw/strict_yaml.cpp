@@ -151,7 +151,6 @@ double YamlNode::number_or_infinity() const {
 double YamlNode::parse_number(bool infinity_allowed) const {
   if (!node_.IsScalar()) fail(fmt::format("the value must be a number; it is {}", kind_of(node_)));
   const std::string& written = node_.Scalar();
-  // The YAML parser gives the tag "!" to quoted text.
   if (node_.Tag() == "!") fail(fmt::format("the value must be a number; it is the text \"{}\"", written));
   if (infinity_allowed && written == ".inf") return std::numeric_limits<double>::infinity();
   if (infinity_allowed && written == "-.inf") return -std::numeric_limits<double>::infinity();
@@ -191,7 +190,6 @@ std::vector<std::pair<std::string, YamlNode>> YamlNode::entries() const {
     const std::string name = key.text();
     if (!seen.insert(name).second) key.fail(fmt::format("key '{}' is given twice", name));
     YamlNode value(entry.second, file_, join(place_, name));
-    // Blocks, aliases and empty values have no usable line number, so the line of their key is used.
     value.line_ = key.line_;
     out.emplace_back(name, std::move(value));
   }

@@ -16,7 +16,7 @@ namespace tumble::scenarios {
 std::string read_text_file(const std::filesystem::path& path);
 
 /// YamlNode is a YAML node with its location in the file; each error is a BadInput with the message "FILE:LINE: PLACE:
-/// what". YamlNode rejects some valid YAML: repeated keys, keys that are not text, and a second document.
+/// what".
 class YamlNode {
  public:
   static YamlNode parse(const std::string& text, const std::string& file);
@@ -38,7 +38,6 @@ class YamlNode {
   std::uint64_t unsigned_integer() const;
   std::vector<YamlNode> items() const;
   std::vector<std::pair<std::string, YamlNode>> entries() const;
-  /// The YAML map must contain all keys in `required` and may contain the keys in `optional`.
   std::map<std::string, YamlNode> fields(std::span<const std::string> required,
                                          std::span<const std::string> optional = {}) const;
 

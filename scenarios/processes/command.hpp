@@ -27,8 +27,7 @@ struct CommandEnd {
   double cpu_s = 0.0;       ///< CPU time of the command without its children
 };
 
-/// Runs the command in a separate process group, which is killed at the time limit and when this process ends. Throws
-/// std::system_error if the process cannot be started.
+/// The command runs in a separate process group, which is killed at the time limit and when this process ends.
 CommandEnd run_command(const Command& command);
 
 }  // namespace tumble::scenarios

@@ -23,10 +23,8 @@ class Process {
     bool killed() const;
   };
 
-  /// Forks this process and runs `work(write_end)` in the child; an exception in `work` ends the child with exit status
-  /// 1. Throws std::system_error if no process can be started.
+  /// Forks this process and runs `work(write_end)` in the child. Throws std::system_error if no process can be started.
   explicit Process(const std::function<void(int)>& work, bool own_group);
-  /// As above, but the child reads the text of `write_text` from `read_end`.
   explicit Process(const std::function<void(int, int)>& work, bool own_group);
   ~Process();
   Process(Process&& other) noexcept;
@@ -35,8 +33,7 @@ class Process {
   int read_end() const { return fd_; }
   bool write_text(const std::string& text);
   bool read_available(std::string& buffer);
-  /// Returns false if the child still runs at the deadline, a time of now_s(). After true, wait() returns the exit
-  /// status.
+  /// Returns false if the child still runs at the deadline, a time of now_s().
   bool ends_before(double deadline_s);
   void kill();
   End wait();
@@ -56,7 +53,6 @@ inline constexpr double kMib = 1024.0 * 1024.0;  ///< bytes in one MiB
 /// with std::bad_alloc, and new processes cannot be started.
 void limit_memory(double mib);
 
-/// Returns false if the reader has closed the pipe.
 bool write_all(int fd, const std::string& text);
 
 double now_s();

@@ -8,8 +8,7 @@
 namespace tumble::scenarios {
 
 /// SharedMemory is anonymous shared memory, which a program inherits as a file descriptor and which is freed when its
-/// last user ends. SharedMemory works on Linux only. The constructor throws std::system_error if there is not enough
-/// memory.
+/// last user ends. SharedMemory works on Linux only.
 class SharedMemory {
  public:
   explicit SharedMemory(const char* name);

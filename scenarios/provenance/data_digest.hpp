@@ -7,7 +7,6 @@
 
 namespace tumble::scenarios {
 
-/// The digest covers all files that determine simulated runs: models, scenarios and named cases.
 std::string data_digest(const DataRoot& data);
 
 }  // namespace tumble::scenarios

@@ -30,7 +30,6 @@ std::vector<AttitudeError> attitude_errors(const ScoredEstimate& scored) {
       q_align = Eigen::AngleAxisd(heading, Eigen::Vector3d::UnitZ());
     }
     const Eigen::Quaterniond e = q_align * attitude.q_WA * q_true.conjugate();
-    // The tilt error is 2 acos(sqrt(w^2 + z^2)) and the heading error is 2 atan|z / w|, here without cancellation.
     errors.push_back({2.0 * std::atan2(std::hypot(e.x(), e.y()), std::hypot(e.w(), e.z())),
                       2.0 * std::atan2(std::abs(e.z()), std::abs(e.w())), rotation_angle_rad(e),
                       truth.at_rest(attitude.time_ns)});

@@ -11,7 +11,6 @@
 #include "scenarios/scoring/scored_estimate.hpp"
 #include "scenarios/scoring/truth_track.hpp"
 
-/// The results are cached for the estimate. All functions throw the exceptions of TruthTrack and ClippingTruth.
 namespace tumble::scenarios {
 
 const TruthTrack& truth_track(const ScoredEstimate& scored);
@@ -25,7 +24,6 @@ struct PairedRate {
   std::optional<ClippingTruth::Sample> truth;  ///< empty if unknown
   std::size_t sample = 0;                      ///< index of the primary IMU's sample at this time, if known
 
-  /// Bit j marks axis j; 0 if the truth is unknown.
   std::uint8_t clipped_axes() const { return truth ? truth->clipped_axes : std::uint8_t{0}; }
   /// Returns the unclipped axes whose reading a clipped sensing element disturbs (bit j: axis j), or 0 if the truth is
   /// unknown.

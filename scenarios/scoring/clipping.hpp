@@ -15,9 +15,9 @@ inline constexpr std::uint8_t kGyroClipFlags = 0b000111;
 /// ClippingTruth contains the true rates of the primary gyro, and the clipped axes of each sample.
 ///
 /// Axis j of a sample is clipped if its sensing element is saturated. The saturation deficit of element j is component
-/// j of d = M (unclipped reading - delivered reading), with the misalignment matrix M. The unclipped reading has all
-/// errors of the delivered reading except saturation. An element is saturated if its deficit exceeds one standard
-/// deviation of the gyro's white noise per sample, sqrt(density^2 / period), and 1e-6 rad/s.
+/// j of d = M (unclipped reading - delivered reading), with the misalignment matrix M. An element is saturated if its
+/// deficit exceeds one standard deviation of the gyro's white noise per sample, sqrt(density^2 / period), and 1e-6
+/// rad/s.
 ///
 /// If the elements are tilted (sim/imu/elements.hpp), a saturated element also changes the readings of the other axes.
 /// An unclipped axis has a cross-axis error if such a change exceeds the tolerance.
@@ -35,7 +35,7 @@ class ClippingTruth {
   ClippingTruth(const sim::Sensors& sensors, const sim::Truth& truth);
 
   /// Returns the interpolated true rate, and the clipped axes of the sample whose averaging window contains `time_ns`.
-  /// Returns nothing outside the recording, and where the rate is unknown. The cost is O(log N).
+  /// Returns nothing outside the recording, and where the rate is unknown.
   std::optional<Sample> at(std::int64_t time_ns) const;
 
   std::optional<std::size_t> index_at(std::int64_t time_ns) const;
@@ -44,7 +44,6 @@ class ClippingTruth {
   bool is_reference() const { return !reference_axes_.empty(); }
   bool known(std::size_t index) const { return !is_reference() || truth_->rate_rad_s[index].allFinite(); }
   std::size_t known_samples() const;
-  /// Returns 0 if the true rate is unknown.
   std::uint8_t clipped_axes(std::size_t index) const;
   std::uint8_t cross_axes(std::size_t index) const;
   /// Returns the largest difference, over the axes, between the reading and the unclipped reading (or the reference

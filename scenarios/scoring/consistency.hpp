@@ -9,11 +9,10 @@ namespace tumble::scenarios {
 /// infinity.
 double squared_over(double error, double variance);
 
-/// Computes from the normalised errors `squares` the fraction of errors within three standard deviations; NaN counts as
-/// outside.
+/// NaN counts as an error outside three standard deviations.
 bool share_within_3sigma(const std::vector<double>& squares, double& value);
 
-/// Computes the median of the normalised errors `squares`, divided by the median for a normal variable. In a mean, the
+/// Computes the median of the normalised squared errors, divided by the median for a normal variable; in a mean, the
 /// axis with the smallest variance would dominate.
 bool normalised_median(const std::vector<double>& squares, double& value);
 

@@ -9,7 +9,6 @@ namespace tumble::scenarios {
 
 const MetricInfo& estimate_cost();
 
-/// Computing costs differ between identical runs.
 bool is_cost(std::string_view name);
 
 }  // namespace tumble::scenarios

@@ -14,13 +14,12 @@ namespace tumble::scenarios {
 
 namespace {
 
-// Returns the latest sweep end that the scores use. Some methods drop a sweep that the primary IMU covers partly, and
-// others shorten it.
+// Some methods drop a sweep that the primary IMU covers partly, and others shorten it, so the scores end earlier.
 std::int64_t last_sweep_before_ns(const sim::Sensors& sensors) {
   constexpr std::int64_t kAll = std::numeric_limits<std::int64_t>::max();
   if (sensors.lidars.empty() || sensors.imus.empty() || sensors.imus.front().time_ns.empty()) return kAll;
   const sim::LidarRecord& lidar = sensors.lidars.front();
-  // If the points have no individual times, the sweep has zero length.
+  // If the lidar points have no individual times, the sweep has zero length.
   const std::int64_t length_ns = lidar.point_times == sim::PointTimes::measured ? lidar.sweep_period_ns : 0;
   const std::int64_t covered_ns = sensors.imus.front().time_ns.back() - length_ns;
   const auto after = std::upper_bound(lidar.sweep_start_ns.begin(), lidar.sweep_start_ns.end(), covered_ns);
@@ -28,7 +27,7 @@ std::int64_t last_sweep_before_ns(const sim::Sensors& sensors) {
   return *(after - 1) + length_ns + lidar.sweep_period_ns / 4;
 }
 
-// Scores of all methods end at the last sweep that the IMU covers and for which the truth is known.
+// The scores of all methods end at the last sweep that the IMU covers and for which the truth is known.
 const LidarInertialOdometry::SweepReport* last_covered(const ScoredEstimate& scored) {
   const Estimate& estimate = scored.estimate();
   const TruthTrack& truth = truth_track(scored);

@@ -107,7 +107,6 @@ class BodyAt {
   const std::vector<BagTrack::Pose>& poses_;
 };
 
-/// The list `hit_W_m` contains the true hit of each lidar point, or is empty.
 BagCloud cloud_of(const BagTrack& track, const sim::LidarRecord& sweep, const std::vector<Eigen::Vector3f>& hit_W_m) {
   const BodyAt body_at(track.poses);
   BagCloud cloud;

@@ -22,9 +22,7 @@ namespace tumble::scenarios {
 BagTrack in_bag(const std::string& name, const Estimate& estimate, const sim::Sensors& sensors,
                 const std::vector<PointStore>* points, const StoredTruth* truth);
 
-/// Reads estimates (folders or TUM files) and adds each as a track to `writing`, with the points and the truth of
-/// `writing`. The poses of a TUM file belong to the first IMU, or to the body if there is no IMU. Throws BadInput with
-/// the path for a read error, for an estimate from other sensor data, and for the errors of in_bag.
+/// The poses of a TUM file belong to the first IMU, or to the body if there is no IMU.
 void add_estimates(std::span<const std::filesystem::path> paths, const sim::Sensors& sensors, BagWriting& writing);
 
 }  // namespace tumble::scenarios

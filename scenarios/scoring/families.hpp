@@ -24,7 +24,6 @@ std::vector<MetricInfo> cost_quantities();
 std::vector<MetricInfo> motion_quantities();
 std::vector<MetricInfo> binned_rate_quantities();
 
-/// Probability that a normal variable is within three standard deviations
 inline constexpr double kNormal3Sigma = 0.9973;
 
 double rms(std::span<const double> values);

@@ -17,11 +17,11 @@ namespace {
 
 constexpr double kWrongDeviations = 5.0;
 // Independent of its covariance, an estimate is wrong if more than half of the samples during motion exceed an error
-// limit. The limits are a rate error of kWrongRateShare times the true rate, and a tilt error of kWrongTilt_rad.
+// limit.
 constexpr double kWrongRateShare = 0.2, kWrongTilt_rad = 0.5;
 constexpr double kMoves_rad_s = 1.0;  // samples with a smaller true rate do not count
 
-/// Errors during motion: `deviations` in standard deviations, `gross` as relative rate error or tilt error.
+/// `deviations` are errors in standard deviations; `gross` are relative rate errors or tilt errors [rad].
 struct Errors {
   std::vector<double> deviations, gross;
 };
@@ -30,7 +30,6 @@ double deviations_of(const Eigen::VectorXd& error, const Eigen::MatrixXd& covari
   return std::sqrt(error.dot(covariance.ldlt().solve(error)));
 }
 
-/// NaN counts as the largest value.
 bool quantile_exceeds(double limit, std::vector<double> values, double share) {
   for (double& value : values) value = std::isnan(value) ? HUGE_VAL : value;
   return quantile(values, share) > limit;

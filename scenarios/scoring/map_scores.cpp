@@ -22,7 +22,7 @@ constexpr double kSeenRangeM = 100.0;    // surface points farther from the star
 static_assert(kErrorLimitM > kToleranceM && kErrorLimitM > kFineToleranceM,
               "an error at the limit must exceed both tolerances");
 
-// The map's position and yaw are aligned with the truth at the start.
+// The map's position and yaw are aligned with the true pose at the start.
 std::vector<Eigen::Vector3f> map_in_world(const ScoredEstimate& scored) {
   const Estimate& estimate = scored.estimate();
   const Eigen::Isometry3d to_world = paired_track(scored).alignment.transform();
@@ -34,7 +34,6 @@ std::vector<Eigen::Vector3f> map_in_world(const ScoredEstimate& scored) {
   return points;
 }
 
-// Hits on the robot's cage have no surface id and are omitted.
 std::vector<Eigen::Vector3f> seen_surface(const sim::Truth& truth) {
   std::vector<Eigen::Vector3f> hits;
   const sim::LidarTruth& lidar = truth.lidars.front();

@@ -14,8 +14,7 @@ namespace tumble::scenarios {
 /// of the reference).
 enum class Sense { lower, higher, two_sided, none };
 
-/// A `share` is in [0, 1]. A `verdict` is 0, or 1 for a failure. A `time_offset` is signed, stored in seconds and
-/// displayed in milliseconds.
+/// A `verdict` is 0, or 1 for a failure. A `time_offset` is signed, stored in seconds and displayed in milliseconds.
 enum class Unit { number, share, verdict, rad, rad_s, m, m_s, m_s2, s, time_offset, mib };
 const char* symbol(Unit unit);
 
@@ -41,7 +40,6 @@ struct MetricInfo {
 /// For an unknown name, for example from a database of another version, returns a description with Sense::none.
 const MetricInfo& metric_info(const std::string& name);
 
-/// A metric is displayed as its SI value times `factor`, in `unit`.
 struct MetricStyle {
   std::string unit;
   double factor = 1.0;
@@ -50,8 +48,7 @@ MetricStyle style_of(Unit unit);
 
 std::string sense_text(const MetricInfo& metric);
 
-/// False for unranked metrics and NaN. For a metric with a target, the closer value is better; closeness is a ratio if
-/// both values are positive.
+/// For a metric with a target, the closer value is better; closeness is a ratio if both values are positive.
 bool is_better(const MetricInfo& metric, double a, double b);
 
 /// Returns the badness of a value: the value if lower is better, the negative value if higher is better, or the

@@ -11,8 +11,7 @@
 
 namespace tumble::scenarios {
 
-/// Nearness tests exactly whether a point of a set is within a fixed distance of a query point. The points are in cells
-/// as wide as the distance, so each query checks 27 cells.
+/// The points are in cells as wide as the distance, so each query checks 27 cells.
 class Nearness {
  public:
   Nearness(std::span<const Eigen::Vector3f> points_m, float distance_m);

@@ -10,7 +10,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-// Shortest path for which a relative error is computed
+// Shortest path for which a relative position error is computed
 constexpr double kPathMinM = 0.05;
 constexpr double kUnmovedM = 0.02;  // errors before the first motion of this size are not scored
 

@@ -28,8 +28,6 @@ struct ReferenceRail {
 ///
 /// The plane is the least-squares fit to the confirmed samples, with a prior of 0 +- 0.03 for the cross-axis
 /// sensitivities and a residual deviation of 0.02 rad/s. A second fit uses only samples within 2 % of the first plane.
-///
-/// `reading` and `reference` are parallel, in IMU axes [rad/s].
 std::array<ReferenceRail, 6> reference_rails(std::span<const Eigen::Vector3d> reading,
                                              std::span<const Eigen::Vector3d> reference);
 

@@ -19,7 +19,6 @@ double error_norm(const Eigen::Vector3d& estimate, const Eigen::Vector3d& refere
   return (estimate - reference).norm();
 }
 
-/// The error of the rate's norm does not depend on the axes.
 double error_speed(const Eigen::Vector3d& estimate, const Eigen::Vector3d& reference) {
   return std::abs(estimate.norm() - reference.norm());
 }
@@ -31,7 +30,6 @@ double error_axis(const Eigen::Vector3d& estimate, const Eigen::Vector3d& refere
 
 using ErrorOf = double (*)(const Eigen::Vector3d&, const Eigen::Vector3d&);
 
-/// The metric of a single axis uses the samples in which this axis is clipped.
 template <ErrorOf kError, int kPercent, unsigned kAxes>
 bool clipped_error(const ScoredEstimate& scored, double& value) {
   if (!clipping_truth(scored).is_reference()) return false;
@@ -76,7 +74,7 @@ Eigen::Vector3d reference_variance(const ScoredEstimate& scored, const ClippingT
   return variance;
 }
 
-/// The variance of the reference is added to the reported covariance.
+/// The variance of the reference instrument is added to the reported covariance.
 bool reference_coverage(const ScoredEstimate& scored, double& value) {
   const ClippingTruth& truth = clipping_truth(scored);
   if (!truth.is_reference()) return false;
@@ -137,7 +135,7 @@ void add_pair(const std::string& name, const std::string& doc, std::vector<Metri
                  clipped_error<kError, 90, kAxes>});
 }
 
-/// Metrics that describe the reference and not the method are not ranked.
+/// Metrics that describe the reference instrument and not the method are not ranked.
 template <ErrorOf kError>
 void add_reference(const std::string& name, const std::string& doc, std::vector<Metric>& all) {
   all.push_back({{"rate_" + name + "_median_rad_s", Unit::rad_s, "median " + doc, Sense::none},

@@ -81,7 +81,6 @@ bool attitudes_hold(const ScoredEstimate& scored) {
   return reaches(scored.estimate().attitudes, sensors_start_ns(scored.sensors(), Kind::attitude), truth.last_ns());
 }
 
-/// No rolling or tumbling robot travels this far from the origin.
 constexpr double kFarthest_m = 1e7;
 
 bool poses_hold(const ScoredEstimate& scored) {

@@ -18,7 +18,6 @@ struct Score {
 };
 
 const Score* find_score(std::span<const Score> scores, const std::string& metric);
-/// NaN if the metric is missing
 double value_of(std::span<const Score> scores, const std::string& metric);
 
 struct Metric {
@@ -30,7 +29,6 @@ struct Metric {
 
 std::span<const Metric> metrics();
 
-/// A common ScoredEstimate for `score` and `verdict` saves time.
 std::vector<Score> score(Kind kind, const ScoredEstimate& scored);
 std::vector<Score> score(Kind kind, const Estimate& estimate, const ScoringInput& input);
 

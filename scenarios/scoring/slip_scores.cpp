@@ -170,7 +170,6 @@ struct Passed {
   bool lost = false, flagged = false;
 };
 
-/// The list is empty if the estimate has no covariance.
 std::vector<Passed> passed_events(const ScoredEstimate& scored) {
   const sim::Truth& truth = scored.truth();
   std::vector<Passed> out;

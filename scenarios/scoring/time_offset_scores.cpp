@@ -19,7 +19,6 @@ class OffsetFit {
     square_ += change_per_s.squaredNorm();
   }
 
-  /// Returns false if the truth did not change.
   bool offset_s(double& value) const {
     if (!(square_ > std::numeric_limits<double>::min())) return false;
     value = product_ / square_;

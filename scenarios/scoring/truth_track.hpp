@@ -25,20 +25,15 @@ class TruthTrack {
   TruthTrack(const sim::Truth& truth, Frame frame);
 
   std::int64_t last_ns() const { return last_ns_; }
-  /// A reference may have gaps, in which the pose is unknown.
   bool covers(std::int64_t time_ns) const;
-  /// The position may be unknown.
   bool covers_attitude(std::int64_t time_ns) const;
 
-  /// Returns the pose of the frame in W and the velocity of its origin; NaN where the position is unknown. The attitude
-  /// must be known at `time_ns`.
+  /// Returns the pose of the frame in W and the velocity of its origin; NaN where the position is unknown.
   PoseState pose(std::int64_t time_ns) const;
-  /// Returns the angular rate of the frame, in its axes [rad/s]; NaN where the rate is unknown. The attitude must be
-  /// known at `time_ns`.
+  /// Returns the angular rate of the frame, in its axes [rad/s]; NaN where the rate is unknown.
   Eigen::Vector3d rate_rad_s(std::int64_t time_ns) const;
   /// Returns the path length of the frame's origin since time 0 [m]; the pose must be known at `time_ns`.
   double path_m(std::int64_t time_ns) const;
-  /// The pose must be known at `time_ns`.
   bool at_rest(std::int64_t time_ns) const;
 
  private:
@@ -78,17 +73,16 @@ struct Alignment {
   PoseState apply(const PoseState& pose) const;
 };
 
-/// Returns the twist angle about z, in (-pi, pi].
+/// Returns the twist angle of a rotation about z, in (-pi, pi].
 double twist_about_z_rad(const Eigen::Quaterniond& q);
 
-/// Returns a value in [0, pi] that is accurate for small angles and near pi.
+/// Returns the angle of a rotation, in [0, pi], accurately for small angles and near pi.
 double rotation_angle_rad(const Eigen::Quaterniond& q);
 
 /// Returns the horizontal part of the attitude error phi with q_true = Exp(phi) q, after alignment of the heading, in
 /// the estimate's world.
 Eigen::Vector2d tilt_error_rad(const Eigen::Quaterniond& q_estimate, const Eigen::Quaterniond& q_true);
 
-/// The poses of an estimate are aligned with the true poses at the first pose with a known truth.
 struct PairedTrack {
   Alignment alignment;
   std::vector<PairedPose> poses;

@@ -22,7 +22,6 @@ namespace {
 
 constexpr std::size_t kValuesMin = 6;  // smallest number of values for a 95 % interval of the median: 2 / 2^5 > 5 %
 
-// Double precision suffices for ranks, and is three times as fast as long double.
 using Quick = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
 
 double middle_of(double below, double above) {
@@ -58,8 +57,6 @@ double acceleration(std::span<const double> sorted) {
 MedianBootstrap::MedianBootstrap(std::size_t size, std::size_t resamples) : size_(size) {
   if (size == 0) throw BadInput("bootstrap: there are no values; at least one value is needed");
   if (resamples < 100) throw BadInput(fmt::format("bootstrap: resamples is {}; it must be at least 100", resamples));
-  // Equation (S1) of statistics.md gives the lower middle value of n uniform random numbers, and then the next larger
-  // value.
   sim::Stream stream(size, "statistics.bootstrap");
   const auto n = static_cast<double>(size);
   const std::size_t rank = (size + 1) / 2;
@@ -95,7 +92,6 @@ Interval MedianBootstrap::interval(std::span<const double> values, double risk) 
   const auto [first, last] = std::equal_range(medians.begin(), medians.end(), median);
   const auto count = static_cast<double>(medians.size());
   const double below = static_cast<double>(first - medians.begin()) + 0.5 * static_cast<double>(last - first);
-  // Equations (S2) and (S4) of statistics.md give the bias correction and the ends of the interval.
   const boost::math::normal normal;
   const double z0 = quantile(normal, std::clamp(below / count, 0.5 / count, 1.0 - 0.5 / count));
   const double a = acceleration(sorted);

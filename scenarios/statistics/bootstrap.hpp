@@ -12,8 +12,7 @@ namespace tumble::scenarios {
 /// MedianBootstrap computes bootstrap confidence intervals of the median for samples of one size, by equations (S1) to
 /// (S4) of statistics.md. The intervals are bias-corrected and accelerated (BCa; Efron, JASA 82:171, 1987). The ranks
 /// of the middle values of a resample do not depend on the values, so the constructor draws the ranks once. For a given
-/// sample size, the ranks are equal on every machine. The constructor evaluates `resamples` inverse beta functions;
-/// each interval costs O(resamples log resamples).
+/// sample size, the ranks are equal on every machine.
 class MedianBootstrap {
  public:
   explicit MedianBootstrap(std::size_t size, std::size_t resamples = 4000);

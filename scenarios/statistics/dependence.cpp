@@ -46,7 +46,6 @@ double mean(std::span<const double> values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-/// Pairs with equal values of x are in one class.
 std::vector<std::size_t> class_ends(const CompletePairs& sorted, std::size_t wanted) {
   const std::size_t n = sorted.size();
   std::vector<std::size_t> distinct;
@@ -62,7 +61,6 @@ std::vector<std::size_t> class_ends(const CompletePairs& sorted, std::size_t wan
   return ends;
 }
 
-/// Equation (S23) of statistics.md gives the confidence interval of the mean.
 Interval mean_interval(std::span<const double> values) {
   const auto n = static_cast<double>(values.size());
   const double middle = mean(values);

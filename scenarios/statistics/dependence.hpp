@@ -9,7 +9,8 @@
 
 namespace tumble::scenarios {
 
-/// Returns the ranks of the values, starting from 1; equal values get the mean of their ranks, and NaN gets NaN.
+/// Returns the ranks of the values, starting from 1; equal values get the mean of their ranks, and NaN has the rank
+/// NaN.
 std::vector<double> mean_ranks(std::span<const double> values);
 
 struct Correlation {
@@ -19,8 +20,7 @@ struct Correlation {
 };
 
 /// Computes Spearman's rank correlation with its confidence interval (Bonett and Wright, Psychometrika 65:23, 2000;
-/// equation (S16) of statistics.md). Pairs with NaN are ignored. For fewer than four pairs or a constant variable, the
-/// interval is [-1, 1].
+/// equation (S16) of statistics.md). For fewer than four pairs or a constant variable, the interval is [-1, 1].
 Correlation rank_correlation(std::span<const double> x, std::span<const double> y);
 
 struct FirstOrder {
@@ -32,12 +32,10 @@ struct FirstOrder {
 /// Estimates the first-order (Sobol') index of y with respect to x from existing data (Plischke, Borgonovo, Smith, EJOR
 /// 226:536, 2013). The estimator divides x into equally large classes, and computes the variance of the class means of
 /// y, equation (S18) of statistics.md. The variance that is expected without dependence, equation (S19), is subtracted.
-/// If y contains ranks, the p-value of equation (S20) is that of the Kruskal-Wallis test. Pairs with NaN are ignored;
-/// the estimate needs at least 24 pairs.
 FirstOrder first_order_index(std::span<const double> x, std::span<const double> y);
 
-/// The mean has Student's confidence interval, the median an interval from order statistics, and the fraction of ones
-/// the interval of Clopper and Pearson.
+/// The 95 % interval is Student's for the mean, from order statistics for the median, and Clopper and Pearson's for the
+/// fraction of ones.
 enum class Centre { mean, median, share };
 
 struct DependenceClass {
@@ -50,8 +48,7 @@ inline constexpr std::size_t kDependenceClassesMax = 8, kDependenceDrawsMin = 12
 
 /// Computes the partial dependence of y on x: a statistic of y per class of x, equations (S22) and (S23) of
 /// statistics.md. The data must come from simulated runs with independent random numbers. There are at most
-/// `kDependenceClassesMax` equally large classes, with at least `kDependenceDrawsMin` runs each. Throws BadInput if the
-/// lengths differ, or if Centre::share is requested and a value of y is neither 0 nor 1.
+/// `kDependenceClassesMax` equally large classes, with at least `kDependenceDrawsMin` runs each.
 std::vector<DependenceClass> partial_dependence(std::span<const double> x, std::span<const double> y, Centre centre);
 
 }  // namespace tumble::scenarios

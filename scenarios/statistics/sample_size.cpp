@@ -33,8 +33,6 @@ double fewest(double risk) {
   return std::ceil(1.0 - std::log2(risk));
 }
 
-/// In the fraction of pairs of differences whose sum is positive, equation (S10) of statistics.md, a pair with a sum of
-/// zero counts half.
 double positive_sums(std::vector<double> differences) {
   std::sort(differences.begin(), differences.end());
   double count = 0.0;

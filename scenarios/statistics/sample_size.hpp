@@ -14,7 +14,7 @@ struct Plan {
 };
 
 /// Returns the number of pairs for the two-sided signed-rank test (Noether, JASA 82:645, 1987), equations (S10) and
-/// (S11) of statistics.md. The number is infinite if positive and negative differences are balanced.
+/// (S11) of statistics.md.
 double pairs_for_signed_rank(std::span<const double> differences, const Plan& plan);
 
 /// Returns the number of pairs for the paired test of failures (Connor, Biometrics 43:207, 1987), equation (S12) of

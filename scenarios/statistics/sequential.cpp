@@ -48,8 +48,6 @@ void SequentialSignTest::toss(std::int64_t pairs) {
   pairs_ += pairs;
 }
 
-/// The distribution of the number of positive signs is symmetric, so the thresholds of equation (S15) of statistics.md
-/// are equal for both signs.
 void SequentialSignTest::stop_beyond(double allowed) {
   std::size_t stopped = 0;
   while (2 * stopped + 1 < going_on_.size()) {

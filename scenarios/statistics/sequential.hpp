@@ -14,8 +14,7 @@ double spent_by(double risk, double share);
 /// SequentialSignTest is a sign test with interim analyses (Armitage, McPherson, Rowe, JRSS A 132:235, 1969), equations
 /// (S13) to (S15) of statistics.md. Each analysis sets a threshold for the number of positive and of negative signs. If
 /// the methods do not differ, the probability of having reached a threshold is at most the risk that may be spent so
-/// far. The number and times of the analyses are free, but must not depend on the results. The cost is O(pairs *
-/// sqrt(all pairs)).
+/// far. The number and times of the analyses are free, but must not depend on the results.
 class SequentialSignTest {
  public:
   enum class Verdict { open, negative, positive };  ///< sign that occurs significantly more often
@@ -23,7 +22,7 @@ class SequentialSignTest {
   explicit SequentialSignTest(double risk);
 
   /// `share` is the fraction of simulated runs that are complete: 1 at the last analysis. A verdict other than `open`
-  /// is final. Throws BadInput for a share outside (0, 1], or if the share or the number of pairs decreases.
+  /// is final.
   Verdict look(double share, std::int64_t negative, std::int64_t positive);
 
   Verdict verdict() const { return verdict_; }
@@ -37,7 +36,6 @@ class SequentialSignTest {
   double risk_;
   double share_ = 0.0, spent_a_side_ = 0.0;
   std::int64_t pairs_ = 0, needed_ = 0;
-  // Probability of each number of positive signs without an earlier stop; the first entry is that of `lowest_`
   std::int64_t lowest_ = 0;
   std::vector<double> going_on_ = {1.0};
   Verdict verdict_ = Verdict::open;

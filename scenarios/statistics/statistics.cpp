@@ -25,7 +25,6 @@ std::vector<double> numbers_of(std::span<const double> values) {
   return numbers;
 }
 
-/// RankPlace is the position of a quantile in a sorted list: at one value, or between two neighbours.
 struct RankPlace {
   RankPlace(double share, std::size_t count) {
     const double place = share * static_cast<double>(count - 1);
@@ -34,7 +33,6 @@ struct RankPlace {
     part = place - static_cast<double>(below);
   }
   double between(double low, double high) const {
-    // The quantile is not interpolated at an infinite value.
     return part == 0.0 || std::isinf(low) ? low : low + part * (high - low);
   }
   std::size_t below, above;
@@ -69,8 +67,6 @@ bool quantile_of(std::span<const double> values, double share, double& value) {
 
 namespace {
 
-/// Returns the largest rank r, counted from 1, with P(fewer than r of n values are below the median) <= kTail, or 0 if
-/// no rank fulfils the condition.
 std::size_t tail_rank(std::size_t values) {
   const auto n = static_cast<double>(values);
   const auto exponent = [&](std::size_t k) {

@@ -13,12 +13,9 @@ struct Interval {
 };
 
 /// Returns the sample quantile (Hyndman and Fan type 7) of the values other than NaN; NaN without such a value.
-/// Infinite values rank like finite values, so that failures are worst. `share` is the probability of the quantile, in
-/// [0, 1].
+/// Infinite values rank like finite values, so that failures are worst.
 double quantile(std::span<const double> values, double share);
-/// Returns NaN if a value is not finite, and nothing for an empty list.
 std::optional<double> quantile_of_all(std::span<const double> values, double share);
-/// Returns false, with `value` unchanged, for an empty list.
 bool quantile_of(std::span<const double> values, double share, double& value);
 
 template <class Row>
@@ -35,7 +32,7 @@ Interval median_interval(std::span<const double> values);
 /// Returns the fraction of successes with its exact confidence interval (Clopper and Pearson).
 Interval share_interval(std::int64_t count, std::int64_t total);
 
-/// Returns the values, with `worst` appended once for each failed run; if `worst` is NaN, nothing is appended.
+/// Returns the values, with `worst` appended once for each failed run; a NaN in `worst` appends nothing.
 std::vector<double> with_failures(std::vector<double> values, std::size_t failed, double worst);
 
 }  // namespace tumble::scenarios

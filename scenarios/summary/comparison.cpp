@@ -41,7 +41,6 @@ void require_sound(const Summary& summary, const ComparisonOptions& options) {
   require_held(summary, methods, options.metrics);
 }
 
-/// If `worst` is NaN, failed runs are omitted.
 std::vector<ValuePair> pairs_of(const MetricSummary& own, const MetricSummary& other, double worst) {
   const std::vector<RankedValue> first = ranked_values(own, worst), second = ranked_values(other, worst);
   std::vector<ValuePair> pairs;
@@ -135,7 +134,6 @@ class Comparing {
     out_.metrics.push_back(std::move(row));
   }
 
-  /// `seeds` contains all seeds and `failed` the seeds of failed runs; both are ascending.
   void add_failures(const Contest& contest, const std::string& what, const std::vector<std::uint64_t>& seeds,
                     const std::vector<std::uint64_t>& failed, const std::vector<std::uint64_t>& other_seeds,
                     const std::vector<std::uint64_t>& other_failed) {
@@ -181,7 +179,7 @@ class Comparing {
     return found->second;
   }
 
-  /// The risk is divided by the number of tests (Holm's bound for the smallest p-value).
+  /// For the sample size, the risk is divided by the number of tests (Holm's bound for the smallest p-value).
   Plan plan(std::size_t tests) const {
     return {options_.risk / static_cast<double>(std::max<std::size_t>(tests, 1)), options_.power};
   }

@@ -11,8 +11,8 @@
 
 namespace tumble::scenarios {
 
-/// Margin is the largest accepted deficit of a method (non-inferiority margin), in the unit of the metric or as a
-/// fraction of the reference method's value.
+/// Margin is the largest accepted deficit of a method (non-inferiority margin), in the metric's unit or as a fraction
+/// of the reference method's value.
 struct Margin {
   double value = 0.0;
   bool relative = false;

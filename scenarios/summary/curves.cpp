@@ -21,7 +21,6 @@ namespace {
 
 constexpr std::size_t kDrawsPerBin = 8;
 constexpr std::size_t kBinsMax = 6, kBinsMin = 3;
-/// Quantities by which whole simulated runs are sorted into bins
 constexpr std::array kDrawMeasures = {"motion_clipped_share", "motion_clip_depth_max_rad_s",
                                       "motion_clip_length_max_s"};
 
@@ -34,7 +33,6 @@ struct Run {
     std::size_t place = 0;
     return find(metric, place);
   }
-  /// The search starts at the index `place`, where the previous run of the method had this score.
   const double* find(const std::string* metric, std::size_t& place) const {
     if (place < scores.size() && scores[place].metric == metric) return &scores[place].value;
     const auto found = std::find_if(scores.begin(), scores.end(), [&](const auto& s) { return s.metric == metric; });
@@ -116,7 +114,6 @@ bool is_scored(const PickedRuns& runs, const std::string* metric, std::uint64_t 
   });
 }
 
-/// Returns false if no run has a value of the metric.
 bool point_of(const std::vector<const Run*>& own, const PickedRuns& runs, const std::string* metric,
               CurvePoint& point) {
   const MetricInfo& info = metric_info(*metric);
@@ -227,8 +224,7 @@ void add_sample_curves(const RunsBySetting& plain, Names& names, std::vector<Cur
   }
 }
 
-/// Sorts the simulated runs of a scenario by the quantity `measure` into bins of equal counts; each bin has the median
-/// of the quantity, and its ascending seeds.
+/// Each bin of simulated runs has the median of the quantity `measure`, and its ascending seeds.
 std::vector<std::pair<double, std::vector<std::uint64_t>>> bins_of_draws(std::span<const DrawValues> draws,
                                                                          const std::string& scenario,
                                                                          const std::string& measure) {
@@ -236,7 +232,6 @@ std::vector<std::pair<double, std::vector<std::uint64_t>>> bins_of_draws(std::sp
   for (const DrawValues& draw : draws) {
     if (draw.scenario != scenario) continue;
     for (const Score& score : draw.values) {
-      // A run without clipping has no position on an axis of clipping.
       if (score.metric == measure && score.value > 0.0) ranked.emplace_back(score.value, draw.seed);
     }
   }

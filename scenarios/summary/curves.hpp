@@ -29,8 +29,8 @@ struct CurveLine {
 };
 
 struct Curve {
-  /// Source is the meaning of x: a parameter that the suite varies, a quantity of binned samples, or a quantity of
-  /// whole simulated runs.
+  /// The x axis of a curve is a parameter that the suite varies, a quantity of binned samples, or a quantity of whole
+  /// simulated runs.
   enum class Source { set, samples, draws };
   Source source = Source::set;
   std::string axis;  ///< varied parameter or binned quantity; the name ends in the unit
@@ -38,13 +38,11 @@ struct Curve {
   Kind kind = Kind::rate;
   std::string metric;
   std::vector<CurveLine> lines;  ///< in the order of the registry
-  /// Labels of all bins of samples, including empty bins; the point with the number x belongs to bins[x - 1]
   std::vector<std::string> bins = {};
 };
 
-/// Computes every curve for which the results contain data, by scenario and headline metric (shown first in the
-/// report). There is one curve per varied parameter, one per quantity with binned metrics, and one per clipping
-/// quantity of whole runs with at least three bins. A run counts as failed if its status is not `ok` or its map failed.
+/// There is one curve per varied parameter, one per quantity with binned metrics, and one per clipping quantity of
+/// whole runs with at least three bins. A run counts as failed if its status is not `ok` or its map failed.
 std::vector<Curve> find_curves(const Results& results);
 std::vector<Curve> find_curves(const Results& results, std::span<const DrawValues> draws, Summary& summary);
 

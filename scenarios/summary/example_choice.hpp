@@ -22,8 +22,7 @@ struct ExampleDraw {
   auto operator<=>(const ExampleDraw&) const = default;
 };
 
-/// Finds the simulated run on which the baseline of the scenario has its median headline score. The headline score is
-/// the first headline metric with a value, of the first kind of method other than attitude.
+/// Finds the simulated run on which the baseline of the scenario has its median headline score.
 bool typical_seed(const Summary& summary, const std::string& scenario, std::uint64_t& seed);
 
 /// Returns at most `count` typical simulated runs: first one scenario of each robot, then a second scenario of each
@@ -36,16 +35,14 @@ struct FailedOn {
   std::size_t methods = 0;  ///< number of failed methods without truth
 };
 
-/// The list is sorted by number of failed methods (descending), scenario and seed.
 std::vector<FailedOn> rank_failures(const Summary& summary);
 
-/// Runs on which only methods with truth failed are omitted.
+/// Runs on which only methods with access to the truth failed are omitted.
 std::vector<ExampleDraw> choose_failures(const Summary& summary, std::span<const ExampleCandidate> candidates,
                                          std::size_t count);
 
 std::vector<Outcome> rows_to_show(const Results& results, const ExampleDraw& draw);
 
-/// A stored example with another digest shows other results.
 std::string digest_of_rows(const Results& results, const ExampleDraw& draw);
 
 }  // namespace tumble::scenarios

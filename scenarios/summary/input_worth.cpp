@@ -23,7 +23,6 @@ double badness(const MetricInfo& info, const Outcome& outcome) {
   return score != nullptr ? how_bad(info, score->value) : kNaN;
 }
 
-/// 0 if both values are the worst value
 double improvement(double before, double now) {
   return before == now ? 0.0 : before - now;
 }

@@ -28,8 +28,7 @@ struct InputWorth {
   double corrected = 1.0;  ///< `chance` corrected by Holm over all rows
 };
 
-/// Evaluates the effect of each true input per scenario, and over all scenarios. The list is sorted by the fraction of
-/// prevented failures, then by p-value.
+/// The list is sorted by the fraction of prevented failures, then by p-value.
 std::vector<InputWorth> worth_of_inputs(std::span<const DrawTriage> draws, const std::string& metric);
 
 }  // namespace tumble::scenarios

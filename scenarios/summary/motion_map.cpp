@@ -11,7 +11,6 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr std::size_t kCells = MotionMap::kCells;
-/// Decades by which the grid extends beyond the points
 constexpr double kMargin = 0.25;
 
 struct Decades {
@@ -45,7 +44,6 @@ GridAxis axis_over(const std::vector<Decades>& points, double Decades::*member) 
   return axis;
 }
 
-/// Weight beyond the ends of the grid row is distributed over the row.
 std::vector<double> kernel(std::size_t from, double width) {
   std::vector<double> weights(kCells);
   double sum = 0.0;
@@ -76,7 +74,6 @@ std::vector<double> smoothed(const std::vector<double>& counts, const GridAxis& 
   return out;
 }
 
-/// Returns every n-th point; n is the smallest number that leaves at most `kPointsMax` points.
 std::vector<MotionPoint> thinned(const std::vector<MotionPoint>& points) {
   const std::size_t stride = (points.size() + MotionMap::kPointsMax - 1) / MotionMap::kPointsMax;
   std::vector<MotionPoint> out;

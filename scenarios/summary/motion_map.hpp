@@ -20,7 +20,6 @@ struct MotionCloud {
   std::vector<MotionPoint> points;  ///< at most `kPointsMax` points, evenly spaced over the runs
 };
 
-/// PublishedExtreme contains the maxima in a publication; NaN if a maximum is not reported.
 struct PublishedExtreme {
   std::string campaign, source;
   double rate_rad_s, force_m_s2;

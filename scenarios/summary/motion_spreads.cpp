@@ -16,8 +16,8 @@ namespace {
 
 enum class Over { draws, share_of_draws, clipped_samples };
 
-/// A published value of the tumbling rig (32 tumbles down a hill, ICRA 2024) and the target of this project are shaded
-/// from `low` to `high`.
+/// The figures of motions show published values of the tumbling rig (32 tumbles down a hill, ICRA 2024), and the target
+/// of this project.
 struct Quantity {
   const char* metric;
   const char* name;

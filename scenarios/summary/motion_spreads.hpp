@@ -10,8 +10,6 @@
 
 namespace tumble::scenarios {
 
-/// Spread contains the values of one quantity over the simulated runs of one scenario; runs without a value are
-/// omitted.
 struct Spread {
   std::string scenario;
   std::string metric;    ///< "motion_peak_rate_rad_s"
@@ -27,13 +25,10 @@ struct Spread {
   double median = 0, quantile_05 = 0, quantile_95 = 0;
 };
 
-/// The report displays this source after the words "compared with".
 inline constexpr const char* kPublishedMotion =
     "the published campaign of the rig (32 tumbles down a hill) and the target of the scenario 'hill'";
 
-/// For a fraction of runs, each run has the value 0 or 1, the `median` is the fraction, and the quantiles are the
-/// limits of its 95 % interval. For a fraction of all clipped samples, each run is weighted by its number of clipped
-/// samples.
+/// For a fraction of all clipped samples, each run is weighted by its number of clipped samples.
 std::vector<Spread> motion_spreads(std::span<const DrawValues> draws);
 
 }  // namespace tumble::scenarios

@@ -24,9 +24,8 @@ struct Question {
   std::uint64_t first_seed = 1, last_seed = 1;
   std::vector<std::string> scenarios;
 
-  /// Returns the seeds after which the results are analysed, ascending, up to the last seed.
+  /// Returns the ascending seeds after which the results are analysed.
   std::vector<std::uint64_t> look_seeds() const;
-  /// Equal questions give the same line of text.
   std::string describe() const;
 };
 
@@ -38,15 +37,14 @@ struct Answer {
   std::int64_t needed = 0;               ///< pairs of one sign that the analysis required for an answer
 };
 
-/// Throws BadInput for equal methods, methods of two kinds, an unranked metric, a margin or risk out of range, or if
-/// there is no interim analysis.
+/// Throws BadInput for equal methods, methods of two kinds, an unranked metric, or a margin or risk out of range.
 void require_sound(const Question& question);
 
 /// Stores the question in the results database before the first simulated run. Throws BadInput if the database contains
 /// another question or any run, because the risk is only valid if the question precedes the results.
 void claim(Results& results, const Question& question, const std::filesystem::path& database);
 
-/// All runs up to `last_seed` must be complete; later runs have no effect. Failed runs rank worst.
+/// All runs up to `last_seed` must be complete; later runs have no effect.
 std::vector<Answer> answers(const Results& results, const Question& question, std::uint64_t last_seed);
 
 const char* finding_text(const Answer& answer, const Question& question);

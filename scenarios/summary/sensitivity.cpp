@@ -23,7 +23,6 @@ Scored scored(const MetricSummary& metric, const MetricInfo& info) {
   if (info.unit == Unit::verdict) out.centre = Centre::share;
   for (const RankedValue& each : ranked_values(metric, worst_value(info))) {
     out.seeds.push_back(each.seed);
-    // In a pass-fail metric, a failed run has the value 1.
     out.values.push_back(info.unit == Unit::verdict && each.value != 0.0 ? 1.0 : each.value);
     // For unranked metrics such as costs, larger values count as worse.
     const bool contested = info.sense != Sense::none;

@@ -52,7 +52,6 @@ struct SensitivityOptions {
   std::vector<std::string> metrics;  ///< empty: the headline metrics of each kind
 };
 
-/// A row of the table needs this many simulated runs; the row "not ok" needs this many failures and as many successes.
 inline constexpr std::size_t kSensitivityDrawsMin = 12, kSensitivityFailuresMin = 5;
 
 /// Rows with too few simulated runs are omitted, and failed runs rank worst. Throws BadInput for a method or metric

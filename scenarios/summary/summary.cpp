@@ -28,7 +28,8 @@ const MethodInfo* registered(Kind kind, const std::string& name) {
   return rank < methods().size() ? &methods()[rank].info : nullptr;
 }
 
-/// Returns the registered baseline if the results contain it, and otherwise the first registered method without truth.
+/// The baseline is the registered baseline if the results contain it, and otherwise the first registered method without
+/// access to the truth.
 std::string choose_baseline(Kind kind, const std::vector<MethodSummary>& methods) {
   for (const MethodSummary& method : methods) {
     const MethodInfo* info = registered(kind, method.method);

@@ -18,15 +18,13 @@ inline MetricStyle metric_style(const std::string& metric) {
   return style_of(metric_info(metric).unit);
 }
 
-/// Unknown methods come last.
 std::size_t method_rank(Kind kind, const std::string& name);
 
 struct Wins {
   std::int64_t count = 0, pairs = 0;
 };
 
-/// Failed outcomes rank worst in all statistics, so the median is infinite if half of the runs fail. Runs for which no
-/// method has a value do not count.
+/// Failed outcomes rank worst in all statistics, so the median is infinite if half of the runs fail.
 struct MetricSummary {
   Interval centre{};  ///< median, or fraction of failures of a pass-fail metric, with 95 % interval
   double quantile_95 = 0.0;
@@ -67,11 +65,9 @@ struct RankedValue {
   double value;
 };
 
-/// If `worst` is NaN, failures are omitted.
 std::vector<RankedValue> ranked_values(const MetricSummary& metric, double worst);
 
 Summary summarize(const Results& results);
-/// Calls `beside` with each outcome in the same pass over the results.
 Summary summarize(const Results& results, Names& names, const std::function<void(const OutcomeView&)>& beside);
 
 }  // namespace tumble::scenarios

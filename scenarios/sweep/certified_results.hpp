@@ -8,12 +8,10 @@
 
 namespace tumble::scenarios {
 
-/// Copies the certificate of this build (checks of its simulation) from the store to `results` if necessary, but makes
-/// no measurement.
 std::optional<Certificate> known_certificate(Results& results, const CertificateStore& store);
 
-/// A certificate (checks of the simulation) that the store lacks is measured and saved in the store. If the measurement
-/// is interrupted, the certificate has no entries and is not saved.
+/// A certificate (checks of the simulation) that the store lacks is measured and saved in the store, unless the
+/// measurement is interrupted.
 Certificate certify_results(Results& results, const CertificateStore& store, const CertificateInput& input,
                             const CertifyOptions& options);
 

@@ -9,8 +9,7 @@
 namespace tumble::scenarios {
 
 /// DatabaseOwner has exclusive write access to a results database by a lock (flock) on the file FILE.lock; readers need
-/// no lock. The operating system releases the lock when the process ends. On a shared file system, the lock works
-/// between machines if the file system supports locks.
+/// no lock. The operating system releases the lock when the process ends.
 class DatabaseOwner {
  public:
   /// Throws BadInput if another process owns the database, or if the lock file cannot be created.

@@ -30,8 +30,6 @@ class DrawFiles {
   explicit DrawFiles(const Keeping& keeping);
 
   std::filesystem::path estimate(const MethodInfo& method);
-  /// Moves all files of the run to their final folder, or removes them after a write error. Stored estimates of other
-  /// methods remain if their sensor data were equal.
   void finish(const SimulatedDraw& draw, bool failed);
   void miss(const std::string& why) { trouble_ = why; }
   const std::string& error_code() const { return trouble_; }

@@ -35,14 +35,12 @@ OutcomeStatus ended_as(const Process::End& end);
 
 std::vector<Outcome> without_answer(const DrawTask& task, OutcomeStatus status, const std::string& message);
 
-/// Simulates one scenario with one seed, without lidars if no method reads them, and runs the methods of the task.
-/// Writes one message per line to `fd`: the outcome of a method, or a rejection if the simulation is impossible. The
-/// caller writes the final empty message.
+/// Writes one message per line to `fd`: the outcome of a method, or a rejection if the simulation is impossible.
 void run_draw(const DataRoot& data, const DrawTask& task, double timeout_s, int fd, bool recordings_unseen = false);
 
 /// Runs one method in a separate process for at most `timeout_s` of wall time; a crash, a time-out or an exception
 /// becomes an outcome. The estimate is compared with the truth in `scored`, which equals `draw` unless the sensor data
-/// were changed. If the estimate cannot be written to `folder`, `not_kept` contains the reason.
+/// were changed.
 Outcome run_isolated(const Method& method, const SimulatedDraw& draw, const SimulatedDraw& scored,
                      const sim::Surface* surface, double timeout_s, const std::filesystem::path& folder = {},
                      std::string* not_kept = nullptr);

@@ -34,7 +34,7 @@ void serve(const WorkerTerms& terms, int tasks, int fd) {
     if (line->empty()) return;
     run_draw(terms.data, terms.plan.from_line(*line), terms.timeout_s, fd, terms.recordings_unseen);
     malloc_trim(0);  // an idle worker must not hold the memory of its last run
-    // The last message of a run follows all destructors; if the worker dies before this message, the current task
+    // The final message of a worker's task follows all destructors; if the worker dies before this message, the task
     // fails.
     write_all(fd, to_line({}));
   }

@@ -22,17 +22,14 @@ struct WorkerTerms {
   std::filesystem::path temporary = {};
 };
 
-/// A DrawWorker executes one simulated run after another. Tasks and results are lines of text, so no state of a run
-/// remains for the next run. The worker ends after `kDrawsPerWorker` runs, or after a run in which a child process
-/// ended abnormally.
+/// Tasks and results are lines of text, so no state of a run remains for the next run. The worker ends after
+/// `kDrawsPerWorker` runs, or after a run in which a child process ended abnormally.
 class DrawWorker {
  public:
   static constexpr int kDrawsPerWorker = 200;
 
   explicit DrawWorker(const WorkerTerms& terms);
 
-  /// The worker must complete the task by `deadline_s` (a time of now_s()). Returns false if the idle worker process
-  /// has died.
   bool give(const DrawTask& task, double deadline_s);
 
   bool is_busy() const { return busy_; }
@@ -41,7 +38,6 @@ class DrawWorker {
   int read_end() const { return process_.read_end(); }
   const DrawTask& draw() const { return draw_; }
 
-  /// After the last message of a run, the worker is idle. Returns false if the worker process has ended.
   bool hear(std::vector<Message>& said);
   void kill() { process_.kill(); }
   Process::End dismiss();

@@ -29,7 +29,6 @@ enum class Lidars { simulated, left_out };
 SimulatedDraw simulate_draw(const DataRoot& data, const Scenario& scenario, std::uint64_t seed, int threads,
                             Lidars lidars = Lidars::simulated);
 
-/// Returns the digest that the recording would have without its lidars.
 std::string digest_without_lidars(const sim::Recording& recording);
 
 Subject subject_of(const Scenario& scenario);
@@ -38,14 +37,12 @@ std::vector<MethodPointer> applicable(std::span<const MethodPointer> methods, co
 
 void require_applies(const Method& method, const Scenario& scenario);
 
-/// The status of `outcome` is failed after an exception or an error status, and otherwise ok.
 Estimate run_method(const Method& method, const SimulatedDraw& draw, Outcome& outcome);
 
-/// The status is failed after an error, diverged if the health of one of our methods reports a fault that invalidates
-/// the estimate, and otherwise ok.
+/// A built-in method's estimate counts as diverged without the truth if its health reports a fault that invalidates the
+/// estimate.
 void judge_without_truth(const MethodInfo& info, const Estimate& estimate, Outcome& outcome);
 
-/// `surface` may be null.
 void assess(const Method& method, const SimulatedDraw& draw, const sim::Surface* surface, const Estimate& estimate,
             Outcome& outcome);
 
@@ -53,7 +50,6 @@ void assess(const Method& method, const SimulatedDraw& draw, const sim::Surface*
 /// truth of its IMU sample.
 SimulatedDraw scored_by(const SimulatedDraw& draw, const SimulatedDraw& given);
 
-/// Includes the CPU time of finished child processes [s].
 double process_cpu_s();
 
 }  // namespace tumble::scenarios

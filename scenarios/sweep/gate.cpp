@@ -53,8 +53,7 @@ struct GatePair {
   double before = 0.0, now = 0.0;  ///< infinite (worst) if the run was not ok
 };
 
-/// Runs without an accepted value are omitted; `lost` contains the seeds of runs that are ok in both results but have
-/// no new value.
+/// `lost` contains the seeds of simulated runs that are ok in both results but have no new value.
 struct GatePairs {
   std::vector<GatePair> pairs;
   std::vector<std::uint64_t> lost;
@@ -72,7 +71,7 @@ GatePairs pairs_of(const GateRun& all, const MethodRun& before, const MethodRun&
     GatePair pair{all.seeds[k], value_at(before, info.name, k), value_at(now, info.name, k)};
     if (was_ok && std::isnan(pair.before)) continue;
     if (was_ok && is_ok && std::isnan(pair.now)) out.lost.push_back(pair.seed);
-    // A run that is not ok ranks worst, even if it has a value.
+    // A simulated run that is not ok ranks worst, even if it has a value of the metric.
     if (!was_ok) pair.before = worst_value(info);
     if (!is_ok) pair.now = worst_value(info);
     if (!std::isnan(pair.before) && !std::isnan(pair.now)) out.pairs.push_back(pair);
@@ -102,8 +101,8 @@ void hold_worst_draw(const MetricInfo& info, const std::vector<GatePair>& pairs,
                              three_digits(now.now), now.seed, three_digits(before.before));
 }
 
-/// Each metric counts as one statistical test: for a two-sided metric, the p-value is twice the smaller one-sided
-/// p-value.
+/// In a gate, each metric counts as one statistical test: for a two-sided metric, the p-value is twice the smaller
+/// one-sided p-value.
 void hold_middle(const std::vector<GatePair>& pairs, const MetricInfo& info, const GatePolicy& policy,
                  std::size_t tests, GateResult& result) {
   result.draws = pairs.size();
@@ -171,7 +170,7 @@ GateResult hold_outcomes(const GateRun& all, const MethodRun& before, const Meth
       fault = condemned(now);
     was += was_good ? 0 : 1;
     is += fault.empty() ? 0 : 1;
-    // A missing run is a fault even if the run failed in the accepted results.
+    // A missing simulated run is a fault even if the run failed in the accepted results.
     if (result.fault.empty() && !fault.empty() && (was_good || !now.status[k])) {
       result.fault = fault + seed;
       result.seed = all.seeds[k];

@@ -68,7 +68,6 @@ std::string to_yaml(const Gate& gate);
 std::string to_csv(const GateRun& run);
 GateRun parse_gate_run(const std::string& text, const std::string& file, std::span<const MethodPointer> described = {});
 
-/// An empty `metric` means a check of the outcomes of a method.
 struct GateResult {
   std::string scenario;  ///< empty: all scenarios with this metric
   Kind kind = Kind::rate;

@@ -57,7 +57,6 @@ GateRun gate_run(std::span<const Outcome> outcomes, std::uint64_t first, std::ui
 
 GateRun gate_run(const Results& results, std::uint64_t first, std::uint64_t last) {
   std::vector<Outcome> outcomes = results.outcomes();
-  // Scores and outcomes are sorted by scenario, seed, kind and method.
   std::size_t at = 0;
   for (const ScoreRow& row : results.scores()) {
     if (row.kind.empty()) continue;  // rejected run

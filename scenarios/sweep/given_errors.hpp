@@ -13,10 +13,9 @@ namespace tumble::scenarios {
 struct GivenError {
   sim::Parameter parameter;  ///< size of the error; the default means no error
   bool needs_lidar = false;
-  /// A random direction of the error depends on the seed of the situation and not on the size of the error.
+  /// A random direction of the given error depends on the seed of the situation and not on the size of the error.
   void (*put_in)(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situation& situation,
                  double size) = nullptr;
-  /// Null if the error affects no parameter of a method
   void (*tune)(std::span<const sim::Parameter> known, double size, sim::Values& given) = nullptr;
 };
 

@@ -16,7 +16,7 @@
 
 namespace tumble::scenarios {
 
-/// The selection depends only on the results, and not on processes, interruptions or parallel parts of the sweep.
+/// The selection of kept runs depends only on the results, and not on interruptions or parallel parts of the sweep.
 struct Keep {
   enum class Which { none, failed, worst, all };
   Which which = Which::none;
@@ -37,9 +37,8 @@ struct DrawName {
   auto operator<=>(const DrawName&) const = default;
 };
 
-/// `failed` keeps runs whose status is not ok. `worst` keeps the worst runs per scenario and method (without methods
-/// that use the truth), ranked by the first headline metric of the method's kind. A run that could not be simulated has
-/// no recording and is never kept.
+/// `worst` keeps the worst runs per scenario and method (without methods that use the truth), ranked by the first
+/// headline metric of the method's kind.
 std::set<DrawName> draws_to_keep(const Results& results, const Keep& keep);
 
 /// KeptDraws is the folder of kept runs next to a database, FILE.db.files/kept; each run has a folder SCENARIO/SEED/.
@@ -64,8 +63,6 @@ class KeptDraws {
 
 std::filesystem::path estimate_folder(const std::filesystem::path& draw, Kind kind, const std::string& method);
 
-/// Joins the kept runs of several databases, and returns the number of kept runs in `out`. If the rules differ or
-/// nothing is kept, the folder of `out` is unchanged.
 std::size_t merge_kept(const DatabaseOwner& out, std::span<const std::filesystem::path> in);
 
 }  // namespace tumble::scenarios

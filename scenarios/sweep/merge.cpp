@@ -41,7 +41,6 @@ void require_same_origin(const Notes& first, const Notes& other, const fs::path&
   }
 }
 
-/// Two versions of one external method are an error.
 void join_method_notes(const Notes& shard, const fs::path& path, bool mixed, Results& into) {
   for (const auto& [key, theirs] : shard) {
     if (!is_method_note(key)) continue;
@@ -54,7 +53,6 @@ void join_method_notes(const Notes& shard, const fs::path& path, bool mixed, Res
   }
 }
 
-/// If two databases contain different paths, the path of the first database is kept, even if the path no longer exists.
 void join_place_notes(const Notes& shard, Results& into) {
   for (const auto& [key, place] : shard) {
     if (is_place_note(key) && into.note(key).empty()) into.set_note(key, place);
@@ -67,7 +65,6 @@ void join_command_notes(const std::vector<Notes>& notes, Results& into) {
   if (!commands.empty()) into.set_note(kCommandNote, commands);
 }
 
-/// Only one input is open at a time.
 std::vector<Notes> checked_notes(std::span<const fs::path> in, bool mixed) {
   std::vector<Notes> notes;
   for (const fs::path& path : in) {
@@ -120,7 +117,6 @@ MergeCounts merge_results(const DatabaseOwner& owner, std::span<const fs::path> 
       }
       for (const Notes& own : notes) join_place_notes(own, results);
       join_command_notes(notes, results);
-      // The notes state the origin of the rows, and not the program that joined them.
       for (const char* key : {"suite", "build", "data"}) {
         std::string text;
         for (std::size_t i = 0; i < notes.size() && text.empty(); ++i) text = text_of(notes[i], key);

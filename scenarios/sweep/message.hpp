@@ -8,8 +8,7 @@
 
 namespace tumble::scenarios {
 
-/// Message is a message from a worker about its current simulated run: one line with a JSON object. At most one member
-/// is set; none means that the run is complete.
+/// At most one member is set; none means that the run is complete.
 struct Message {
   std::optional<Outcome> outcome;
   std::optional<RejectedDraw> rejected;

@@ -16,9 +16,6 @@ namespace tumble::scenarios {
 ///   centre of mass.
 /// - `motion_peak_rate_rad_s` is the largest rate, and `motion_peak_accel_m_s2` is the largest specific force before
 ///   saturation.
-/// - `motion_flight_share` is the fraction of the moving time without contact.
-/// - `motion_clips` is 1 if any sample of the primary gyro is clipped.
-/// - `motion_clipped_share` is the fraction of the samples during motion with a clipped gyro axis.
 /// - `motion_clip_depth_max_rad_s` is the largest saturation deficit, and `motion_clip_length_max_s` is the longest
 ///   clipping interval.
 /// - `motion_several_axes_share` is the fraction of the clipped samples with at least two clipped axes.
@@ -26,8 +23,8 @@ namespace tumble::scenarios {
 ///   axis.
 DrawValues motion_values(const std::string& scenario, std::uint64_t seed, const sim::Recording& recording);
 
-/// A real recording allows `motion_peak_rate_rad_s`, the peak rate of the readings. With reference rates, it also
-/// allows `motion_clips`, `motion_clipped_share`, `motion_clipped_samples` and `motion_clip_depth_max_rad_s`.
+/// With reference rates, it also allows `motion_clips`, `motion_clipped_share`, `motion_clipped_samples` and
+/// `motion_clip_depth_max_rad_s`.
 DrawValues recorded_motion_values(const std::string& scenario, std::uint64_t seed, const sim::Recording& recording);
 
 }  // namespace tumble::scenarios

@@ -9,7 +9,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Each number of a struct is hashed separately, so that no padding enters the digest.
+/// Each number of an estimate is hashed separately, so that no padding enters the digest.
 class NumberHasher : public Hasher {
  public:
   template <typename Number>

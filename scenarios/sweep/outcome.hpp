@@ -42,16 +42,13 @@ struct DrawValues {
   Setting setting = {};
 };
 
-/// The status of a completed method is ok, diverged or failed.
 bool was_scored(OutcomeStatus status);
 
 /// The order is: a completed run (states most about the method), crashed and timeout, killed (least).
 bool outranks(OutcomeStatus status, OutcomeStatus other);
 
-/// True for the statuses crashed, timeout and killed
 bool may_run_again(OutcomeStatus status);
 
-/// RejectedDraw is a scenario with a seed whose simulation is impossible on any machine.
 struct RejectedDraw {
   std::string scenario;
   std::uint64_t seed = 0;

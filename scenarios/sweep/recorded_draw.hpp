@@ -26,8 +26,7 @@ struct RecordedDraw {
 /// match, two files with the same name, or an unreadable file.
 std::vector<RecordedDraw> find_recordings(std::span<const std::string> patterns, const std::filesystem::path& folder);
 
-/// The recording must have the sensors that a method needs, and its robot if known. Methods that need the truth need a
-/// simulated recording.
+/// Methods that need the truth need a simulated recording.
 std::vector<MethodPointer> applicable(std::span<const MethodPointer> methods, const RecordedDraw& recording);
 
 /// Throws BadInput if the digest of the recording has changed since find_recordings.

@@ -30,10 +30,8 @@ struct ScoreRow {
   Setting setting = {};
 };
 
-/// Rows selects rows of the results: those of unmodified scenarios and methods, those of points of curves, or all.
 enum class Rows { plain, curves, all };
 
-/// `replaced` counts rows that replaced a row with a lower-ranked status; `held` counts rows that existed already.
 struct MergeCounts {
   std::size_t added = 0, replaced = 0, held = 0;
   std::size_t rejected = 0;  ///< rejected runs among the added rows
@@ -65,8 +63,7 @@ bool is_method_note(const std::string& key);
 /// process.
 class Results {
  public:
-  /// The mode `join` does not check that each score has an outcome, and is for callers that only use `absorb`, which
-  /// ensures this.
+  /// The mode `join` does not check that each score has an outcome.
   enum class Mode { create_or_append, join, read_only };
   /// Throws BadInput for a file that is no results database, an incomplete schema, another build (except read_only), or
   /// lack of space. All member functions throw BadInput with the path, also if a stored value is not a number.
@@ -77,7 +74,6 @@ class Results {
   /// Also removes a rejection of the same scenario and seed. Scores without a name are not stored, because an empty
   /// name marks an outcome without scores.
   void store(const Outcome& outcome);
-  /// Returns false if the scenario and seed already have an outcome.
   bool store(const RejectedDraw& rejected);
   void store(const DrawValues& draw);
   void store(const Certificate& certificate);
@@ -92,17 +88,14 @@ class Results {
   void in_one_transaction(const std::function<void()>& work);
 
   bool has_rows() const;
-  /// Returns the row with the scenario, seed, kind, method and setting of `key`, without its scores.
   std::optional<Outcome> find(const Outcome& key) const;
   std::vector<Outcome> outcomes_of(const std::string& scenario, std::uint64_t seed) const;
   std::vector<RejectedDraw> rejected_of(const std::string& scenario, std::uint64_t seed) const;
-  /// Outcomes are visited in the order of storing; only metric names stay in memory.
   void each(Rows rows, Names& names, const std::function<void(const OutcomeView&)>& visit) const;
   std::vector<ScoreRow> scores(Rows rows = Rows::plain) const;
   std::vector<Outcome> outcomes(Rows rows = Rows::plain) const;
   std::vector<RejectedDraw> rejected(Rows rows = Rows::plain) const;
   std::vector<DrawValues> draws(Rows rows = Rows::plain) const;
-  /// A merged database may have several certificates, one per build.
   std::vector<Certificate> certificates() const;
 
  private:

@@ -47,12 +47,11 @@ struct Results::Impl {
 
   Impl(const std::filesystem::path& file, Mode mode)
       : path(file),
-        // One thread uses the connection, so SQLite needs no locks.
         database(file.string(),
                  SQLite::OPEN_NOMUTEX |
                      (mode == Mode::read_only ? SQLite::OPEN_READONLY : SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE),
                  kBusyTimeoutMs) {
-    // With a rollback journal, the database is one file and can be read in a read-only folder.
+    // With a rollback journal, the results database is one file and can be read in a read-only folder.
     if (mode == Mode::read_only) return;
     database.exec("PRAGMA synchronous = FULL");
     database.exec(mode == Mode::join ? "PRAGMA foreign_keys = OFF" : "PRAGMA foreign_keys = ON");
@@ -73,7 +72,6 @@ struct Results::Impl {
 
   void create() {
     SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
-    // Another process may have created the schema while this process waited for the lock.
     if (is_empty()) {
       database.exec(kSchema);
       database.exec("PRAGMA application_id = " + std::to_string(kApplicationId));

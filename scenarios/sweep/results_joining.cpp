@@ -27,8 +27,7 @@ struct ShardRow {
   double setting;
 };
 
-/// Joining reads outcomes and scores of the source database in parallel, sorted by the outcome's number. New numbers
-/// have the order of the old numbers, so scores are only appended.
+/// New numbers have the order of the old numbers, so scores are only appended.
 class Joining {
  public:
   Joining(SQLite::Database& into, const SQLite::Database& shard, const std::filesystem::path& path, bool mixed,
@@ -134,7 +133,6 @@ class Joining {
     throw BadInput(path_.string() + ": unknown kind '" + name + "'");
   }
 
-  /// Returns false if a row with the same key exists.
   bool insert(const ShardRow& row) {
     insert_.bindNoCopy(1, row.scenario);
     insert_.bind(2, row.seed);
@@ -149,7 +147,6 @@ class Joining {
     return run(insert_) == 1;
   }
 
-  /// Returns true if the row was stored; `id` is then its number.
   bool take(const ShardRow& row, std::int64_t& id) {
     require_kind(row.kind);
     const OutcomeStatus own = status(row.status);
@@ -195,8 +192,8 @@ class Joining {
     }
     if (outranks(known, own) || mixed_ || !was_scored(known)) return false;
     if (own != known || estimate != row.estimate_digest ||
-        // For the kind rate, digests of recordings are not compared: if only rate methods run, lidars are not simulated
-        // and the digest differs.
+        // For methods of the kind rate, digests of recordings are not compared, because a sweep of rate methods alone
+        // does not simulate lidars.
         (std::string(to_string(Kind::rate)) != row.kind && recording != row.recording_digest))
       complain(row, status_text, estimate);
     require_same_scores(row, id);
@@ -244,7 +241,6 @@ class Joining {
                     path_.string(), words(row), metric, here, elsewhere));
   }
 
-  /// Rows must be requested in order.
   template <typename Visit>
   void each_score(const ShardRow& row, const Visit& visit) {
     while (more_scores_ && scores_.getColumn(0).getInt64() < row.id) more_scores_ = next(scores_);

@@ -195,14 +195,13 @@ std::vector<RejectedDraw> Results::rejected_of(const std::string& scenario, std:
 std::vector<DrawValues> Results::draws(Rows rows) const {
   return impl_->guarded([&] {
     std::vector<DrawValues> draws;
-    // Unmodified scenarios all have the same setting, so this order is that of the key and needs no sorting.
+    // Unmodified scenarios all have the same setting, so this order is that of the database key and needs no sorting.
     const char* order = rows == Rows::plain ? " ORDER BY scenario, seed, varied, setting, metric"
                                             : " ORDER BY varied, setting, scenario, seed, metric";
     SQLite::Statement select(
         impl_->database, std::string("SELECT scenario, seed, metric, value, varied, setting FROM draw_values WHERE ") +
                              picked(rows) + order);
     while (select.executeStep()) {
-      // Within a simulated run, only metric and value change, so the other strings are reused.
       const std::string_view scenario = select.getColumn(0).getText(), varied = select.getColumn(4).getText();
       const std::uint64_t seed = read_seed(select.getColumn(1).getInt64());
       const double setting = select.getColumn(5).getDouble();

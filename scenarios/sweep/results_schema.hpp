@@ -17,7 +17,6 @@ inline constexpr int kReadableVersion = 3;
 
 extern const char* const kSchema;
 
-/// Returns the first table, column or view that the database lacks; empty if the schema is complete.
 std::string missing_of_schema(const SQLite::Database& database);
 
 }  // namespace tumble::scenarios

@@ -80,7 +80,6 @@ class RowsInto {
     rows_.push_back(row);
     if (rows_.size() == kMany) flush();
   }
-  /// The caller must call flush() before the rows are read.
   void flush() {
     if (rows_.size() == kMany) {
       for (std::size_t i = 0; i < kMany; ++i) rows_[i].bind(many_, static_cast<int>(i) * Row::kColumns);

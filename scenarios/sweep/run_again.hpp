@@ -9,7 +9,7 @@
 
 namespace tumble::scenarios {
 
-/// Kind and method are empty for a run that could not be simulated.
+/// Kind and method are empty for a simulated run that was rejected.
 struct RunKey {
   std::string scenario;
   std::uint64_t seed = 0;
@@ -18,7 +18,6 @@ struct RunKey {
 };
 RunKey key_of(const Outcome& outcome);
 
-/// The note contains the path of an external method's description, or of a recording, so that a run can be repeated.
 std::string description_note(const std::string& kind, const std::string& method);
 std::string recording_note(const std::string& name);
 bool is_place_note(const std::string& key);
@@ -31,7 +30,6 @@ std::string command_again(const RunKey& run, const std::map<std::string, std::st
 /// Parses a point of a curve, for example "world.rock_count=10" or "a.x+b.y=0.5". Throws BadInput for another form.
 Setting setting_from(const std::string& text);
 
-/// The number is restored exactly from the text.
 std::string to_text(const Setting& setting);
 
 }  // namespace tumble::scenarios

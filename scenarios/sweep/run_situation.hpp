@@ -29,9 +29,8 @@ struct RunResult {
   std::vector<Outcome> outcomes;    ///< parallel to methods
 };
 
-/// Draws and simulates one situation, then runs and scores each method, in this process. With a `setting`, the run is
-/// one point of a curve, and the recording contains the sensor data that the methods receive. Throws BadInput,
-/// sim::InvalidSituation or sim::SimulationFailure if the simulation is impossible.
+/// With a `setting`, the run is one point of a curve, and the recording contains the sensor data that the methods
+/// receive.
 RunResult run_situation(const DataRoot& data, const Scenario& scenario, std::uint64_t seed,
                         std::span<const MethodPointer> methods, int threads, Lidars lidars = Lidars::simulated,
                         const Setting& setting = {});

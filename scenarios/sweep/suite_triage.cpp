@@ -22,7 +22,6 @@ namespace {
 
 constexpr char kBetween = '\t';  // separates an input's name from its outcome; names contain no tab
 
-/// Writes each result as a line, then an empty line or an error.
 void report_rows(const DataRoot& data, const Scenario& scenario, std::uint64_t seed, const Method& method,
                  const SuiteTriageOptions& options, int fd) {
   const auto report_trouble = [&](const std::string& why) {
@@ -49,7 +48,6 @@ std::string doc_of(const std::string& input) {
   return "unchanged recording";
 }
 
-/// Returns false if the process did not complete.
 bool read_rows(const std::string& text, const Failure& failure, DrawTriage& out) {
   std::size_t begin = 0;
   for (std::size_t end; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1) {
@@ -83,7 +81,6 @@ void conclude(Worker& worker, bool late, const Failure& failure, DrawTriage& dra
   draw.error_code = late ? "the draw did not end within its time limit" : "the draw's process " + end.describe();
 }
 
-/// Returns false if another process must end first.
 bool begin(std::list<Worker>& workers, std::size_t index, double deadline_s, const std::function<void(int)>& work) {
   try {
     workers.push_back({index, deadline_s, Process(work, true), {}});

@@ -21,7 +21,6 @@ struct DrawTriage {
   std::string error_code;       ///< reason for missing rows: simulation impossible, process died or timed out
 };
 
-/// Returns the scenarios and seeds of the suite whose robots the method supports; seeds are the outer loop.
 std::vector<DrawName> draws_of(const DataRoot& data, const Suite& suite, const Method& method);
 
 std::set<DrawName> failed_draws(const Results& results, const Method& method, const Failure& failure);

@@ -154,7 +154,6 @@ class Sweep {
     return std::nullopt;
   }
 
-  /// Returns false if no worker is available.
   bool give(const DrawTask& task) {
     if (busy() >= options_.jobs) return false;
     const double deadline_s = now_s() + suite_.timeout_s * (static_cast<double>(task.runs.size()) + kSimulateTimeouts);
@@ -186,7 +185,6 @@ class Sweep {
     poll(waiting.data(), waiting.size(), kPollMs);
   }
 
-  /// Returns true if the worker died during a task.
   bool serve(DrawWorker& worker) {
     if (!worker.is_busy()) return false;
     const bool open = hear(worker);
@@ -204,7 +202,6 @@ class Sweep {
     return true;
   }
 
-  /// Returns false if the worker has ended.
   bool hear(DrawWorker& worker) {
     std::vector<Message> said;
     const bool open = worker.hear(said);
@@ -218,7 +215,7 @@ class Sweep {
     return open;
   }
 
-  // If the process of a task died, each of its remaining methods gets an outcome without scores.
+  // If the worker process of a task dies, each of its remaining methods gets an outcome without scores.
   void account_for_death(const DrawTask& draw, bool late, const Process::End& end) {
     const std::string what =
         late ? "the draw did not end within its time limit" : "the draw's process " + end.describe();
@@ -236,8 +233,7 @@ class Sweep {
     if (outcome.status != OutcomeStatus::ok) ++progress_.failures[outcome.status];
   }
 
-  /// Repeats runs whose kept files are missing, and removes runs that the rule does not select. A file system error
-  /// does not stop the sweep.
+  /// Repeats runs whose kept files are missing, and removes runs that the rule does not select.
   void update_kept() {
     updating_kept_ = true;
     const std::set<DrawName> wanted = draws_to_keep(results_, options_.keep);

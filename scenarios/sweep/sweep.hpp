@@ -62,7 +62,6 @@ struct SweepProgress {
   std::uint64_t not_ok() const;
 };
 
-/// Default memory limit of a worker; equal to the limit of an external command
 inline constexpr double kWorkerMemoryMib = 8192.0;
 void require_worker_memory(double mib);
 
@@ -81,7 +80,7 @@ struct SweepOptions {
 
 void require_sound(const Suite& suite, const SweepOptions& options);
 
-/// Throws BadInput if the database belongs to another suite, build, models or scenarios.
+/// Throws BadInput if the results database belongs to another suite, build, models or scenarios.
 Results open_results(const DataRoot& data, const Suite& suite, const std::filesystem::path& database);
 
 /// Executes the runs of the suite that the database lacks; worker processes run each method in a separate process. If a

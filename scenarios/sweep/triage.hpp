@@ -14,13 +14,11 @@ namespace tumble::scenarios {
 struct TrueInput {
   std::string name;
   std::string doc;
-  /// Returns false if the recording lacks the input or the input is already exact.
   bool (*replace)(sim::Sensors& sensors, const sim::Truth& truth);
 };
 
 std::span<const TrueInput> true_inputs();
 
-/// Unranked verdicts only describe the run.
 bool is_failed_verdict(const Score& score);
 
 struct Failure {

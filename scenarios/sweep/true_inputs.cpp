@@ -22,7 +22,7 @@ double largest(const Readings& readings) {
   return largest;
 }
 
-/// The range exceeds every reading, so no reading counts as clipped.
+/// The stated range exceeds every reading, so no reading counts as clipped.
 double beyond(double stated, const Readings& readings) {
   return stated > 0.0 ? std::max(stated, 1.1 * largest(readings)) : stated;
 }
@@ -43,7 +43,6 @@ bool replace_accel(sim::ImuRecord& imu, const Readings& readings) {
   return true;
 }
 
-/// Returns true if an IMU changed.
 template <typename Replace>
 bool each_imu(sim::Sensors& sensors, const sim::Truth& truth, Replace&& replace) {
   bool changed = false;
@@ -93,7 +92,7 @@ bool exact_mounting(sim::Sensors& sensors, const sim::Truth& truth) {
   return changed;
 }
 
-/// Each time stamp becomes the true end of the averaging window; the recording must contain all samples.
+/// Each time stamp becomes the true end of the averaging window.
 bool exact_stamps(sim::Sensors& sensors, const sim::Truth& truth) {
   bool changed = false;
   const std::int64_t end_ns = static_cast<std::int64_t>(truth.q_WB.size() - 1) * truth.period_ns;
@@ -108,7 +107,6 @@ bool exact_stamps(sim::Sensors& sensors, const sim::Truth& truth) {
   return changed;
 }
 
-/// `track` must be that of the first lidar.
 Eigen::Isometry3d pose_of(const TruthTrack& track, std::int64_t time_ns) {
   const PoseState pose = track.pose(std::min(time_ns, track.last_ns()));
   Eigen::Isometry3d T_WL = Eigen::Isometry3d::Identity();
@@ -133,7 +131,6 @@ bool exact_ranges(sim::Sensors& sensors, const sim::Truth& truth) {
 }
 
 /// Removes the motion distortion of the sweeps: the true poses move all points to the sensor pose at the last point.
-/// The range errors remain.
 bool unbent_sweeps(sim::Sensors& sensors, const sim::Truth& truth) {
   if (sensors.lidars.empty() || truth.lidars.empty()) return false;
   sim::LidarRecord& lidar = sensors.lidars.front();

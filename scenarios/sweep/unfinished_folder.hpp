@@ -8,7 +8,7 @@ namespace tumble::scenarios {
 inline constexpr const char* kUnfinished = ".unfinished";
 
 /// UnfinishedFolder is an incomplete folder, WITHIN/.unfinished/NAME, which the destructor removes unless the folder
-/// was moved to its final path. Only one process at a time may create a folder NAME.
+/// was moved to its final path.
 class UnfinishedFolder {
  public:
   UnfinishedFolder(const std::filesystem::path& place, const std::filesystem::path& within);
@@ -16,7 +16,6 @@ class UnfinishedFolder {
   UnfinishedFolder(const UnfinishedFolder&) = delete;
   UnfinishedFolder& operator=(const UnfinishedFolder&) = delete;
   const std::filesystem::path& path() const { return path_; }
-  /// An existing folder at the final path is replaced.
   void move_into_place();
 
  private:

@@ -35,7 +35,6 @@ bool needs_lidar(const Setting& setting);
 void check(const Variation& variation, const DataRoot& data, std::span<const std::string> scenarios,
            std::uint64_t seed);
 
-/// The scenario is unchanged if the setting does not affect the simulation.
 Scenario with_setting(Scenario scenario, const Setting& setting);
 
 /// Throws BadInput if the run lacks the sensor, or is a recording: the error depends on the simulated situation.
@@ -43,7 +42,6 @@ SimulatedDraw with_setting(const SimulatedDraw& draw, const Setting& setting);
 
 Method with_setting(const Method& method, const Setting& setting);
 
-/// False if the setting is a parameter of another method
 bool concerns(const Setting& setting, const MethodInfo& method);
 
 }  // namespace tumble::scenarios

@@ -9,15 +9,14 @@
 /// iterative method (GJK) would take half of the computing time of a tumble.
 namespace tumble::sim::engine {
 
-/// Computes the contacts of a capsule with the prisms of a height field, and returns their number. The contacts agree
-/// with those of MuJoCo within MuJoCo's tolerance (1e-6 m). A contact is midway between the two surfaces, and its
-/// normal points from the ground to the axis. `contacts` must have room for mjMAXCONPAIR contacts; the poses of the
-/// geoms `field` and `capsule` must be up to date. Returns nothing if the axis is below the ground surface, the field
-/// is rotated, or the capsule is as low as the field's bottom; the caller must then use MuJoCo's search.
+/// The contacts agree with those of MuJoCo within MuJoCo's tolerance (1e-6 m). A contact is midway between the two
+/// surfaces, and its normal points from the ground to the axis. Returns nothing if the axis is below the ground
+/// surface, the field is rotated, or the capsule is as low as the field's bottom; the caller must then use MuJoCo's
+/// search.
 std::optional<int> field_contacts(const mjModel& model, const mjData& data, int field, int capsule,
                                   mjPreContact* contacts);
 
-/// Replaces MuJoCo's collision function for a height field and a capsule, in a table that the whole process shares.
+/// The collision function is replaced in a table of MuJoCo that the whole process shares.
 void find_field_contacts_by_geometry();
 
 }  // namespace tumble::sim::engine

@@ -9,7 +9,6 @@
 
 namespace tumble::sim::engine {
 
-/// Heights on a regular grid with columns along x
 struct Field {
   const float* heights;
   int rows, columns;
@@ -31,7 +30,6 @@ struct Field {
   double x_m(int column) const { return cell_x_m * column - half_x_m; }
   double y_m(int row) const { return cell_y_m * row - half_y_m; }
   double height_m(int row, int column) const { return scale_m * heights[row * columns + column]; }
-  /// Returns the larger height of two grid nodes: (row, column) and (row + 1, column).
   double higher_m(int row, int column) const {
     return scale_m * std::max(heights[row * columns + column], heights[(row + 1) * columns + column]);
   }
@@ -81,7 +79,6 @@ struct Part {
   double first = 0.0, last = 1.0;
   bool none() const { return first > last; }
 
-  /// The limits are extended by the distance within which contacts are searched.
   Part within(const Strut& strut, int axis, double low_m, double high_m) const {
     const double from_m = strut.from_m[axis], along_m = strut.along_m[axis];
     low_m -= strut.reach_m;
@@ -92,8 +89,6 @@ struct Part {
   }
 };
 
-/// Numbers of the first and last cell, along one axis, that a strut's bounding box overlaps; empty if `first` exceeds
-/// `last`
 struct Cells {
   int first, last;
   Cells(double low_m, double high_m, double half_m, double cell_m, int count)

@@ -6,10 +6,10 @@
 
 namespace tumble::sim::engine {
 
-/// Without a call of update_bodies(), MuJoCo's bodies have the poses of the last integration stage of a step.
+/// Before update_bodies() is called, MuJoCo's bodies have the poses of the last integration stage of a step.
 void update_bodies(const mjModel& model, mjData& data);
 
-/// The caller must call update_bodies first.
+/// The caller must call update_bodies() before state_on_joints().
 BodyState state_on_joints(const mjModel& model, const mjData& data, int body);
 
 BodyState state_at_rest(const World& world);

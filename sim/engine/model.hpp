@@ -35,7 +35,6 @@ struct World {
   std::vector<int> surface_geom;      ///< surface id -> geom id; static geoms that a lidar sees and a robot touches
   std::vector<FrictionPatch> patches;
   double half_extent_m = 0;  ///< the robot has left the world beyond this |x| or |y|
-  /// Point on the ground where a robot starts; the robot moves along +x
   Eigen::Vector3d start_W_m = Eigen::Vector3d::Zero();
   /// True centre of mass in the robot's design frame, in B axes
   Eigen::Vector3d com_offset_m = Eigen::Vector3d::Zero();

@@ -11,9 +11,9 @@ namespace {
 using Eigen::Vector3d;
 using Box = Eigen::Matrix<double, 6, 1>;
 
-/// With this maximum distance from the robot, one tree of geoms is valid for hundreds of steps.
+/// With this margin around the robot, one bounding-volume tree is valid for hundreds of steps.
 constexpr double kMargin_m = 0.5;
-/// A robot moves this distance in one step at 400 m/s.
+/// A robot moves this distance in one step of 0.5 ms at 400 m/s.
 constexpr double kStep_m = 0.2;
 
 Box everything() {
@@ -34,7 +34,6 @@ double distance_m(const Box& box, const Vector3d& p_m) {
   return ((p_m - box.head<3>()).cwiseAbs() - box.tail<3>()).cwiseMax(0.0).norm();
 }
 
-/// Returns the largest distance of a robot geom from the origin of its body; negative if a geom is unbounded.
 double reach_of_robot_m(const mjModel& model) {
   double reach_m = 0.0;
   for (int i = 0; i < model.ngeom; ++i) {
@@ -86,7 +85,6 @@ void NearGeoms::around(const Vector3d& p_WB_m) {
     if (leaf.always || distance_m(leaf.box, p_WB_m) <= reach_m_ + kMargin_m) near_.push_back(leaf);
   }
   if (near_.empty()) near_.push_back(leaves_.front());  // a tree needs at least one leaf
-  // Unbounded geoms come first, so that they do not enlarge the bounding boxes of bounded geoms.
   std::stable_partition(near_.begin(), near_.end(), [](const Leaf& leaf) { return leaf.always; });
   planted_ = 0;
   plant(near_.begin(), near_.end());

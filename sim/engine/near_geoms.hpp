@@ -10,7 +10,7 @@ namespace tumble::sim::engine {
 
 /// NearGeoms restricts MuJoCo's bounding-volume tree of the world to geoms that a free robot may touch soon; the
 /// destructor restores the original tree. MuJoCo tests the remaining pairs as before and sorts contacts by geom, so the
-/// motion stays bit-identical. A model without a tree, or with further moving bodies, is unchanged.
+/// motion stays bit-identical.
 class NearGeoms {
  public:
   /// `model` must outlive this object, and must not be copied while this object exists.
@@ -21,8 +21,6 @@ class NearGeoms {
 
   static bool serves(const mjModel& model);
 
-  /// Call around() before each step with the position of the robot's body; the selection of geoms is valid for a step
-  /// of at most 0.2 m.
   void around(const Eigen::Vector3d& p_WB_m);
 
  private:

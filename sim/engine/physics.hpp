@@ -12,8 +12,7 @@
 
 namespace tumble::sim::engine {
 
-/// Physics simulates one robot in one world step by step (RK4). A warning of MuJoCo ends the run, because lost contacts
-/// or invalid numbers would falsify the data.
+/// A warning of MuJoCo ends the run, because lost contacts or invalid numbers would falsify the data.
 class Physics {
  public:
   /// Until its destruction, Physics modifies the model of `world`, which must outlive this object.
@@ -21,8 +20,8 @@ class Physics {
 
   double step_s() const { return world_.model->opt.timestep; }
   BodyState state() const;
-  /// For a robot on joints, the function sets only the time. Throws InvalidSituation if the pose of a robot on joints
-  /// differs from the current pose.
+  /// For a robot on joints, set_state() sets only the time, and throws InvalidSituation if the pose differs from the
+  /// current pose.
   void set_state(const BodyState& state);
 
   /// Throws InvalidSituation if the robot has no hinge of this name.
@@ -30,13 +29,11 @@ class Physics {
   double joint_rate_rad_s(const std::string& name) const;
   void set_joint(const std::string& name, double angle_rad, double rate_rad_s);
 
-  /// `wrench` is constant over the step. Throws SimulationFailure for a warning of MuJoCo, a non-finite state, or a
-  /// robot that left its world.
+  /// Throws SimulationFailure for a warning of MuJoCo, a non-finite state, or a robot that left its world.
   void step(const Wrench& wrench);
 
-  /// Appends the contacts of the robot with the world at the end of the last step, in arbitrary order. MuJoCo computes
-  /// contacts at the last stage of RK4, whose position differs from the final state by an error of second order in the
-  /// step.
+  /// MuJoCo computes contacts at the last stage of RK4, whose position differs from the final state by an error of
+  /// second order in the step.
   void append_contacts(std::int64_t time_ns, std::vector<ContactTruth>& contacts) const;
 
  private:

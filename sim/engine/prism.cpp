@@ -29,8 +29,6 @@ double left_of(const Vector3d& edge_m, const Vector3d& beside_m) {
   return edge_m.x() * beside_m.y() - edge_m.y() * beside_m.x();
 }
 
-/// The bounding box of a strut's axis quickly rejects geometry that is farther away than the closest pair of points
-/// found so far.
 class AxisBox {
  public:
   AxisBox(const Vector3d& a_m, const Vector3d& b_m)
@@ -43,8 +41,6 @@ class AxisBox {
     const double z = apart_m(2, std::min(from_m.z(), to_m.z()), std::max(from_m.z(), to_m.z()));
     return x * x + y * y + z * z > closest.distance2_m2;
   }
-  /// Returns whether every point below `top_m` is farther from the axis than the two points of `closest` from each
-  /// other.
   bool is_beyond_below(const Vector3d& top_m, const Pair& closest) const {
     const double x = apart_m(0, top_m.x(), top_m.x()), y = apart_m(1, top_m.y(), top_m.y());
     const double z = std::max(low_m_.z() - top_m.z(), 0.0);
@@ -94,7 +90,6 @@ void meet_side(const Vector3d& end_m, const Prism& prism, int i, Pair& closest) 
   closest.take(end_m, on_face_m);
 }
 
-/// Returns whether the strut's axis, above the prism's top triangle, reaches below the plane of this triangle.
 bool pierces(const Vector3d& a_m, const Vector3d& along_m, const Prism& prism, const Vector3d& normal) {
   double first = 0.0, last = 1.0;
   for (int i = 0; i < 3; ++i) {

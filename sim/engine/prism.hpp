@@ -6,7 +6,6 @@
 
 namespace tumble::sim::engine {
 
-/// Prism is the volume of ground between a triangle of the surface and a horizontal bottom, in axes with z up.
 struct Prism {
   std::array<Eigen::Vector3d, 3> top_m;  ///< anticlockwise seen from above; no edge is vertical
   double foot_m;
@@ -19,9 +18,7 @@ struct Closest {
 
 enum class Meeting { apart, near, pierced };
 
-/// Finds the closest points if the axis from `a_m` to `b_m` is nearer to the prism than `reach_m`. There are no closest
-/// points if the axis pierces the prism or is within 10 um of it. The bottom of the prism is assumed to be out of
-/// reach.
+/// There are no closest points if the axis from `a_m` to `b_m` pierces the prism or is within 10 um of it.
 Meeting meet(const Eigen::Vector3d& a_m, const Eigen::Vector3d& b_m, const Prism& prism, double reach_m,
              Closest& closest);
 

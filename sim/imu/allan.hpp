@@ -5,9 +5,8 @@
 #include <span>
 #include <vector>
 
-/// The functions compute the overlapping Allan deviation of a stationary sensor, with confidence intervals. The source
-/// is Riley, "Handbook of Frequency Stability Analysis", NIST Special Publication 1065 (2008), sections 5.2.5, 5.3.2
-/// and table 5. The names of the noises of a gyroscope are from IEEE Std 952-1997, annex C.
+/// The source is Riley, "Handbook of Frequency Stability Analysis", NIST Special Publication 1065 (2008), sections
+/// 5.2.5, 5.3.2 and table 5. The names of the noises of a gyroscope are from IEEE Std 952-1997, annex C.
 namespace tumble::sim {
 
 struct AllanPoint {
@@ -35,7 +34,6 @@ std::vector<AllanPoint> allan_deviation(std::span<const double> samples, double 
 /// the axes of a triad. Throws std::invalid_argument if the averaging times differ.
 std::vector<AllanPoint> mean_deviation(std::span<const std::vector<AllanPoint>> series);
 
-/// Returns the point whose averaging time has the ratio to `tau_s` that is closest to 1.
 const AllanPoint& nearest_point(std::span<const AllanPoint> curve, double tau_s);
 
 /// Returns the equivalent number of degrees of freedom of the Allan variance at one averaging time, at least 1 (NIST SP

@@ -25,11 +25,9 @@ class Bias {
     double in_run_s = 1000.0;  ///< longest correlation time of the in-run instability
     double walk_sqrt_s = 0.0;  ///< standard deviation of the random walk after one second
   };
-  /// The bias changes once per `period_s`; a part of the bias whose size is 0 draws no random numbers.
   Bias(const Params& params, double period_s, const Stream& stream);
   Eigen::Vector3d next();
 
-  /// Returns the Allan deviation of the in-run instability alone, in closed form.
   static double in_run_deviation(const Params& params, double tau_s);
 
  private:

@@ -15,7 +15,6 @@ namespace tumble::sim {
 /// Saturation maps the vector s to c(s). The device then subtracts the offset and inverts the matrix: the reading is y
 /// = M^-1 (c(s) - o).
 ///
-/// - While no element saturates, the reading is u, bit for bit: neither M nor o is observable.
 /// - While only element j is at its limit r, the reading satisfies m_j . y = +r - o_j or -r - o_j, so the saturated
 ///   readings are on two tilted planes.
 /// - While element j is at its limit, the other axes are also wrong, by entries of M^-1 times the saturation deficit of
@@ -35,7 +34,6 @@ class Elements {
   static constexpr double kMisalignmentMax = 0.1;  ///< upper bound of both spreads, for which M is always invertible
 
   Elements() = default;
-  /// Draws misalignment, scale and offset of the sensing elements at random; a parameter of 0 draws no random numbers.
   Elements(const Params& params, Stream stream);
   Elements(const Eigen::Matrix3d& axes, const Eigen::Vector3d& offset);
 
@@ -43,11 +41,9 @@ class Elements {
   const Eigen::Vector3d& offset() const { return offset_; }
   bool axis_aligned() const { return axis_aligned_; }
 
-  /// Returns the device's reading of `signal` after saturation by `rail`, both in the device's axes. Sets bit
-  /// `first_bit + i` of `flags` if element i saturated.
+  /// Sets bit `first_bit + i` of `flags` if element i saturated.
   Eigen::Vector3d clip(const Eigen::Vector3d& signal, Rail& rail, int first_bit, std::uint8_t& flags) const;
 
-  /// The components of the elements in `mask` (bit i) are replaced by the components of `other`.
   Eigen::Vector3d with_elements_of(const Eigen::Vector3d& other, std::uint8_t mask,
                                    const Eigen::Vector3d& reading) const;
 

@@ -16,10 +16,8 @@ namespace tumble::sim {
 /// several wrong samples, and wrong time stamps.
 class Glitches {
  public:
-  /// The parameter `glitch_share` and the stated ranges determine the errors; a `glitch_share` of 0 draws no random
-  /// numbers.
   Glitches(const Values& values, const Stream& stream);
-  /// Call spoil() once for each sample, delivered or lost.
+  /// Call spoil() once for each IMU sample, delivered or lost.
   void spoil(TriadReading& gyro, TriadReading& accel);
 
  private:

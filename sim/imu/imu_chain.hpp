@@ -20,10 +20,9 @@ struct TriadReading {
   Eigen::Vector3d bias;       ///< bias at the end of the window
 };
 
-/// TriadChain is the error chain of one triad (gyroscope or accelerometer), updated at the physics rate and read once
-/// per output window. The stages in order are: analogue low-pass, scale and misalignment, bias, external additions
-/// (g-sensitivity), white noise of the active range, sensing elements with saturation, compensation of the elements,
-/// quantum, digital low-pass, mean over the window.
+/// The stages in order are: analogue low-pass, scale and misalignment, bias, external additions (g-sensitivity), white
+/// noise of the active range, sensing elements with saturation, compensation of the elements, quantum, digital
+/// low-pass, mean over the window.
 ///
 /// If a triad rotates, the mean of the readings differs from the increment of the motion (coning, sculling). The caller
 /// therefore passes the ideal reading of the window, and TriadChain adds the mean of the errors. If an element
@@ -31,15 +30,13 @@ struct TriadReading {
 /// noise, but without saturation, computes the unclipped reading.
 class TriadChain {
  public:
-  /// `prefix` and `unit` select the parameters: "gyro" and "rad_s", or "accel" and "m_s2". The names of the random
-  /// streams begin with `stream_name`. `steps` is the number of physics steps per window.
+  /// `prefix` and `unit` select the parameters: "gyro" and "rad_s", or "accel" and "m_s2".
   TriadChain(const Values& values, const std::string& prefix, const std::string& unit, double rate_hz, int steps,
              std::uint64_t seed, const std::string& stream_name);
 
-  /// `ideal` is the ideal mean over the physics step; `added` is added to the signal before the noise.
+  /// `ideal` is the ideal mean of the signal over the physics step; `added` is added to the signal before the noise.
   void step(const Eigen::Vector3d& ideal, const Eigen::Vector3d& added);
-  /// Ends the window with the exact ideal reading `exact`. Sets bit `first_bit + i` of `flags` for each element i that
-  /// saturated.
+  /// Sets bit `first_bit + i` of `flags` for each element i that saturated.
   TriadReading take(const Eigen::Vector3d& exact, int first_bit, std::uint8_t& flags);
 
   const Elements& elements() const { return elements_; }
@@ -53,7 +50,6 @@ class TriadChain {
     Eigen::Vector3d add(const Eigen::Vector3d& signal, const Eigen::Vector3d& ideal);
   };
 
-  /// Returns the reading of a device that integrates between outputs.
   TriadReading integrated(const Eigen::Vector3d& exact) const;
 
   double rate_hz_, noise_, precise_noise_, quantum_, precise_quantum_;

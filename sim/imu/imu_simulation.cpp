@@ -152,15 +152,14 @@ BodyState state_at(const Truth& truth, std::size_t k) {
           truth.v_WB_m_s[k], truth.w_WB_B_rad_s[k]};
 }
 
-/// Returns the ideal reading of a device mounted at T_BI for the motion between two states, including the lever arm.
 Ideal ideal_between(const BodyState& before, const BodyState& after, const Eigen::Isometry3d& T_BI,
                     double gravity_m_s2) {
   const Eigen::Matrix3d R_IB = T_BI.linear().transpose();
   return {R_IB * mean_rate_B(before, after), R_IB * specific_force_B(before, after, T_BI.translation(), gravity_m_s2)};
 }
 
-/// The attitudes at the ends of the window determine the rotation only up to full turns; the physics steps within the
-/// window determine the number of turns.
+/// The attitudes at the ends of the averaging window determine the rotation only up to full turns; the physics steps
+/// within the window determine the number of turns.
 Eigen::Vector3d unwound(const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& mean_of_steps_rad_s, double time_s) {
   constexpr double kRevolution_rad = 6.283185307179586;
   const double norm = rate_rad_s.norm();

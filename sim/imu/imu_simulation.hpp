@@ -16,24 +16,20 @@ struct GivenElements {
   std::optional<Elements> gyro, accel;
 };
 
-/// Simulates the readings and the truth of one IMU from the body's true motion. The ideal reading of an averaging
-/// window is the exact increment of the motion. The ideal rate is the rotation between the attitudes at the window's
-/// ends, divided by the duration. The ideal specific force is the change of the sensor's velocity minus gravity, in the
-/// axes of the attitude halfway. The integral of the ideal readings is therefore the true motion at any output rate,
-/// also through impacts.
+/// The ideal reading of an averaging window is the exact increment of the motion. The ideal rate is the rotation
+/// between the attitudes at the window's ends, divided by the duration. The ideal specific force is the change of the
+/// sensor's velocity minus gravity, in the axes of the attitude halfway. The integral of the ideal readings is
+/// therefore the true motion at any output rate, also through impacts.
 ///
 /// The unclipped readings in ImuTruth have the same noise as the readings, but no saturation. The model excludes
 /// temperature, vibration rectification and bending of the mount.
 ///
-/// `T_BI` is the true mounting of the IMU, and `sensor.values` must be complete (see resolve()). Clip flags mark
-/// windows in which an element saturated at any moment; a saturated tilted element also makes the readings of unflagged
-/// axes wrong. Throws InvalidSituation if the output period is not a whole number of physics steps, or if parameters
-/// contradict each other.
+/// Clip flags mark windows in which an element saturated at any moment; a saturated tilted element also makes the
+/// readings of unflagged axes wrong.
 void simulate_imu(const Truth& truth, const SensorSpec& sensor, const Eigen::Isometry3d& T_BI, double gravity_m_s2,
                   std::uint64_t seed, ImuRecord& record, ImuTruth& imu_truth, const GivenElements& given = {});
 
-/// Simulates the readings of an IMU at rest with z up for `duration_s`, without engine, body and magnetometer. The
-/// error chain runs at `chain_rate_hz` instead of the physics rate; an hour at 500 Hz takes about a second. The
+/// The error chain runs at `chain_rate_hz` instead of the physics rate; an hour at 500 Hz takes about a second. The
 /// bandwidths of the device must be 0 or below half of `chain_rate_hz`.
 void simulate_imu_at_rest(const SensorSpec& sensor, double duration_s, double chain_rate_hz, double gravity_m_s2,
                           std::uint64_t seed, ImuRecord& record, ImuTruth& imu_truth);

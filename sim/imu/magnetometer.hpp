@@ -26,10 +26,9 @@ struct MagneticField {
   Eigen::Vector3d at(const Eigen::Vector3d& p_W_m) const;
 };
 
-/// Draws the magnetic field of one situation: the Earth's field, and dipoles near the path `p_W_m`. The horizontal part
-/// of the Earth's field points earth_north_rad from the world's x axis towards y. The moments of the dipoles are
-/// log-uniform within a factor of 3 of magnetic_source_moment_a_m2, in random directions. Equal parameters and seeds
-/// give equal fields for every magnetometer.
+/// The horizontal part of the Earth's field points earth_north_rad from the world's x axis towards y. The moments of
+/// the dipoles are log-uniform within a factor of 3 of magnetic_source_moment_a_m2, in random directions. Equal
+/// parameters and seeds give equal fields for every magnetometer.
 MagneticField draw_magnetic_field(const Values& values, std::span<const Eigen::Vector3d> p_W_m, std::uint64_t seed);
 
 /// Magnetometer applies the errors of a magnetometer with three axes: soft iron (scale and misalignment), hard iron (a

@@ -28,7 +28,6 @@ class Rail {
     double recovery_s = 0.0;      ///< time constant of the offset after clipping; 0: no offset
     double recovery_share = 0.0;  ///< offset after clipping, as a fraction of the level
   };
-  /// `period_s` is the time between two calls of operator().
   Rail(const Params& params, double period_s, const Stream& stream);
 
   /// Applies saturation to each axis and sets bit `first_bit + axis` of `flags` for saturated axes.

@@ -24,12 +24,9 @@ class Sampling {
     std::uint8_t railed = 0;  ///< bits of elements that saturated at any step in the window
   };
 
-  /// `rate_hz` is the rate at which the caller calls `add`. If the device has a separate update rate, the phase of its
-  /// readings is drawn from `stream`.
+  /// If the device has a separate update rate, the phase of its readings is drawn from `stream`.
   Sampling(const Params& params, double rate_hz, Stream stream);
 
-  /// Returns whether the device averages over a separate window, instead of integrating between outputs. The other
-  /// members require on().
   bool on() const { return !ring_.empty(); }
   void add(const Reading& step);
   Reading output() const;

@@ -7,10 +7,9 @@
 
 #include "sim/random/stream.hpp"
 
-/// A stage that is off returns its input bit for bit, and draws no random numbers.
+/// A stage of the error model that is off returns its input bit for bit, and draws no random numbers.
 namespace tumble::sim {
 
-/// For `sigma` 0, the numbers are zero, and no random number is drawn.
 Eigen::Vector3d normals(Stream& stream, double sigma);
 
 /// The normally distributed number is truncated at three standard deviations; for `sigma` 0, no random number is drawn.
@@ -46,8 +45,8 @@ class LowPass {
   Eigen::Vector3d s1_ = Eigen::Vector3d::Zero(), s2_ = Eigen::Vector3d::Zero();
 };
 
-/// The diagonal of the matrix is 1 plus scale errors, and the other entries are six independent small angles; all
-/// errors are normally distributed.
+/// The diagonal of the axis error matrix is 1 plus scale errors, and the other entries are six independent small
+/// angles; all errors are normally distributed.
 Eigen::Matrix3d draw_axis_errors(Stream& stream, double scale_sigma, double misalignment_sigma_rad);
 
 /// RangeChoice selects for each axis the precise or the coarse range of a device with two ranges. An axis switches to
@@ -68,7 +67,6 @@ class RangeChoice {
 /// sqrt(rate).
 Eigen::Vector3d white_noise(Stream& stream, const Eigen::Vector3d& density, double rate_hz);
 
-/// A quantum of 0 switches rounding off.
 Eigen::Vector3d quantise(const Eigen::Vector3d& input, const Eigen::Vector3d& quantum);
 
 }  // namespace tumble::sim

@@ -9,7 +9,7 @@
 
 namespace tumble::sim {
 
-/// Maximum number of lidar beams (channels) that fire in one sequence (slot)
+/// Maximum number of lidar beams (channels) that fire in one sequence
 inline constexpr int kMaxChannels = 16;
 
 struct ChannelFirings {
@@ -17,10 +17,7 @@ struct ChannelFirings {
   alignas(64) double direction_x[kLanes], direction_y[kLanes], direction_z[kLanes];  ///< unit vectors
 };
 
-/// A FiringBlock contains the firings of up to kLanes consecutive slots; kLanes rays with similar directions are cast
-/// together. Lanes beyond the number of slots are also filled.
 struct FiringBlock {
-  /// Number of the slot since the start of the recording, which determines the random numbers of the slot
   std::int64_t first_slot = 0;
   int slots = 0;
   std::array<std::int64_t, kLanes> start_ns{};      ///< true start time of each slot since the start of the recording
@@ -29,9 +26,8 @@ struct FiringBlock {
   std::array<ChannelFirings, kMaxChannels> channel;
 };
 
-/// BeamPattern describes the times and directions of a lidar's firings. A slot is one sequence of all channels
-/// (spinning lidar), or one instant at which all units fire (rosette). Slot k starts at k times the slot period,
-/// counted over all sweeps.
+/// A slot is one sequence of all channels (spinning lidar), or one instant at which all units fire (rosette). Slot k
+/// starts at k times the slot period, counted over all sweeps.
 class BeamPattern {
  public:
   virtual ~BeamPattern() = default;
@@ -49,11 +45,8 @@ class BeamPattern {
 
   virtual void fire(std::int64_t sweep, std::int64_t slot, int slots, FiringBlock& block) const = 0;
 
-  /// Each slot is in one direction cell, so that results can be precomputed per channel and cell. Returns 0 for a
-  /// pattern that does not repeat.
+  /// Returns 0 for a firing pattern that does not repeat.
   virtual int cells() const { return 0; }
-  /// Returns the largest angle about the z axis of L between a firing in a direction cell and the firing at the middle
-  /// of the cell.
   virtual double cell_half_angle_rad() const { return 0.0; }
   virtual void fire_cells(int /*first*/, FiringBlock& /*block*/) const {}
 

@@ -10,7 +10,6 @@ namespace tumble::sim {
 
 inline constexpr int kMaxBeamRays = 16;
 
-/// The echo of a beam of finite width, per firing, determines the range that the device measures.
 struct Echoes {
   RayPacket packet;  ///< range of the echo; reflectivity and cosine of a single surface with equal energy
   alignas(64) float hit_x[kLanes], hit_y[kLanes], hit_z[kLanes];  ///< hit of the ray with the most energy, world axes

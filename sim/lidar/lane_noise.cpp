@@ -35,7 +35,7 @@ struct Words {
   }
 }
 
-/// Small numbers keep the relative precision of float, which the logarithm needs.
+/// Small random numbers keep the relative precision of float, which the logarithm needs.
 float unit_of(std::uint32_t word) {
   return (static_cast<float>(static_cast<std::int32_t>(word >> 1)) + 0.5f) * 0x1p-31f;
 }
@@ -81,7 +81,6 @@ LaneNoiseSource::LaneNoiseSource(const Stream& stream) {
     noise.normal[i + kBlocks] = radius * sine;
   }
   for (int i = 0; i < kBlocks; ++i) {
-    // With 23 bits, the largest uniform number is below 1 in float.
     noise.uniform[i] = (static_cast<float>(static_cast<std::int32_t>(words.word[2][i] >> 9)) + 0.5f) * 0x1p-23f;
     noise.uniform[i + kBlocks] =
         (static_cast<float>(static_cast<std::int32_t>(words.word[3][i] >> 9)) + 0.5f) * 0x1p-23f;

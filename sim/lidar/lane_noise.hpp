@@ -20,7 +20,7 @@ class LaneNoiseSource {
  public:
   explicit LaneNoiseSource(const Stream& stream);
 
-  /// `index` must be below 2^61.
+  /// The packet number `index` must be below 2^61.
   void draw(std::uint64_t index, LaneNoise& noise) const;
 
  private:

@@ -19,7 +19,6 @@ constexpr Parameter elevation(std::string_view name, double value_rad) {
           "elevation of this channel; channels are numbered in firing order"};
 }
 
-// The default values are those of the lidars RS-16 and Mid-100.
 constexpr Parameter kRangeNoise{
     "range_noise_m", 0.02, 0.0, 10.0, "m", "standard deviation of a range, independent from point to point; 0: off"};
 constexpr Parameter kReferenceReflectivity{"detection_reflectivity",
@@ -139,7 +138,7 @@ constexpr std::array kSpinning = {
               "passes at half the true rate; 0: correct time stamps"},
 };
 
-// The default values are from the Ouster OS1 with 64 rings.
+// The default values are those of the Ouster OS1 with 64 rings.
 constexpr std::array kColumn = {
     kSpinRate,
     kClockwise,

@@ -18,9 +18,8 @@ struct MotionTrack {
   std::span<const Eigen::Quaterniond> q_WB;
 };
 
-/// Casts all sweeps of one lidar over a motion, and applies the errors of the device: range noise and quantum,
-/// drop-outs. Each point is cast from the true sensor pose at its firing time; a ray without a hit gives no point. The
-/// results are independent of the number of threads. `T_BL` is the true mounting of the lidar.
+/// Each point is cast from the true sensor pose at its firing time; a ray without a hit gives no point. The results are
+/// independent of the number of threads.
 void simulate_lidar(const engine::World& world, const SensorSpec& sensor, const Eigen::Isometry3d& T_BL,
                     const MotionTrack& motion, std::uint64_t seed, int threads, LidarRecord& record, LidarTruth& truth);
 

@@ -9,7 +9,6 @@
 
 namespace tumble::sim {
 
-/// A measurement is valid if `kept` is set.
 struct Returns {
   bool kept[kLanes];
   alignas(64) float range_m[kLanes];

@@ -74,7 +74,6 @@ struct Shares {
 
 void BlockPoses::follow(const BeamPattern& pattern, const FiringBlock& block, TrackCursor& track) {
   const std::int64_t length_ns = pattern.slot_length_ns();
-  // Lanes without a slot repeat the last slot, so that all lanes are initialised.
   const auto start_ns = [&](int lane) { return block.start_ns[std::min(lane, block.slots - 1)]; };
   const auto middle_ns = [&](int lane) { return start_ns(lane) + length_ns / 2; };
   broken_count_ = 0;
@@ -82,7 +81,6 @@ void BlockPoses::follow(const BeamPattern& pattern, const FiringBlock& block, Tr
     const TrackCursor::Interval& now = track.interval(middle_ns(from));
     Shares shares;
     for (int s = 0; s < kLanes; ++s) {
-      // Lanes beyond this interval are computed again with the next interval.
       shares.within[s] = s >= from ? 1.0 : 0.0;
       shares.share[s] = now.share(middle_ns(std::max(s, from)));
     }

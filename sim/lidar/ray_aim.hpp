@@ -6,9 +6,8 @@
 
 namespace tumble::sim {
 
-/// BlockPoses computes the lidar's pose for a block of firings, and converts firings to world rays, each at its own
-/// firing time. Within a slot (50 us), the pose is extrapolated with the rate at the middle of the slot; at 20 rad/s,
-/// the error is (rate dt)^2 / 2 = 1e-7 rad.
+/// Within a slot (50 us), the pose is extrapolated with the rate at the middle of the slot; at 20 rad/s, the error is
+/// (rate dt)^2 / 2 = 1e-7 rad.
 class BlockPoses {
  public:
   void follow(const BeamPattern& pattern, const FiringBlock& block, TrackCursor& track);

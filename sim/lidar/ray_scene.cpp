@@ -36,8 +36,7 @@ constexpr const char* kDevice =
     "start_threads=0,set_affinity=0,isa=avx2,frequency_level=simd256,ignore_config_files=1";
 constexpr int kKernelLanes = 8;
 static_assert(kKernelLanes == kShapeLanes && NearestHits::kNone == RTC_INVALID_GEOMETRY_ID);
-/// Embree divides with an approximate reciprocal that differs between CPU vendors. RayScene therefore recomputes all
-/// faces within the factor kReach of the nearest hit that Embree reports.
+/// RayScene therefore recomputes all faces within the factor kReach of the nearest hit that Embree reports.
 constexpr float kReach = 1.0f + 4e-6f;
 
 struct MeshLabel {
@@ -52,7 +51,7 @@ struct MeshLabel {
   }
 };
 
-/// Embree's callback functions receive the address of the first member; the id of a ray is the index of its lane.
+/// Embree passes only the address of the first member to callback functions.
 struct CastContext {
   RTCIntersectContext embree;
   const std::vector<MeshLabel>* meshes;
@@ -69,7 +68,6 @@ float searched_to(double range_m) {
 
 /// Combines pairs of triangles (a, b, c), (a, c, d), as in a height field, into quads (b, c, d, a), which Embree cuts
 /// along the diagonal of the pair. With quads, building the scene takes half the time, and casting takes 10 % less.
-/// Returns an empty list if the triangles do not form pairs.
 std::vector<std::array<std::uint32_t, 4>> paired(const std::vector<std::array<std::uint32_t, 3>>& triangles) {
   std::vector<std::array<std::uint32_t, 4>> quads;
   if (triangles.size() % 2 != 0) return quads;
@@ -101,15 +99,12 @@ Ray ray_at(RTCRayN* rays, unsigned int count, unsigned int i) {
           Vector3d(RTCRayN_dir_x(rays, count, i), RTCRayN_dir_y(rays, count, i), RTCRayN_dir_z(rays, count, i))};
 }
 
-/// For a quad, `second_half` selects the half through which the ray passes; Embree's approximate reciprocal is accurate
-/// enough for this selection.
 double meet_face(const MeshLabel& mesh, unsigned int face, const Ray& ray, bool second_half, Vector3d& normal) {
-  // Corners are relative to the ray's origin; double represents the differences of floats exactly.
   const auto corner = [&](std::uint32_t i) -> Vector3d { return mesh.corner(face, i).cast<double>() - ray.origin; };
   Vector3d a = corner(0), b = corner(1), c = corner(2);
   if (mesh.as_quads) {
     const Vector3d d = corner(3);
-    // For the quad (b, c, d, a) of the pair (a, b, c), (a, c, d), corners 1 and 3 are the ends of the diagonal.
+    // For the quad (b, c, d, a) of the triangles (a, b, c) and (a, c, d), corners 1 and 3 are the ends of the diagonal.
     const Vector3d across = b.cross(d);
     const bool beside_first = across.dot(a) >= 0.0, beside_second = across.dot(c) >= 0.0;
     const bool in_second =
@@ -123,7 +118,6 @@ double meet_face(const MeshLabel& mesh, unsigned int face, const Ray& ray, bool 
   return normal.dot(a) / normal.dot(ray.direction);
 }
 
-/// Embree calls this filter for every hit within the range of a ray, in unspecified order.
 void keep_nearest(const RTCFilterFunctionNArguments* args) {
   CastContext& cast = cast_context(args->context);
   for (unsigned int i = 0; i < args->N; ++i) {
@@ -142,7 +136,6 @@ void keep_nearest(const RTCFilterFunctionNArguments* args) {
   }
 }
 
-/// Embree always passes eight rays; some rays may be inactive.
 void intersect_shape(const RTCIntersectFunctionNArguments* args) {
   const Shape& shape = static_cast<const SceneShape*>(args->geometryUserPtr)[args->primID].shape;
   CastContext& cast = cast_context(args->context);
@@ -242,7 +235,7 @@ RayScene::RayScene(const SceneGeometry& geometry) : impl_(std::make_unique<Impl>
   }
   for (const SceneMesh& part : geometry.meshes) impl_->add_mesh(part);
   impl_->add_shapes();
-  // The arena has one thread, because building must not use threads that the caller did not provide.
+  // The task arena has one thread, because building the scene must not use threads that the caller did not provide.
   tbb::task_arena(1).execute([this] { rtcCommitScene(impl_->scene.get()); });
   const RTCError error = rtcGetDeviceError(impl_->device.get());
   if (error != RTC_ERROR_NONE) throw std::runtime_error("lidar: Embree error " + std::to_string(error));
@@ -276,7 +269,6 @@ void RayScene::Impl::cast_lanes(const RayPacket& packet, int first, CastContext&
   RTCRayHit8 rays;
   alignas(32) int valid[kKernelLanes];
   for (int i = 0; i < kKernelLanes; ++i) {
-    // An unused lane repeats the first lane with an empty range, so that its input is defined.
     const bool used = first + i < packet.count;
     const int lane = used ? first + i : first;
     valid[i] = used ? -1 : 0;

@@ -9,10 +9,9 @@
 
 namespace tumble::sim {
 
-/// The kLanes rays that are cast together belong to one lidar channel at successive times, and have similar directions.
+/// The rays that are cast together belong to one lidar channel at successive times, and have similar directions.
 inline constexpr int kLanes = 16;
 
-/// Only lanes with index below `count` are cast.
 struct RayPacket {
   int count = kLanes;
   alignas(64) float origin_x[kLanes], origin_y[kLanes], origin_z[kLanes];
@@ -26,9 +25,8 @@ struct RayPacket {
 
 inline constexpr std::int32_t kNothing = -1;
 
-/// RayScene casts rays on a fixed geometry (Embree, plus infinite planes), and computes distances to it. Several
-/// threads may call const members. The coordinates are float: at 50 m from the origin, a hit is accurate to about 1e-5
-/// m. The results are bit-identical on every x86-64 CPU with AVX2 and FMA. Throws std::runtime_error on other CPUs.
+/// Several threads may call const members. The coordinates are float: at 50 m from the origin, a hit is accurate to
+/// about 1e-5 m. The results are bit-identical on every x86-64 CPU with AVX2 and FMA.
 class RayScene {
  public:
   explicit RayScene(const SceneGeometry& geometry);

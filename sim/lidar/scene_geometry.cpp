@@ -41,8 +41,8 @@ class HeightField {
   const float* data_;
 };
 
-/// As in MuJoCo, each cell of the grid consists of two triangles, cut along the diagonal from (row, column) to (row +
-/// 1, column + 1).
+/// As in MuJoCo, each cell of the height field consists of two triangles, cut along the diagonal from (row, column) to
+/// (row + 1, column + 1).
 TriangleMesh height_field_top(const HeightField& field, const Isometry3d& T_FS) {
   TriangleMesh mesh;
   mesh.vertices_F_m.reserve(static_cast<std::size_t>(field.rows()) * field.columns());
@@ -63,8 +63,6 @@ TriangleMesh height_field_top(const HeightField& field, const Isometry3d& T_FS) 
   return mesh;
 }
 
-/// Adds a vertical wall from an edge of the height field down to height zero; the edge consists of the nodes `row`,
-/// `column` plus multiples of `row_step`, `column_step`.
 void append_wall(const HeightField& field, const Isometry3d& T_FS, int row, int column, int row_step, int column_step,
                  TriangleMesh& mesh) {
   const int count = row_step != 0 ? field.rows() : field.columns();

@@ -44,19 +44,18 @@ enum class HeightFieldSides { open, closed };
 /// InvalidSituation for a geom type whose surface is not supported (SDF).
 SceneGeometry static_geometry(const engine::World& world, HeightFieldSides sides);
 
-/// Returns the robot's colliding geoms in the axes of a lidar mounted at `T_BL`, with id kOwnCage. Primitives that
-/// contain the origin of L (the housing of the lidar, or a shell around it) are omitted, because they are transparent.
+/// Primitives that contain the origin of L (the housing of the lidar, or a shell around it) are omitted, because they
+/// are transparent.
 SceneGeometry cage_geometry(const engine::World& world, const Eigen::Isometry3d& T_BL);
 
 Eigen::Isometry3d geom_pose(const mjData& data, int geom);
 
-/// `T_FS` converts geom axes S to the frame F. Throws InvalidSituation for a geom type whose surface is not supported
-/// (SDF).
+/// Throws InvalidSituation for a geom type whose surface is not supported (SDF).
 void append_geom(const mjModel& model, int geom, const Eigen::Isometry3d& T_FS, std::int32_t surface_id,
                  HeightFieldSides sides, SceneGeometry& scene);
 
 /// Returns the luminance (ITU-R BT.709) of the geom's colour times the mean colour of its texture, limited to
-/// 0.05..0.95. Real surfaces have other reflectivities at 905 nm than for visible light.
+/// 0.05..0.95.
 float geom_reflectivity(const mjModel& model, int geom);
 
 }  // namespace tumble::sim

@@ -8,9 +8,8 @@ namespace tumble::sim {
 
 enum class ShapeKind : std::uint8_t { plane, sphere, capsule, ellipsoid, cylinder, box };
 
-/// Shape is a primitive with its pose in a frame F (world or body); its axes S and its size `size_m` are defined as in
-/// MuJoCo. A plane has half sizes x, y (0: infinite) and the normal z. A capsule and a cylinder have a radius and a
-/// half length along z.
+/// A plane has half sizes x, y (0: infinite) and the normal z. A capsule and a cylinder have a radius and a half length
+/// along z.
 struct Shape {
   ShapeKind kind = ShapeKind::sphere;
   Eigen::Vector3d size_m = Eigen::Vector3d::Zero();
@@ -18,9 +17,7 @@ struct Shape {
   Eigen::Vector3d p_FS_m = Eigen::Vector3d::Zero();
 };
 
-/// Returns the distance along the unit vector `direction_F` to the first crossing of the surface, from outside or
-/// inside, or infinity without a crossing. A ray hits a plane only from its front, as in mj_ray. `normal_F` is the
-/// outward unit normal at the hit.
+/// A ray hits a plane only from its front, as in mj_ray.
 double cast_ray(const Shape& shape, const Eigen::Vector3d& origin_F_m, const Eigen::Vector3d& direction_F,
                 Eigen::Vector3d& normal_F);
 
@@ -29,7 +26,6 @@ double surface_distance(const Shape& shape, const Eigen::Vector3d& point_F_m);
 
 bool contains(const Shape& shape, const Eigen::Vector3d& point_F_m);
 
-/// Returns the half sizes of the shape's bounding box along its axes S; infinite along an unbounded plane.
 Eigen::Vector3d half_extent(const Shape& shape);
 
 }  // namespace tumble::sim

@@ -9,7 +9,6 @@ inline constexpr int kShapeLanes = 8;
 
 struct ShapeHits {
   alignas(64) double range_m[kShapeLanes];  ///< infinity without a hit
-  /// Unit normal of the surface in F; undefined without a hit
   alignas(64) double normal_x[kShapeLanes], normal_y[kShapeLanes], normal_z[kShapeLanes];
 };
 
@@ -18,8 +17,6 @@ struct ShapeRays {
   const float *direction_x, *direction_y, *direction_z;  ///< unit vectors
 };
 
-/// Computes the result of cast_ray() for eight rays, bit-identically. The hit of a ray is undefined if its entry of
-/// `wanted` is 0.
 void cast_rays(const Shape& shape, const ShapeRays& rays, const int* wanted, ShapeHits& hits);
 
 }  // namespace tumble::sim

@@ -10,7 +10,6 @@
 
 namespace tumble::sim {
 
-/// The error of a map is the distance of its points from the true surface of the situation's static world.
 class Surface {
  public:
   explicit Surface(const BuiltSituation& built);

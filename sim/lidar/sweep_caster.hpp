@@ -36,7 +36,6 @@ class SweepCaster {
 
   const BeamPattern& pattern() const { return *pattern_; }
   std::size_t firings(std::int64_t sweep) const;
-  /// The result depends only on the motion and the seed.
   void cast_sweep(std::int64_t number, SweepPoints& points) const;
 
  private:

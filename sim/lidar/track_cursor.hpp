@@ -15,7 +15,7 @@ using Pose34 = Eigen::Matrix<double, 3, 4>;
 
 /// TrackCursor interpolates the true pose of a lidar between the samples of the body's motion: position linearly,
 /// attitude at a constant rate about a fixed axis. With samples 0.5 ms apart, the error is a dt^2 / 8 = 3e-8 s^2 times
-/// the acceleration a: 13 um at 400 m/s^2. After the last motion sample, TrackCursor extrapolates the last interval.
+/// the acceleration a: 13 um at 400 m/s^2.
 class TrackCursor {
  public:
   /// At the fraction `x` of the interval between two motion samples, the body has rotated by the angle a = x |turn|
@@ -32,8 +32,8 @@ class TrackCursor {
     double share(std::int64_t time_ns) const { return static_cast<double>(time_ns - start_ns) * per_ns; }
   };
 
-  /// Below this squared angle, the series of sin(a)/a and (1 - cos(a))/a^2 are accurate to 1e-16; 0.02 rad is 40 rad/s
-  /// over 0.5 ms.
+  /// Below the squared angle kSmall2, the series of sin(a)/a and (1 - cos(a))/a^2 are accurate to 1e-16; 0.02 rad is 40
+  /// rad/s over 0.5 ms.
   static constexpr double kSmall2 = 4e-4;
   static double sinc_of_small(double angle2) {
     return 1.0 - angle2 / 6.0 * (1.0 - angle2 / 20.0 * (1.0 - angle2 / 42.0));

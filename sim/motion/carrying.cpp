@@ -7,7 +7,6 @@ namespace tumble::sim {
 
 namespace {
 
-/// The rotation vector has equal coordinates in the axes of both attitudes.
 Eigen::Vector3d turn(const Eigen::Quaterniond& from, const Eigen::Quaterniond& to) {
   const Eigen::AngleAxisd turned(from.conjugate() * to);
   return turned.angle() * turned.axis();
@@ -32,7 +31,6 @@ Wrench carry_along(const HoldingHand& hand, const Eigen::Matrix3d& inertia_B_kg_
   Wrench out;
   out.force_W_n = hand.weight_n() + hand.mass_kg() * (a_m_s2 + kStiffness_1_s2 * (now.p_m - state.p_WB_m) +
                                                       kDamping_1_s * (v_m_s - state.v_WB_m_s));
-  // Angular acceleration of the path plus that of spring and damper, in body axes
   const Eigen::Vector3d aim_rad_s2 =
       alpha_rad_s2 + kStiffness_1_s2 * turn(state.q_WB, now.q) + kDamping_1_s * (w_rad_s - state.w_WB_B_rad_s);
   out.torque_W_nm =

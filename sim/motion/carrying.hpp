@@ -14,11 +14,11 @@ struct HandHeldPose {
   Eigen::Quaterniond q;
 };
 
-/// The path is differentiated twice numerically, so its velocity must be continuous.
+/// The path of the hand is differentiated twice numerically, so its velocity must be continuous.
 using HandHeldPath = std::function<HandHeldPose(double time_s)>;
 
 /// Returns the wrench (force and torque) of a hand that carries a robot along a path: feed-forward of the path's
-/// acceleration, plus a spring and a damper. `inertia_B_kg_m2` is about the centre of mass, in B axes.
+/// acceleration, plus a spring and a damper.
 Wrench carry_along(const HoldingHand& hand, const Eigen::Matrix3d& inertia_B_kg_m2, const BodyState& state,
                    const HandHeldPath& path);
 

@@ -10,11 +10,10 @@ namespace tumble::sim {
 namespace {
 
 constexpr double kTremorLow_hz = 0.7, kTremorHigh_hz = 9.0;
-// A waiting hand is steady; from this speed on, the tremor has its full amplitude.
+// From this speed on, the hand's tremor has its full amplitude.
 constexpr double kFullTremor_m_s = 0.1;
 
-/// Returns the smallest rotation that turns the unit vector `from` upwards. Eigen's setFromTwoVectors would take 6 s to
-/// compile.
+/// Eigen's setFromTwoVectors would take 6 s to compile.
 Eigen::Quaterniond turn_up(const Eigen::Vector3d& from) {
   const double cosine = from.z();
   if (cosine < -1.0 + 1e-12) return {0.0, 1.0, 0.0, 0.0};

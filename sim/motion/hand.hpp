@@ -10,7 +10,6 @@
 
 namespace tumble::sim {
 
-/// Position to which the hand pulls the geometric centre of a sphere
 struct Reference {
   Eigen::Vector3d p_m = Eigen::Vector3d::Zero(), v_m_s = Eigen::Vector3d::Zero(), a_m_s2 = Eigen::Vector3d::Zero();
 };
@@ -57,13 +56,12 @@ constexpr std::array<Parameter, kHandParameters.size() + N> with_hand(const std:
 /// bursts of torque.
 class Hand {
  public:
-  /// Throws InvalidSituation if the robot is not a sphere. `world` must outlive the hand.
+  /// `world` must outlive the hand.
   Hand(const std::string& motion, const Values& values, const engine::World& world);
 
   double radius_m() const { return radius_m_; }
-  /// The heavy side of the sphere points down, so the sphere is in equilibrium.
   BodyState at_rest(const Eigen::Vector3d& p_G_m) const;
-  /// Times must increase between calls, because the function stores when a burst began.
+  /// Times must increase between calls of wrench(), because the function stores when a burst of torque began.
   Wrench wrench(const BodyState& state, const Reference& reference);
 
  private:

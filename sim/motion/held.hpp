@@ -13,8 +13,7 @@ namespace tumble::sim {
 /// the centre of mass that carries the weight.
 class HoldingHand {
  public:
-  /// The lowest point of the robot is `height_m` above the ground at the start. Throws InvalidSituation for a height of
-  /// 0 or less.
+  /// The lowest point of the robot is `height_m` above the ground at the start.
   HoldingHand(const engine::World& world, const Eigen::Quaterniond& q_WB, const Eigen::Vector3d& offset_W_m,
               double height_m);
 

@@ -15,9 +15,9 @@ namespace tumble::sim {
 class Motion {
  public:
   virtual ~Motion() = default;
-  /// The pose is at rest just above the ground, so that the robot settles under gravity before the recording starts.
   virtual BodyState start() const = 0;
-  /// Returns the wrench from `state.time_s` to the next step; before time 0, the robot settles into its contacts.
+  /// Returns the wrench (force and torque) from `state.time_s` to the next step; before time 0, the robot settles into
+  /// its contacts.
   virtual Wrench wrench(const BodyState& state) = 0;
 };
 

@@ -8,7 +8,6 @@
 
 namespace tumble::sim {
 
-/// Scenarios select a path shape by number.
 enum class PathShape {
   line,   ///< straight along +x, with an optional lateral sway
   l,      ///< two equal legs with a corner to the left
@@ -26,8 +25,7 @@ struct PathPlan {
   double sway_length_m = 4.0;  ///< line only: wavelength of the lateral sway
 };
 
-/// Returns nodes of the path about 5 mm apart, with the centre of their bounding box at the origin. Only the free path
-/// draws random numbers from `stream`.
+/// Only the free path draws random numbers from `stream`.
 std::vector<Eigen::Vector2d> plan_path(const PathPlan& plan, Stream& stream);
 
 }  // namespace tumble::sim

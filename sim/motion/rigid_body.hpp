@@ -15,7 +15,6 @@ double clearance_m(const mjModel& model, int body, const Eigen::Quaterniond& q_W
 /// Returns the moment of inertia about the centre of mass, in world axes [kg m^2].
 Eigen::Matrix3d inertia_W_kg_m2(const mjModel& model, int body, const Eigen::Quaterniond& q_WB);
 
-/// Returns the value of a raised-cosine pulse over [0, 1] with integral 1.
 double raised_cosine(double share);
 
 }  // namespace tumble::sim

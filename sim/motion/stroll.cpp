@@ -60,7 +60,6 @@ class Stroll : public Motion {
   }
 
  private:
-  /// The phase rate along the figure of eight rises smoothly from zero, and falls to zero at the end.
   double phase_rad(double walked_s) const {
     const auto begun_s = [this](double t_s) {  // integral of `eased` up to a time within the first `ease_s`
       const double u = std::clamp(t_s / ease_s_, 0.0, 1.0);
@@ -80,7 +79,7 @@ class Stroll : public Motion {
 
   HandHeldPose path(double time_s) const {
     const double walked_s = time_s - values_.at("rest_s"), phase = phase_rad(walked_s);
-    // The tremor starts and ends within a second, with continuous acceleration.
+    // The tremor of the hand starts and ends within a second, with continuous acceleration.
     const double share = eased(walked_s) * eased(walk_s_ - walked_s);
     const double step_rad = 2.0 * std::numbers::pi * values_.at("step_hz") * walked_s;
     const Eigen::Vector3d eight_m(half_length_m_ * std::sin(phase), half_width_m_ * std::sin(2.0 * phase),

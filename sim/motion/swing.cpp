@@ -55,7 +55,6 @@ std::vector<Lift> plan_lifts(const Values& values, Stream& stream) {
   return lifts;
 }
 
-/// Returns a smooth step from 0 to 1 with zero velocity and acceleration at its ends.
 double smooth(double share) {
   const double u = std::clamp(share, 0.0, 1.0);
   return u * u * u * (10.0 + u * (-15.0 + 6.0 * u));

@@ -43,7 +43,6 @@ constexpr std::array kTwirlParameters = {
 constexpr double kTwirlSwayLow_hz = 0.3, kTwirlSwayHigh_hz = 4.0;
 constexpr double kTwirlLongest_s = 120.0;
 
-/// One twist of the wrist or the fingers, from rest to rest, has a rate in the form of a sin^2 pulse.
 struct Stroke {
   static constexpr double kRise = 1.0 / 3.0;
   double start_s, length_s, peak_rad_s;
@@ -103,7 +102,6 @@ class Twirl : public Motion {
       if (time_s <= stroke.start_s) break;
       spun_rad += stroke.angle_rad(time_s);
     }
-    // The tremor starts within a second, with continuous acceleration.
     const double share = eased(time_s - rest_s_);
     const Eigen::Vector3d sway_m(positions_[0].at(time_s), positions_[1].at(time_s), positions_[2].at(time_s));
     const BodyState start = hand_.start();

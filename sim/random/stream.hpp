@@ -7,9 +7,9 @@
 
 namespace tumble::sim {
 
-/// Stream is a named, independent stream of random numbers: `Stream(seed, "imu.noise")`. The stream is counter-based
-/// (Philox 4x32-10, Salmon et al., SC 2011): each number depends only on its index, not on threads and order. Stream
-/// has its own implementation of distributions, because standard libraries have different ones.
+/// The stream is counter-based (Philox 4x32-10, Salmon et al., SC 2011): each number depends only on its index, not on
+/// threads and order. Stream has its own implementation of distributions, because standard libraries have different
+/// ones.
 class Stream {
  public:
   Stream(std::uint64_t seed, std::string_view name);

@@ -4,7 +4,6 @@
 #include "sim/engine/model.hpp"
 #include "sim/render/renderer.hpp"
 
-/// The caller must provide enough geoms in MuJoCo's scene, see decoration_size().
 namespace tumble::sim {
 
 int decoration_size(const engine::World& world, const View& view);

@@ -12,7 +12,6 @@ struct Framing {
   double distance_m;
 };
 
-/// `robot_radius_m` is the space around a robot's origin; `fovy_rad` is the vertical field of view.
 Framing frame(const View& view, double robot_radius_m, double fovy_rad);
 
 }  // namespace tumble::sim

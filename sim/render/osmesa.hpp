@@ -13,8 +13,8 @@ struct OsMesa {
   decltype(&::OSMesaMakeCurrent) make_current;
 };
 
-/// Loads OSMesa once for the life of the process. The symbols of OSMesa are then visible to MuJoCo, which looks up
-/// OpenGL functions by name. Throws std::runtime_error if loading fails; may be called from any thread.
+/// The symbols of OSMesa are then visible to MuJoCo, which looks up OpenGL functions by name. Throws std::runtime_error
+/// if loading fails; may be called from any thread.
 const OsMesa& osmesa();
 
 }  // namespace tumble::sim

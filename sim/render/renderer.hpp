@@ -47,8 +47,7 @@ struct View {
 
 class Renderer {
  public:
-  /// The shadow map has `shadow_pixels` per side; the rendering cost grows with the square of `shadow_pixels`. Throws
-  /// std::runtime_error if no OSMesa context can be created.
+  /// The shadow map has `shadow_pixels` per side; the rendering cost grows with the square of `shadow_pixels`.
   explicit Renderer(const BuiltSituation& built, int shadow_pixels = 4096);
   ~Renderer();
   Renderer(Renderer&&) noexcept;

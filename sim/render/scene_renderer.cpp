@@ -35,7 +35,6 @@ class Current {
   Current& operator=(const Current&) = delete;
 
  private:
-  // Pictures are drawn into a frame buffer object, so the buffer of the context is unused.
   static constexpr int kSide = 16;
   unsigned char pixels_[4 * kSide * kSide];
 };
@@ -84,7 +83,6 @@ void set_look(mjModel& model, int shadow_pixels) {
   model.vis.quality.offsamples = 0;
   model.vis.quality.numslices = 24;
   model.vis.quality.numstacks = 14;
-  // Soft light from the camera brightens the sun's shadows.
   for (int c = 0; c < 3; ++c) {
     model.vis.headlight.ambient[c] = 0.28f;
     model.vis.headlight.diffuse[c] = 0.30f;

@@ -8,8 +8,7 @@
 
 namespace tumble::sim {
 
-/// SceneRenderer renders pictures of a compiled world (OSMesa, MuJoCo's renderer), without a display. Any thread may
-/// use the renderer, but only one thread at a time, because an OSMesa context is current in one thread.
+/// Any thread may use the renderer, but only one thread at a time, because an OSMesa context is current in one thread.
 class SceneRenderer {
  public:
   SceneRenderer(engine::World world, int shadow_pixels);

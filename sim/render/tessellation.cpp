@@ -44,7 +44,6 @@ void add_round(const Shape& shape, const std::vector<Ring>& rings, int segments,
   }
 }
 
-/// For a capsule, a tube of half length `half_m` separates the two halves of the ellipsoid.
 void add_ellipsoid(const Shape& shape, const Vector3d& semi_m, double half_m, int segments, Tessellation& out) {
   const int steps = segments / 2;
   std::vector<Ring> rings;

@@ -10,8 +10,7 @@
 
 namespace tumble::sim {
 
-/// Corners of triangles are anticlockwise seen from outside. Triangles that share a vertex form one smooth surface;
-/// sharp edges have two vertices at one position.
+/// Triangles that share a vertex form one smooth surface; sharp edges have two vertices at one position.
 struct Tessellation {
   std::vector<Eigen::Vector3f> vertices_F_m;
   std::vector<std::array<std::uint32_t, 3>> triangles;

@@ -12,7 +12,6 @@ namespace tumble::sim {
 struct RobotType {
   ComponentType component;
   std::string_view file;  ///< file in the folder of models
-  /// Also fills in com_offset_m and sphere_radius_m of `world`.
   void (*shape)(mjSpec* spec, const Values& values, engine::World& world);
   /// Body of the MJCF file that carries all sensor sites, with its origin at its centre of mass
   std::string_view sensor_body = "robot";
@@ -27,7 +26,6 @@ std::span<const RobotType* const> all_robot_types();
 const RobotType& find_robot_type(std::string_view name);
 
 void move_parts(mjsBody* body, const Eigen::Vector3d& shift_m);
-/// The time constant and damping ratio are those of MuJoCo's solref.
 void set_contact(mjsBody* body, double time_s, double damping_ratio);
 
 }  // namespace tumble::sim

@@ -47,9 +47,9 @@ struct Measured {
 };
 
 /// A reading is the mean over an averaging window with bias, white noise, range, quantum, time stamps and losses. A
-/// sample that the device loses is also missing in the truth. `constants` are the names of the sensor's numbers that
-/// estimators receive with the recording. Throws InvalidSituation if the output period is not a whole number of physics
-/// steps. The model excludes temperature errors, drift, and any bandwidth limit except the averaging window.
+/// sample that the device loses is also missing in the truth. Throws InvalidSituation if the output period is not a
+/// whole number of physics steps. The model excludes temperature errors, drift, and any bandwidth limit except the
+/// averaging window.
 void simulate_series(const SensorContext& context, const std::vector<Measured>& quantities,
                      const std::vector<std::string>& constants, Recording& recording);
 

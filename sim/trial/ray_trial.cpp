@@ -36,7 +36,6 @@ class EngineRays {
     return {range_m, geom};
   }
 
-  /// Negative if the ray misses the geom
   double range_to(int geom, const Vector3d& origin_m, const Vector3d& direction) const {
     const mjModel* model = world_.model.get();
     const int type = model->geom_type[geom];

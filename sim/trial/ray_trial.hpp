@@ -10,7 +10,7 @@ namespace tumble::sim {
 struct RayDisagreement {
   std::int64_t rays = 0;
   std::int64_t hits = 0;  ///< number of hits of the engine's rays
-  /// Number of rays for which the two hits are on different surfaces, or only one of the two rays has a hit
+  /// Number of rays for which the lidar and MuJoCo hit different surfaces, or only one of them has a hit
   std::int64_t other_surface = 0;
   double largest_difference_m = 0.0;  ///< largest difference of ranges on the same surface
 };
@@ -18,7 +18,7 @@ struct RayDisagreement {
 struct RayTrialOptions {
   int rays = 2000;
   std::uint64_t seed = 1;
-  /// Displacement of the rays of the ray scene: a deliberate error that the comparison must detect
+  /// Displacement of the lidar's rays: a deliberate error that the comparison with MuJoCo's rays must detect
   double mirror_shift_m = 0.0;
   int surface_shift = 0;  ///< number added to the surface ids of the ray scene; another deliberate error
 };

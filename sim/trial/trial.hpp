@@ -44,7 +44,6 @@ class Trial {
   double joint_rad(const std::string& name) const;
   double joint_rate_rad_s(const std::string& name) const;
   void set_joint(const std::string& name, double angle_rad, double rate_rad_s);
-  /// Throws SimulationFailure like Physics::step.
   void step(const Wrench& wrench = {});
   std::vector<ContactTruth> contacts() const;
 

@@ -9,8 +9,8 @@
 
 namespace tumble::sim {
 
-/// A sensor may be below the ground by up to kDipDepth_m for any time, and deeper for up to kDip_s. In a hard impact,
-/// the soft contact yields by several centimetres for about 30 ms. A longer penetration means that the robot is wedged.
+/// In a hard impact, the soft contact yields by several centimetres for about 30 ms. A longer penetration means that
+/// the robot is wedged.
 inline constexpr double kDipDepth_m = 0.01;
 inline constexpr double kDip_s = 0.05;
 

@@ -9,19 +9,15 @@
 
 namespace tumble::sim {
 
-/// Lets the robot settle at the motion's start, then records the true motion of `duration_s` at every step; the sensor
-/// parts of Truth stay empty. Throws SimulationFailure like Physics::step, and if the robot does not come to rest
-/// before the start or never moves.
+/// Throws SimulationFailure like Physics::step, and if the robot does not come to rest before the start or never moves.
 Truth record_truth(engine::World& world, Motion& motion, double duration_s);
 
 /// Returns the mean specific force at a body-fixed point over one step, in the axes of the attitude halfway: R_mid^T
-/// ((v1 - v0)/dt - g). `p_BP_m` is the position of the point in frame B. The sum of R_mid f dt + g dt over all steps is
-/// exactly the change of the point's velocity.
+/// ((v1 - v0)/dt - g). The sum of R_mid f dt + g dt over all steps is exactly the change of the point's velocity.
 Eigen::Vector3d specific_force_B(const BodyState& before, const BodyState& after, const Eigen::Vector3d& p_BP_m,
                                  double gravity_m_s2);
 
-/// Returns the mean rate over one step: the rotation between the two attitudes divided by the time. The mean rate has
-/// no discretisation error if the body turns by less than pi in the step.
+/// The mean rate has no discretisation error if the body turns by less than pi in the step.
 Eigen::Vector3d mean_rate_B(const BodyState& before, const BodyState& after);
 
 /// Labels every physics sample by the contacts within 10 ms, because contacts are interrupted: at low friction, a third

@@ -30,7 +30,6 @@ constexpr Colour kWall = {0.85f, 0.84f, 0.8f, 1.0f}, kDoor = {0.45f, 0.3f, 0.2f,
                  kFrame = {0.3f, 0.34f, 0.4f, 1.0f}, kPillar = {0.6f, 0.62f, 0.66f, 1.0f},
                  kLocker = {0.35f, 0.5f, 0.55f, 1.0f};
 
-/// `side` is +1 for the left wall of the corridor.
 class Side {
  public:
   Side(mjSpec* spec, engine::World& world, const Values& values, int side, Stream& stream)

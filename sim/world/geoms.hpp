@@ -13,8 +13,7 @@ namespace tumble::sim {
 
 using Colour = std::array<float, 4>;
 
-/// Adds a static geom that a robot touches and a lidar sees. `size_m` is MuJoCo's size for the geom type (half widths,
-/// radius and half height); `yaw_rad` is about z.
+/// `size_m` is MuJoCo's size for the geom type (half widths, radius and half height); `yaw_rad` is about z.
 mjsGeom* add_surface(mjSpec* spec, engine::World& world, const std::string& name, mjtGeom type,
                      const Eigen::Vector3d& position_W_m, const Eigen::Vector3d& size_m, double yaw_rad,
                      const Colour& colour);
@@ -25,12 +24,10 @@ struct HeightGrid {
   std::span<const double> heights_m;  ///< rows * columns values
 };
 
-/// The ground is solid down to `common_position_m` below the lowest node. MuJoCo requires a height field with some
-/// relief, so its height range is at least `least_span_m`.
+/// MuJoCo requires a height field with some relief, so its height range is at least `least_span_m`.
 mjsGeom* add_height_field(mjSpec* spec, engine::World& world, const std::string& name, const HeightGrid& grid,
                           double common_position_m, double least_span_m, const Colour& colour);
 
-/// Adds a flat mark on the floor for pictures only, without contact.
 void add_mark(mjSpec* spec, const engine::FrictionPatch& patch, const Colour& colour);
 
 void add_daylight(mjSpec* spec);

@@ -45,7 +45,6 @@ using Share = std::function<double(double x_m, double y_m)>;
 
 void roughen(Ground& ground, const Values& values, std::uint64_t seed, const Share& share);
 
-/// Rocks are between `rocks_from_x_m` and `rocks_to_x_m` along the fall line.
 void cover(mjSpec* spec, engine::World& world, const Ground& ground, const Values& values, std::uint64_t seed,
            double rocks_from_x_m, double rocks_to_x_m);
 

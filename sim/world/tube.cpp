@@ -52,7 +52,7 @@ void add_shell(mjSpec* spec, engine::World& world, const Values& values, int sid
     const double x_m = values.at("length_m") * (static_cast<double>(ring) / rings - 0.5);
     for (int step = 0; step <= kSteps; ++step) {
       const double angle = -kBelow_rad + (std::numbers::pi / 2 + kBelow_rad) * step / kSteps;
-      // Second coordinate of the unevenness: the arc length from the crown, where both halves meet
+      // The coordinate across the tube is the arc length from the crown, where both halves meet.
       const double arc_m = side * (std::numbers::pi / 2 - angle) * values.at("half_width_m");
       const double scale = 1.0 + rough.height_m(x_m, arc_m) / values.at("half_width_m");
       vertices.push_back(static_cast<float>(x_m));
@@ -87,7 +87,6 @@ void add_shell(mjSpec* spec, engine::World& world, const Values& values, int sid
 void add_ends(mjSpec* spec, engine::World& world, const Values& values, double half_y_m) {
   const double half_height_m = 0.75 * values.at("height_m"), x_m = values.at("length_m") / 2;
   for (const int sign : {1, -1}) {
-    // The box that closes the tube's end is slightly rotated, like debris.
     add_surface(spec, world, sign > 0 ? "end_front" : "end_back", mjGEOM_BOX, {sign * (x_m + 0.05), 0, half_height_m},
                 {0.2, half_y_m, half_height_m}, 0.1, kRock);
   }

@@ -79,8 +79,7 @@ struct FoundExamples {
   std::vector<Example> examples;        ///< in the order of the list
   std::vector<std::string> unreadable;  ///< path and reason for each unreadable part of the list
 };
-/// Reads the examples of a folder; empty if the folder has no list. An unreadable example does not affect other
-/// examples.
+/// An unreadable example does not affect other examples.
 FoundExamples read_examples(const std::filesystem::path& folder, Pictures pictures);
 
 /// Copies a damaged list to examples.json.damaged, so that the next list does not overwrite it; returns the path of the

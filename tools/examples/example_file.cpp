@@ -32,7 +32,6 @@ std::vector<double> read_numbers(const nlohmann::json& values) {
 
 }  // namespace
 
-// nlohmann::json finds this overload by argument-dependent lookup.
 static void to_json(nlohmann::json& out, const PlotLine& line) {
   out = {{"name", line.name},     {"colour", line.colour}, {"width", line.width}, {"dotted", line.dotted},
          {"hidden", line.hidden}, {"x", numbers(line.x)},  {"y", numbers(line.y)}};
@@ -91,7 +90,7 @@ std::vector<std::uint8_t> read_bytes(const fs::path& path) {
   }
 }
 
-/// The list may be untrusted, so only files in its folder are read or removed.
+/// The list of examples may be untrusted, so only files in its folder are read or removed.
 std::string file_name(const std::string& name, const char* ending, const char* what) {
   if (name.empty() || fs::path(name).filename() != name || name.starts_with('.') || !name.ends_with(ending))
     throw BadInput(fmt::format("'{}' must be the name of a {} in the same folder", name, what));
@@ -158,7 +157,6 @@ json read_list(const fs::path& folder) {
   return list;
 }
 
-/// Returns the complete examples in a truncated list.
 json whole_examples(const fs::path& folder) {
   constexpr int kDepth = 2;  // nesting depth: list, array, example
   json whole = json::array();
@@ -167,7 +165,6 @@ json whole_examples(const fs::path& folder) {
       if (depth == kDepth && event == json::parse_event_t::object_end) whole.push_back(parsed);
       return true;
     };
-    // The JSON is complete, so the list was rejected for its format.
     if (!json::parse(read_bytes(list_file(folder)), keep, false).is_discarded()) return json::array();
   } catch (const BadInput&) {  // the path is a folder
   }

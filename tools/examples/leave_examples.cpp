@@ -30,7 +30,6 @@ constexpr const char* kAlsoFailed = "A draw on which methods failed";
 
 enum class Extent { whole, of_failure };
 
-/// Only the first example has an animation, because a report shows only one.
 struct Making {
   scenarios::ExampleDraw draw;
   scenarios::Scenario scenario;
@@ -65,7 +64,6 @@ std::vector<scenarios::Outcome> rows_of_failure(std::vector<scenarios::Outcome> 
   for (const scenarios::Outcome& row : rows) {
     if (row.status != scenarios::OutcomeStatus::ok) kinds.insert(row.kind);
   }
-  // In each kind, the method of tumble is called `tumble` (docs/design.md, "Methods and scores").
   std::erase_if(rows, [&](const scenarios::Outcome& row) {
     return row.status == scenarios::OutcomeStatus::ok && (row.method != "tumble" || !kinds.contains(row.kind));
   });
@@ -85,7 +83,6 @@ std::vector<Making> plan(const scenarios::DataRoot& data, const scenarios::Suite
   const auto add = [&](const scenarios::ExampleDraw& draw, const char* choice, Extent extent) {
     if (std::any_of(makings.begin(), makings.end(), [&](const Making& making) { return making.draw == draw; })) return;
     std::vector<scenarios::Outcome> rows = scenarios::rows_to_show(results, draw);
-    // Lidars are simulated only if the sweep simulated them, so that the digest of the recording agrees with the rows.
     const bool lidars = std::ranges::any_of(rows, [](const auto& row) { return row.kind != scenarios::Kind::rate; });
     if (extent == Extent::of_failure) rows = rows_of_failure(std::move(rows));
     const auto scenario = std::find_if(all.begin(), all.end(), [&](const auto& s) { return s.name == draw.scenario; });
@@ -110,8 +107,7 @@ std::vector<Making> plan(const scenarios::DataRoot& data, const scenarios::Suite
   return makings;
 }
 
-/// Examples of scenarios outside the suite come from other sweeps in this database and are kept. Unreadable examples of
-/// the suite are generated again.
+/// Examples of scenarios outside the suite come from other sweeps in this database and are kept.
 std::vector<std::string> keep_known(const scenarios::DataRoot& data, const fs::path& folder,
                                     const scenarios::Suite& suite, const LeaveOptions& options,
                                     std::vector<Making>& makings) {
@@ -159,7 +155,6 @@ class Makers {
   Makers(const scenarios::DataRoot& data, const fs::path& folder, double timeout_s, const LeaveOptions& options)
       : data_(data), folder_(folder), timeout_s_(timeout_s), options_(options) {}
 
-  /// Returns false if the generation was stopped.
   bool run(std::vector<Making>& makings) {
     auto next = makings.begin();
     while (true) {
@@ -200,7 +195,6 @@ class Makers {
     poll(waiting.data(), waiting.size(), kPollMs);
   }
 
-  /// Returns true if the worker has ended.
   bool serve(Worker& worker) {
     const bool open = worker.process.read_available(worker.making->text);
     const bool late = open && scenarios::now_s() > worker.deadline_s;

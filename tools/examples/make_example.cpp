@@ -58,7 +58,6 @@ void add_maps(const scenarios::RunResult& run, Example& example) {
        sim::png_bytes(map_picture(maps, run.recording.truth, 640, 480))});
 }
 
-/// Length of the animation [s]: long enough to see the robot turn, in a few hundred kB
 constexpr double kMoving_s = 2.0;
 
 void add_moving(const Scene& scene, Example& example) {

@@ -15,7 +15,6 @@ enum class Moving { drawn, left_out };
 /// optional, because it costs more than the rest. Throws BadInput or std::runtime_error if nothing can be rendered.
 Example example_of(const scenarios::RunResult& run, Moving moving);
 
-/// Generates only the picture of the robot along its path and the replay, for a run with failed methods.
 Example failure_example_of(const scenarios::RunResult& run);
 
 }  // namespace tumble::tools

@@ -24,7 +24,6 @@ std::string base64(std::span<const std::uint8_t> bytes);
 
 std::string cell(const std::string& text, const std::string& css_class = "");
 
-/// The caller closes the table with "</tbody></table></div>". Columns from `numbers_from` are right-aligned.
 std::string table_head(const std::vector<std::string>& columns, std::size_t numbers_from);
 
 }  // namespace tumble::tools::html

@@ -11,7 +11,6 @@ struct Colour {
   std::array<float, 4> rgba() const;
 };
 
-/// Number of methods with different colours; further methods reuse these colours
 inline constexpr std::size_t kMethodColours = 6;
 
 /// Colour-blind readers can distinguish the colours of the truth and of the methods.

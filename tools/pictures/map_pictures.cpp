@@ -21,7 +21,6 @@ constexpr int kScaleHeight = 14, kPictureMargin = 6;
 constexpr double kFocal = 1.7;  ///< focal length in half smaller sides of the picture: about 60 degrees of view
 constexpr double kElevation_rad = 0.6;
 
-/// The camera looks at the middle of the true path, across the direction of travel.
 class Camera {
  public:
   Camera(const sim::Truth& truth, int width, int height) : width_(width), height_(height) {
@@ -40,7 +39,6 @@ class Camera {
     distance_m_ = 1.25 * reach_m_;
   }
 
-  /// Returns false for points outside the picture, behind the camera, or too far from the path.
   bool project(const Vector3f& point_W_m, int& column, int& row, double& depth_m) const {
     const Vector3d from_centre = point_W_m.cast<double>() - centre_;
     if (!(from_centre.norm() <= 1.6 * reach_m_)) return false;

@@ -14,7 +14,7 @@
 
 namespace tumble::tools {
 
-/// Errors from this value [m] have the last colour of the scale.
+/// Map errors from this value [m] have the last colour of the scale.
 inline constexpr float kMapErrorMax_m = 1.0f;
 
 /// The map is in world axes, aligned with the truth by position and heading at the start, like the scores.
@@ -25,11 +25,9 @@ struct ErrorMap {
   double share_within(float limit_m) const;
 };
 
-/// The result is empty if the estimate has no map, or no pose within the time of the truth.
 ErrorMap map_by_error(const std::string& name, const scenarios::Estimate& estimate, const sim::Truth& truth,
                       const sim::Surface& surface);
 
-/// The colours are blue (on the surface), green (0.1 m), yellow (0.25 m), orange (0.5 m) and red (kMapErrorMax_m).
 std::array<std::uint8_t, 3> error_colour(float error_m);
 
 /// Draws maps next to each other from one viewpoint, limited to the surroundings of the true path. `width` and `height`

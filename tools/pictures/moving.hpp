@@ -25,7 +25,7 @@ Span liveliest_span(const sim::Truth& truth, double length_s);
 
 std::size_t frame_count(const Span& span, const MovingOptions& options);
 
-/// Renders the interval as an animated WebP that repeats. Throws scenarios::BadInput if the scene has no truth.
+/// Throws scenarios::BadInput if the scene has no truth.
 std::vector<std::uint8_t> moving_picture(const Scene& scene, const Span& span, const MovingOptions& options);
 
 }  // namespace tumble::tools

@@ -13,7 +13,6 @@
 
 namespace tumble::tools {
 
-/// Only `built` is required.
 struct Scene {
   const sim::BuiltSituation* built = nullptr;
   const sim::Sensors* sensors = nullptr;  ///< needed with `truth` to draw the robot along the true path
@@ -23,7 +22,6 @@ struct Scene {
 
 sim::Picture scene_picture(const Scene& scene, int robots, int width, int height);
 
-/// The scene must have a truth.
 sim::Picture film_picture(const Scene& scene, int frames, int columns, int width, int height);
 
 /// Throws scenarios::BadInput with the path if the file cannot be written.

@@ -14,7 +14,6 @@ namespace tumble::tools {
 
 bool is_sphere(const Scene& scene);
 
-/// The returned times divide the moving part of the path into parts of equal length; rotation adds a small length.
 std::vector<std::int64_t> instants_along(const sim::Truth& truth, int count);
 
 std::vector<sim::DrawnPath> drawn_paths(const Scene& scene);

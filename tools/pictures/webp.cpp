@@ -52,7 +52,7 @@ WebpAnimation::WebpAnimation(int width, int height, float quality) : impl_(std::
   WebPAnimEncoderOptions options;
   if (WebPAnimEncoderOptionsInit(&options) == 0 || WebPConfigInit(&impl_->config) == 0)
     throw std::runtime_error("the version of libwebp differs from its headers");
-  // One thread and no time limit give equal bytes for equal pictures.
+  // Encoding with one thread and no time limit gives equal bytes for equal pictures.
   impl_->config.thread_level = 0;
   impl_->config.quality = quality;
   impl_->encoder = WebPAnimEncoderNew(width, height, &options);

@@ -9,8 +9,7 @@
 
 namespace tumble::tools {
 
-/// WebpAnimation encodes pictures as an animated WebP file that repeats (libwebp, lossy). Equal pictures give equal
-/// bytes.
+/// Equal pictures give equal bytes.
 class WebpAnimation {
  public:
   /// Throws std::invalid_argument unless width and height are 1 to 16383 pixels and `quality` is 0 (small file) to 100.
@@ -22,7 +21,7 @@ class WebpAnimation {
   /// std::runtime_error if compression fails.
   void add(const sim::Picture& picture, int duration_ms);
 
-  /// No picture may follow. Throws std::logic_error if there is no picture.
+  /// Throws std::logic_error if the animation has no picture; no picture may follow.
   std::vector<std::uint8_t> bytes();
 
  private:

@@ -31,12 +31,10 @@ class Motion {
   std::int64_t gap_ns_ = 0;
 };
 
-/// The result is empty if the truth has no positions. Throws BadInput if the truth is inconsistent.
 Motion true_motion(const sim::Truth& truth, std::int64_t step_ns);
 
-/// Converts an estimate to poses of the body, with the mounting that the estimator received. The motion is aligned with
-/// the truth like the scores, or without a truth (null) with `reference`. The result is empty without poses, or if the
-/// recording lacks the sensor of their frame.
+/// The motion is aligned with the truth like the scores, or without a truth (null) with `reference`. The result is
+/// empty without poses, or if the recording lacks the sensor of their frame.
 Motion estimated_motion(const scenarios::Estimate& estimate, const sim::Sensors& sensors, const sim::Truth* truth,
                         const Motion& reference);
 

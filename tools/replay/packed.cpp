@@ -52,7 +52,6 @@ std::int16_t whole(double value, double scale) {
   return static_cast<std::int16_t>(std::lround(std::clamp(value / scale, -kWhole, kWhole)));
 }
 
-/// Returns the quantisation step at which the largest value still fits.
 double scale_for(double largest) {
   return std::max(largest, 1e-6) / kWhole;
 }
@@ -89,7 +88,6 @@ Vector3d origin_of(const Replay& replay) {
   return Vector3d::Zero();
 }
 
-/// Vertices are relative to `origin`; corner indices count within each part.
 json pack_parts(const std::string& name, const std::vector<sim::MeshPart>& parts, const Vector3d& origin,
                 Arrays& arrays) {
   double largest = 0.0;
@@ -177,7 +175,6 @@ json pack_points(const ReplayPoints& points, Arrays& arrays) {
   return {{"shown", points.p_B_m.size()}, {"of", points.of}, {"scale_m", scale}};
 }
 
-/// Estimated rates are limited to twice the largest rate of gyro and truth.
 double rate_scale(const Replay& replay) {
   double largest = 0.0;
   const auto look = [&](const std::vector<Vector3f>& rates) {

@@ -169,7 +169,6 @@ void add_tracks(const std::vector<Motion>& motions, const ReplayLimits& limits, 
       std::count_if(motions.begin(), motions.end(), [](const Motion& motion) { return !motion.empty(); }));
   const std::size_t room = limits.bytes / kTracksShare / (kPoseBytes * tracks);
   const auto poses = static_cast<std::int64_t>(std::max<std::size_t>(std::min(limits.poses, room), 2));
-  // The page counts time in whole microseconds.
   replay.pose_step_ns = std::max(kStep_ns, (replay.end_ns / (poses - 1) / 1000 + 1) * 1000);
   for (std::size_t i = 0; i < motions.size(); ++i)
     replay.actors[i].track = sampled(motions[i], replay.end_ns, replay.pose_step_ns);
@@ -211,7 +210,6 @@ Replay replay_of(const ReplayInput& input, const ReplayLimits& limits) {
   replay.title = input.title;
   replay.facts = input.facts;
   const std::vector<Motion> motions = motions_of(input, input.truth == nullptr ? 0 : input.truth->period_ns);
-  // The duration is at least 1 ns, even for a single pose.
   replay.end_ns = std::max<std::int64_t>(last_instant(*input.sensors, input.truth, motions), 1);
   replay.actors = actors_of(input);
   add_rates(input, limits, replay);

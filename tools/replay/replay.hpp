@@ -97,7 +97,6 @@ struct ReplayLimits {
   std::size_t triangles = 60'000;  ///< triangles of the world
 };
 
-/// Throws BadInput if neither the truth nor an estimate has positions, or if truth and sensors contradict each other.
 Replay replay_of(const ReplayInput& input, const ReplayLimits& limits = {});
 
 }  // namespace tumble::tools

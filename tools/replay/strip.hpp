@@ -14,7 +14,6 @@ ReplayStrip strip_of(const sim::Sensors& sensors, const sim::Truth* truth, const
 
 std::vector<Eigen::Vector3f> true_rates(const ReplayStrip& strip, const sim::Sensors& sensors, const sim::Truth& truth);
 
-/// A rate is NaN if the estimate has no rate within one IMU period.
 std::vector<Eigen::Vector3f> estimated_rates(const ReplayStrip& strip, const sim::Sensors& sensors,
                                              const scenarios::Estimate& estimate);
 

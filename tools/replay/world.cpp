@@ -14,7 +14,6 @@ using Eigen::AlignedBox3f;
 using Eigen::Vector3f;
 using sim::MeshPart;
 
-/// Selects all nodes from `low` to `high`; beyond, the step is `coarser` times one eighth of the distance.
 std::vector<int> kept_nodes(const std::vector<float>& positions, float low, float high, float coarser) {
   const auto away = [&](float node) { return std::max({0.0f, low - node, node - high}); };
   std::vector<int> kept = {0};
@@ -86,7 +85,7 @@ std::vector<MeshPart> thinned_world(std::vector<MeshPart> parts, const AlignedBo
     triangles.of += triangle_count(part);
     if (is_field(part)) ++fields;
   }
-  // Three quarters of the triangles are for the ground, which is always visible.
+  // Three quarters of the page's triangles are for the ground, which is always visible.
   std::size_t left = most;
   for (MeshPart& part : parts) {
     if (!is_field(part)) continue;
@@ -137,7 +136,6 @@ std::vector<MeshPart> plain_body(double sphere_radius_m) {
     }
     return {body};
   }
-  // A roof-shaped nose shows the forward direction.
   const Vector3f corners[] = {{-0.15f, -0.1f, -0.05f}, {0.1f, -0.1f, -0.05f},  {0.1f, 0.1f, -0.05f},
                               {-0.15f, 0.1f, -0.05f},  {-0.15f, -0.1f, 0.05f}, {0.1f, -0.1f, 0.05f},
                               {0.1f, 0.1f, 0.05f},     {-0.15f, 0.1f, 0.05f},  {0.18f, 0.0f, -0.05f},

@@ -17,7 +17,7 @@ struct Badge {
 /// contest is lost.
 Badge badge_of(const PageContent& content);
 
-/// Texts are embedded as data, never as markup.
+/// Texts in the SVG are embedded as data, never as markup.
 std::string badge_svg(const Badge& badge);
 
 }  // namespace tumble::tools

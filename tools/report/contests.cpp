@@ -39,7 +39,6 @@ std::vector<const MetricComparison*> rows_of(const Section& section, const scena
   return rows;
 }
 
-/// The sign is positive if the method is worse than the baseline.
 double badness(const MetricInfo& info, double difference) {
   return info.sense == Sense::higher ? -difference : difference;
 }

@@ -17,23 +17,20 @@ enum class Certainty {
   open        ///< not significant by either criterion
 };
 
-/// Result of one section of a report: the best method without truth, other than the baseline, paired with the baseline
-/// by the first headline metric that both have
 struct ContestResult {
   scenarios::MetricComparison row;
   Certainty certainty = Certainty::open;
   bool better = false;  ///< the difference favours the method; if `certainty` is `open`, it may be chance
   /// Difference in percent of the baseline's median, with its interval; an end is infinite if one run of a pair failed
   double percent = 0.0, percent_low = 0.0, percent_high = 0.0;
-  /// Baseline's median divided by the method's median if lower values are better; otherwise NaN
   double times = std::numeric_limits<double>::quiet_NaN();
-  /// The interval alone does not decide, because the method was chosen as the best of several methods on these runs.
+  /// The confidence interval alone does not decide, because the method was chosen as the best of several methods on
+  /// these runs.
   bool won() const { return better && certainty == Certainty::corrected; }
   bool lost() const { return !better && certainty == Certainty::corrected; }
 };
 
-/// Attitude describes the motion least, so it is included only if there is no other kind. Sections with only the
-/// baseline are omitted.
+/// Attitude describes the motion least, so it is included only if there is no other kind.
 std::vector<ContestResult> contests(const scenarios::Summary& summary, const scenarios::Comparison& comparison);
 
 struct Tally {
@@ -47,7 +44,6 @@ Tally tally(const std::vector<ContestResult>& results);
 
 std::string tally_text(const Tally& tally);
 
-/// Describes which method is better, and what is missing if the contest is open.
 std::string certainty_text(const ContestResult& result, std::size_t comparisons);
 
 }  // namespace tumble::tools

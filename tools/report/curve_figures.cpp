@@ -22,7 +22,6 @@ using scenarios::MetricStyle;
 
 constexpr double kMetricDomainLow = 0.36, kFailureDomainHigh = 0.24;
 
-/// A non-finite value becomes null: a gap in the plot.
 json shown(double value) {
   return std::isfinite(value) ? json(five_digits(value)) : json();
 }
@@ -120,7 +119,7 @@ json x_axis(const Curve& curve, const std::string& title) {
     axis["ticktext"].push_back(plot_text(curve.bins[k]));
   }
   axis["range"] = {0.5, static_cast<double>(curve.bins.size()) + 0.5};
-  // Plotly's automatic rotation would omit the last label.
+  // Plotly's automatic rotation of labels would omit the last label.
   if (curve.bins.size() > 4) axis["tickangle"] = -30;
   return axis;
 }
@@ -167,7 +166,6 @@ Figure curve_figure(const Curve& curve, const Palette& palette) {
   figure.id = "curve-" + curve.scenario + "-" + to_string(curve.kind) + "-" + curve.axis + "-" + curve.metric;
   figure.caption = caption_of(curve);
   const MetricStyle x_style = metric_style(curve.axis), y_style = metric_style(curve.metric);
-  // Bins are placed by rank and labelled in the metric's unit.
   const double x_factor = curve.source == Curve::Source::samples ? 1.0 : x_style.factor;
   json data = json::array(), lines = json::array();
   for (std::size_t i = 0; i < curve.lines.size(); ++i) {

@@ -10,7 +10,6 @@ namespace tumble::tools {
 
 std::string differences_html(const std::vector<scenarios::MetricComparison>& rows);
 
-/// One sentence lists the sections without failures.
 std::string paired_failures_html(const std::vector<scenarios::FailureComparison>& rows);
 
 }  // namespace tumble::tools

@@ -18,7 +18,6 @@ namespace {
 
 using nlohmann::json;
 
-/// Returns an empty text if the histogram shows all values.
 std::string thinned_text(std::span<const Spread> spreads) {
   const auto is_thinned = [](const Spread& spread) { return spread.of_draws && spread.values.size() > kBoxPoints; };
   if (std::none_of(spreads.begin(), spreads.end(), is_thinned)) return "";
@@ -64,7 +63,6 @@ std::string text(const Spread& spread, double value) {
   return number_text(value * spread.factor);
 }
 
-/// Hatchings by the number of earlier scenarios with the same colour (`colour_round`)
 constexpr std::array kHatchings = {"", "/", "x", "."};
 
 Figure histograms(std::span<const Spread> spreads) {

@@ -12,7 +12,6 @@ namespace tumble::tools {
 /// animation.
 std::string moving_html(const ShownExample& shown);
 
-/// All examples but the first are folded.
 std::string examples_html(const std::vector<ShownExample>& examples, const Palette& palette,
                           std::vector<Figure>& figures);
 

@@ -33,8 +33,6 @@ struct FailedDraws {
   std::vector<FailedDraw> shown;  ///< runs with the most failed methods, at most `kFailedDrawsShown`
 };
 
-/// Messages are read only for the runs that are shown. `database` is the path of the results; kept files are next to
-/// it.
 FailedDraws failed_draws(const scenarios::Results& results, const scenarios::Summary& summary,
                          const std::filesystem::path& database);
 

@@ -15,7 +15,6 @@ namespace {
 
 using html::escaped;
 
-/// Number of failed runs that are open; further ones are folded
 constexpr std::size_t kOpenDraws = 8;
 
 const ShownExample* example_of(const PageContent& content, const FailedDraw& draw) {

@@ -24,7 +24,6 @@ using scenarios::Summary;
 constexpr std::size_t kShownContests = 6;
 constexpr std::size_t kNamedScenarios = 4;
 
-/// Returns only the number of names if there are many.
 std::string names_text(const std::vector<std::string>& all, const char* many) {
   if (all.size() > kNamedScenarios) return fmt::format("{} {}", all.size(), many);
   std::string names;
@@ -101,7 +100,6 @@ std::string difference_text(const ContestResult& result) {
   }
   const std::string value = styled_value(result.row.metric, own.value, true);
   const std::string sign = own.value > 0.0 ? "+" : "";
-  // Intervals with two infinite ends are omitted.
   if (!std::isfinite(own.low) && !std::isfinite(own.high)) return sign + value;
   return sign + value + " " + styled_interval(result.row.metric, own);
 }

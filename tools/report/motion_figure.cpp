@@ -63,7 +63,6 @@ json points(const MotionCloud& cloud, std::size_t index) {
           {"y", std::move(y)}};
 }
 
-/// Returns an outline from the lower ends of the axes to the published maxima; a line if no rate is published.
 json outline(const PublishedExtreme& extreme, const MotionMap& map, bool dotted) {
   const double low_rate = map.rate_rad_s.front(), low_force = map.force_m_s2.front();
   json x = json::array({low_rate}), y = json::array({extreme.force_m_s2});

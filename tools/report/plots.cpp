@@ -106,7 +106,7 @@ class Boxes {
   };
 
   void add_values(json& trace, const std::string& group, const std::vector<double>& values, std::size_t failed) {
-    // If not all runs are drawn, the drawn ones keep the ratio of values to failed runs.
+    // If not all runs are drawn, the drawn ones keep the ratio of successful to failed runs.
     const std::size_t all = values.size() + failed;
     const std::size_t shown_failed = all <= kBoxPoints ? failed : (failed * kBoxPoints + all - 1) / all;
     for (const double value : at_most(values, std::max<std::size_t>(2, std::min(all, kBoxPoints) - shown_failed))) {
@@ -191,7 +191,6 @@ const char* dash_of(const PlotLine& line) {
   return dash_of_round(line.colour < 0 ? 0 : colour_round(static_cast<std::size_t>(line.colour)));
 }
 
-/// NaN marks a gap in the line.
 json coordinates(const std::vector<double>& values) {
   json out = json::array();
   for (const double value : values) out.push_back(std::isfinite(value) ? json(value) : json());

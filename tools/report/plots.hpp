@@ -31,18 +31,16 @@ inline constexpr std::size_t kBoxPoints = 1000;
 /// Five significant digits are finer than a plot can show, and keep the page small.
 double five_digits(double value);
 
-/// Plotly interprets some tags in texts, so & < > are escaped.
+/// Plotly interprets some tags in texts, so the characters & < > are escaped.
 std::string plot_text(const std::string& text);
 
 /// Reduces a list to `most` (at least 2) sorted values: the smallest, the largest, and values at equal steps of rank.
-/// The quantiles of the reduced list are close to those of all values.
 std::vector<double> at_most(std::vector<double> values, std::size_t most);
 
 /// Palette assigns one colour index to each method of a page, in the order of `add`; methods of different kinds with
 /// the same name share a colour.
 class Palette {
  public:
-  /// A new method gets the index `wanted` if it is free.
   void add(const std::string& method, std::optional<std::size_t> wanted = {});
   std::size_t index(const std::string& method, std::size_t otherwise) const;
 
@@ -54,8 +52,7 @@ class Palette {
 /// unchanged.
 std::string axis_title(const std::string& metric);
 
-/// Plots every run as a point next to a box of the quartiles: one box per method and scenario. Failed runs are points
-/// on the line "failed", beyond the worst value, so the quartiles count them as in the tables.
+/// Failed runs are points on the line "failed", beyond the worst value, so the quartiles count them as in the tables.
 Figure box_figure(const scenarios::Summary& summary, scenarios::Kind kind, const std::string& metric,
                   const std::string& caption, const Palette& palette = {});
 
@@ -65,7 +62,6 @@ Figure figure_of(const Plot& plot, const std::string& id, const Palette& palette
 
 Colour colour_of(int colour);
 
-/// Marker, dash and fill opacity distinguish methods with equal colours; `round` is the result of `colour_round`.
 const char* symbol_of_round(std::size_t round);
 const char* dash_of_round(std::size_t round);
 double filling_of_round(std::size_t round);

@@ -64,7 +64,6 @@ bool are_of_here(const scenarios::Results& results, const ReportOptions& options
          (made_of.empty() || options.data.empty() || made_of == options.data);
 }
 
-/// Commands that would reject these results are omitted.
 std::vector<Fact> commands(const scenarios::Results& results, const ReportOptions& options,
                            const PageContent& content) {
   const std::string database = scenarios::shell_word(options.database.string());
@@ -88,7 +87,6 @@ std::vector<Fact> commands(const scenarios::Results& results, const ReportOption
   return out;
 }
 
-/// Pass-fail metrics are omitted, because the table contains their fraction.
 std::vector<Figure> errors_of_all_draws(const Summary& summary, const Palette& palette) {
   std::vector<Figure> figures;
   for (const Kind kind : {Kind::rate, Kind::attitude, Kind::position, Kind::slam}) {
@@ -102,8 +100,7 @@ std::vector<Figure> errors_of_all_draws(const Summary& summary, const Palette& p
   return figures;
 }
 
-/// Returns true if the database contains the example's rows, and the digests of the recordings are equal. Sweeps omit
-/// lidars that no method needs, so the digest may be that of the recording without lidars.
+/// Sweeps omit lidars that no method needs, so the digest may be that of the recording without lidars.
 bool is_of(const scenarios::Results& results, const Example& example) {
   if (example.made_of != scenarios::digest_of_rows(results, {example.scenario, example.seed})) return false;
   const std::vector<scenarios::Outcome> rows = results.outcomes_of(example.scenario, example.seed);
@@ -155,7 +152,7 @@ void add_examples(const scenarios::Results& results, const ReportOptions& option
     std::string replay = replay_address(options, example);
     content.examples.push_back({std::move(example), of_these, std::move(replay)});
   }
-  // Errors of the pictures must not hide the scores.
+  // Errors of the pictures must not hide the scores, so they become warnings.
   for (const std::string& what : found.unreadable)
     content.warnings.push_back(fmt::format("The page cannot show some pictures of single draws: {}", what));
   if (!found.unreadable.empty()) return;

@@ -10,7 +10,6 @@ namespace tumble::tools {
 
 std::string styled_value(const std::string& metric, double value_si, bool with_unit);
 
-/// The bracket is "[-]" if there are too few runs.
 std::string styled_interval(const std::string& metric, const scenarios::Interval& interval);
 
 /// Each row is a metric, each column a method with median, interval and paired wins; the first row shows the failures.

@@ -66,7 +66,6 @@ std::string row_html(const Sensitivity& row) {
   return "<tr>" + cell(row.method) + cell(row.metric) + "<td colspan=\"6\">no significant influence</td></tr>\n";
 }
 
-// A trend needs at least two classes.
 constexpr auto kDrawsMin = static_cast<std::int64_t>(scenarios::kSensitivityDrawsMin);
 constexpr auto kDrawnFrom = static_cast<std::int64_t>(2 * scenarios::kDependenceDrawsMin);
 

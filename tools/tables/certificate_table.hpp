@@ -10,7 +10,6 @@ namespace tumble::tools {
 
 Table certificate_table(const scenarios::Certificate& certificate);
 
-/// A lower limit of 0 is omitted.
 std::string bound_text(double low, double high);
 
 }  // namespace tumble::tools

@@ -7,19 +7,17 @@
 
 namespace tumble::tools {
 
-/// Each column is as wide as its widest cell, in characters; cells are never truncated.
 class Table {
  public:
   Table(std::string title, std::vector<std::string> header);
 
   void add_row(std::vector<std::string> cells);
   void align_right_from(std::size_t index) { right_from_ = index; }
-  /// Wraps the last column of `text()` at spaces, so that lines have at most kLineMax characters where possible.
   void wrap_last() { wrapped_ = true; }
 
   bool empty() const { return rows_.empty(); }
   std::string text() const;
-  /// Cells are escaped, so that their content is not interpreted as markup.
+  /// The cells of a table are escaped, so that their content is not interpreted as markup.
   std::string markdown() const;  ///< a GitHub Markdown table
   std::string csv() const;       ///< RFC 4180; the title is a comment line, "# title"
   std::string tex() const;       ///< a LaTeX `tabular` with the rules of `booktabs`
@@ -32,7 +30,7 @@ class Table {
   bool wrapped_ = false;
 };
 
-/// Maximum line length of a table with `wrap_last`; the last column has at least a third of this width
+/// Maximum line length of a table whose last column is wrapped; the last column has at least a third of this width
 inline constexpr std::size_t kLineMax = 160;
 
 std::string number_text(double value);

@@ -125,7 +125,7 @@ std::uint64_t seed_of(const scenarios::Scenario& scenario, const std::string& te
   throw BadInput(fmt::format("--seed is missing; use --seed NUMBER to choose a draw of scenario '{}'", scenario.name));
 }
 
-// CLI11 does not convert a BadInput from the check.
+// CLI11 does not convert a BadInput that a check throws.
 std::function<void(const std::string&)> a_scenario(const Session& session) {
   return [&session](const std::string& text) { scenarios::load_scenario(session.data(), text); };
 }

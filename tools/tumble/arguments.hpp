@@ -24,33 +24,28 @@ struct Shard {
   std::uint64_t index = 1, count = 1;
 };
 Shard parse_shard(const std::string& text);
-/// Reduces a range of seeds to one of `count` contiguous parts, whose lengths differ by at most one; returns false if
-/// the part is empty.
+/// The range of seeds is reduced to one of `count` contiguous parts, whose lengths differ by at most one; false means
+/// an empty part.
 bool shard_seeds(const Shard& shard, std::uint64_t& first, std::uint64_t& last);
 
-/// Throws BadInput for an unknown name and suggests the nearest name: "unknown verb 'rnu'; did you mean 'run'?".
 void require_known(const std::string& what, const std::string& name, std::span<const std::string> known);
 
-/// Returns the named methods in order, without duplicates; an empty `names` selects all methods.
 std::vector<scenarios::MethodPointer> select_methods(const std::vector<std::string>& names);
 
-/// External methods have the time limit `time_limit_s`.
 scenarios::MethodPointer one_method(const std::string& name, double time_limit_s);
 
 /// External methods can hang, so their time limit is printed.
 void note_time_limits(const Session& session, std::span<const std::string> names);
 
-/// If `name` is empty, returns the first metric of the method's kind.
 std::string metric_of(const scenarios::Method& method, const std::string& name);
 
 /// For an empty `text`, returns the seed of a named case; other scenarios require a seed.
 std::uint64_t seed_of(const scenarios::Scenario& scenario, const std::string& text);
 
-/// The check runs before CLI11 reports missing options.
 std::function<void(const std::string&)> a_scenario(const Session& session);
 std::function<void(const std::string&)> a_suite(const Session& session);
 
-/// Throws BadInput if the file is missing or no recording; the check runs before CLI11 reports missing options.
+/// The check for a valid recording runs before CLI11 reports missing options.
 void a_recording(const std::string& file);
 
 int available_processors();

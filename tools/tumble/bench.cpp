@@ -44,7 +44,6 @@ struct BenchOptions {
   bool store = false;
 };
 
-/// A bench suite has one kind, so all methods must have this kind.
 std::vector<scenarios::MethodPointer> methods_of(const BenchOptions& options) {
   std::vector<scenarios::MethodPointer> methods = scenarios::find_methods(options.methods);
   for (const scenarios::MethodPointer& each : methods)
@@ -79,7 +78,6 @@ fs::path database_of(const scenarios::DataRoot& data, const BenchOptions& option
   return fmt::format("{}_{}_{}.db", suite.name, whose, scenarios::digest_of_texts(texts).substr(0, kDigestShown));
 }
 
-/// Results of another suite are an error.
 std::vector<BenchResult> stored_results(const scenarios::DataRoot& data, const BenchOptions& options,
                                         const scenarios::Suite& suite) {
   std::vector<BenchResult> all = scenarios::read_bench_results(scenarios::bench_results_file(data, suite.name));
@@ -127,7 +125,6 @@ BenchPage page_of(const scenarios::Results& results, const scenarios::Suite& sui
   return page;
 }
 
-/// With --json, prints one JSON line per method that ran.
 void print(const Session& session, const std::vector<Table>& tables, const std::string& lines) {
   if (!session.json) return session.print(tables, {});
   if (std::fwrite(lines.data(), 1, lines.size(), stdout) != lines.size() || std::fflush(stdout) != 0)
@@ -140,7 +137,7 @@ std::string sweep_command(const BenchOptions& options, const scenarios::Suite& s
   return words;
 }
 
-/// The database for `report` is separate, because a sweep would take stored results in the measured database for
+/// A separate database serves `report`, because a sweep would take stored results in the measured database for
 /// completed runs.
 fs::path database_to_report(const fs::path& measured, const scenarios::Results& results, const BenchPage& page) {
   std::vector<BenchResult> others = page.stored;

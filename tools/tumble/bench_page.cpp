@@ -32,7 +32,6 @@ std::vector<MethodRow> rows_of(const BenchPage& page) {
   return rows;
 }
 
-/// Returns the baseline, or else the first method in the registry.
 const BenchResult* baseline_of(const std::vector<MethodRow>& rows) {
   const BenchResult* first = nullptr;
   for (const scenarios::Method& method : scenarios::methods()) {

@@ -36,7 +36,6 @@ struct CompareOptions {
   double risk = 0.05, power = 0.8;
 };
 
-/// The reference is the baseline, or the last method if several are named.
 scenarios::ComparisonOptions read(const CompareOptions& options) {
   scenarios::ComparisonOptions out;
   out.methods = options.methods;
@@ -68,7 +67,6 @@ struct ComparisonRow {
     heads.push_back(head);
     cells.push_back(std::move(cell));
   }
-  /// Infinite ends of the interval are empty cells.
   void add_ends(const std::string& head, const scenarios::Interval& interval, double unit = 1.0) {
     const auto end = [&](double value) { return std::isfinite(value) ? fmt::format("{:.6g}", unit * value) : ""; };
     add(head + " low", end(interval.low));

@@ -48,7 +48,6 @@ std::vector<RecordingFinding> findings_of(const OpenRecording& recording) {
 }
 
 int run_doctor(const Session& session, const ImportOptions& options) {
-  // Invalid options and an unknown format are wrong use; later errors are findings.
   (void)format_of(options);
   (void)bag_reading(session, options);
   std::vector<RecordingFinding> findings;

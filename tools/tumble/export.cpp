@@ -24,7 +24,6 @@ struct ExportOptions {
   std::vector<std::filesystem::path> estimates;
 };
 
-/// The format that the user names precedes the extension of the output.
 std::string format_of(const ExportOptions& options) {
   const std::string format_name = options.format.empty() ? scenarios::format_of_ending(options.out) : options.format;
   if (format_name.empty())

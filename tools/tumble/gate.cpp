@@ -84,7 +84,6 @@ void keep_accepted(const scenarios::Gate& gate, const GateOptions& options,
   suite.scenarios = names;
 }
 
-/// Results that do not belong to the suite are dropped; the user's database may contain them.
 scenarios::GateRun of_suite(scenarios::GateRun run, const scenarios::Suite& suite) {
   const std::vector<scenarios::MethodPointer> methods = scenarios::find_methods(suite.methods);
   std::erase_if(run.methods, [&](const scenarios::MethodRun& each) {
@@ -147,7 +146,6 @@ json to_json(const std::vector<GateResult>& results, bool passes) {
   return {{"verdict", passes ? "pass" : "fail"}, {"held", std::move(rows)}};
 }
 
-/// Returns nothing if the gate does not exist and --accept creates it.
 std::optional<scenarios::Gate> load(const scenarios::DataRoot& data, const GateOptions& options,
                                     const std::vector<scenarios::MethodPointer>& given, const std::string& suite) {
   const fs::path file = gate_file(data, options, suite);

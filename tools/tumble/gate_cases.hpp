@@ -23,7 +23,6 @@ struct CaseGate {
   bool accept = false;             ///< write the outcomes to the files of the cases as new expectations
 };
 
-/// Returns the exit status of the program.
 int hold_cases(const Session& session, const scenarios::DataRoot& data, const CaseGate& gate);
 
 }  // namespace tumble::tools

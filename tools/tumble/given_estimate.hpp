@@ -9,8 +9,6 @@
 
 namespace tumble::tools {
 
-/// Returns the user's choice, or else the first IMU, or the body if there is no IMU. Throws BadInput for an unknown
-/// frame.
 scenarios::Frame frame_of(const std::string& name, bool has_imu);
 
 struct GivenEstimate {

@@ -23,7 +23,6 @@ using scenarios::BadInput;
 const std::vector<std::string> kFormats = {"csv", "kitti",   "mcap",    "pcd", "odometry",
                                            "ply", "rosbag1", "rosbag2", "tum", "vtk"};
 
-/// Several ROS 1 bags in a folder are parts of one recording.
 std::string format_of_folder(const std::filesystem::path& folder) {
   const std::map<std::string, std::string> known = {{".ply", "ply"},    {".pcd", "pcd"},     {".bin", "kitti"},
                                                     {".vtk", "vtk"},    {".bag", "rosbag1"}, {".mcap", "rosbag2"},
@@ -50,7 +49,7 @@ std::string format_of_folder(const std::filesystem::path& folder) {
   return found;
 }
 
-/// The Python package reads the tables of known data sets.
+/// The Python package, and not `tumble import`, reads the tables of known data sets.
 void require_no_data_set(const std::filesystem::path& file) {
   std::ifstream stream(file);
   std::string line;

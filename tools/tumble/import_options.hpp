@@ -35,14 +35,12 @@ struct ImportOptions {
 void declare_sensors(VerbOptions& verb, ImportOptions& options);
 void declare(VerbOptions& verb, ImportOptions& options);
 
-/// The format that the user names precedes the extension and the content.
 std::string format_of(const ImportOptions& options);
 
 /// Throws BadInput for options that have no effect for this format.
 void require_fitting(const ImportOptions& options, const std::string& format);
 
 sim::ImuRecord imu_sheet(const Session& session, const ImportOptions& options);
-/// Properties that the file lacks are copied from the data sheet.
 void complete(const sim::ImuRecord& sheet, sim::ImuRecord& imu);
 scenarios::AccelUnit accel_unit(const ImportOptions& options);
 scenarios::GyroUnit gyro_unit(const ImportOptions& options);
@@ -51,7 +49,7 @@ scenarios::SweepSource sweep_source(const Session& session, const ImportOptions&
 /// Returns the user's choice, or else a file of norlab's mapper next to the sweeps, or truth.csv in a folder of tables;
 /// empty if there is no such file.
 std::filesystem::path reference_file(const ImportOptions& options, const std::string& format);
-/// If the user names no frame and the recording has a lidar, the poses are assumed to be those of the lidar.
+/// If the user names no frame and the recording has a lidar, the reference poses are assumed to be those of the lidar.
 scenarios::ReferenceSource reference_source(const ImportOptions& options, const std::filesystem::path& file,
                                             bool has_lidar);
 scenarios::ReferenceSource trajectory_source(const ImportOptions& options, const std::string& format);

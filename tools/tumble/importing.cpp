@@ -43,7 +43,6 @@ void say_what_is_assumed(const ImportOptions& options, const std::string& format
   }
 }
 
-/// Returns false if the option is already set, or not a known option.
 bool set_option(const scenarios::ImportOption& option, ImportOptions& options) {
   const std::pair<const char*, std::string*> known[] = {
       {"--accel-unit", &options.accel_unit}, {"--gyro-unit", &options.gyro_unit}, {"--stamps", &options.stamps}};

@@ -13,7 +13,6 @@
 
 namespace tumble::tools {
 
-/// `rotation` receives the comparison of the rotations of IMU and lidar. Throws BadInput if the import fails.
 scenarios::Imported import_recording(const Session& session, const ImportOptions& options, const std::string& format,
                                      scenarios::LidarRotationCheck& rotation);
 
@@ -31,9 +30,8 @@ struct OpenRecording {
   scenarios::LidarRotationCheck rotation;
 };
 
-/// Opens a recording of this program, or any file that `tumble import` reads. If an error names an option that would
-/// make the recording readable and the user did not set it, the recording is read again with this option. If a bag has
-/// several topics of a kind, faulty topics are skipped.
+/// If an error names an option that would make the recording readable and the user did not set it, the recording is
+/// read again with this option. If a bag has several topics of a kind, faulty topics are skipped.
 OpenRecording open_recording(const Session& session, ImportOptions options);
 
 }  // namespace tumble::tools

@@ -8,7 +8,6 @@
 
 namespace tumble::tools {
 
-/// Returns "[-]" if neither end is known.
 std::string interval_text(const scenarios::Interval& interval);
 /// Non-finite values become null, because JSON cannot represent them.
 nlohmann::json finite(double value);

@@ -22,12 +22,11 @@ class LearntFile {
   void require_place() const;
 
   /// Returns a warning if the lever arms of file and recording differ, because the file probably belongs to another
-  /// rig. Rates beyond saturation depend on the lever arm.
+  /// rig.
   std::string caution(const sim::Sensors& sensors) const;
 
   static std::string learning_methods();
 
-  /// Returns `method` unchanged if the method does not calibrate the rig or there is no file.
   scenarios::Method wrap(const scenarios::Method& method);
 
   /// Without a new calibration, the file is unchanged and a note states the reason. Throws BadInput if writing fails.

@@ -34,7 +34,6 @@ std::string bounds_of_parameter(const sim::Parameter& p) {
   return "[" + number_text(p.low) + ", " + number_text(p.high) + "]";
 }
 
-/// Returns a text such as "uniform 0.35 .. 0.78".
 std::string distribution_text(const scenarios::Distribution& d) {
   using Shape = scenarios::Distribution::Shape;
   const auto number = [&](std::size_t i) {
@@ -65,7 +64,6 @@ std::span<const sim::Parameter> parameters_of(std::span<const sim::ComponentType
   return {};
 }
 
-/// Parameters that the scenario omits have their defaults.
 void add_part(Table& table, json& rows, const std::string& place, std::span<const sim::Parameter> known,
               const std::map<std::string, scenarios::Distribution>& given) {
   for (const sim::Parameter& p : known) {
@@ -183,7 +181,6 @@ Listing list_methods(const std::string& only) {
   }
   out.tables.push_back(std::move(table));
   if (!parameters.empty()) out.tables.push_back(std::move(parameters));
-  // The parameters of all methods would fill thousands of lines.
   if (!only.empty() && !further.empty()) out.tables.push_back(std::move(further));
   return out;
 }

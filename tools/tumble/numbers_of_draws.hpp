@@ -12,7 +12,6 @@ namespace tumble::tools {
 
 using NumbersByScenario = std::map<std::string, scenarios::NumbersOfDraws>;
 
-/// Scenarios outside the catalogue are omitted with a note. The database must come from the same models and catalogue.
 NumbersByScenario numbers_of_catalogue(const Session& session, const scenarios::DataRoot& data,
                                        const scenarios::Summary& summary);
 

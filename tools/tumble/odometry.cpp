@@ -83,7 +83,6 @@ void require_both_sensors(const std::filesystem::path& path, const sim::Sensors&
           : "Add IMU readings with --imu FILE.csv"));
 }
 
-/// Returns the duration in seconds.
 double run_with_progress(const Session& session, const scenarios::Method& method, const sim::Sensors& sensors,
                          Estimate& estimate) {
   using Clock = std::chrono::steady_clock;
@@ -106,7 +105,7 @@ double run_with_progress(const Session& session, const scenarios::Method& method
   return since(start);
 }
 
-/// Only the ends of the sweeps count, because the poses between would add noise.
+/// Only the ends of the sweeps count for the path length, because the poses between would add noise.
 double path_length_m(const Estimate& estimate) {
   double sum_m = 0.0;
   for (std::size_t k = 1; k < estimate.sweeps.size(); ++k)

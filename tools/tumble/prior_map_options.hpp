@@ -21,7 +21,6 @@ void declare_prior_map(VerbOptions& verb, PriorMapOptions& options);
 /// Throws BadInput if the prior map cannot be read, or the method cannot use a map.
 scenarios::Method with_prior_map(const scenarios::Method& method, const PriorMapOptions& options);
 
-/// States from which sweep the poses are in the frame of the prior map.
 std::string localisation_text(const PriorMapOptions& options, const scenarios::Estimate& estimate);
 
 }  // namespace tumble::tools

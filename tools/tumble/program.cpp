@@ -37,7 +37,6 @@ void check_verb(int argc, const char* const* argv) {
   }
 }
 
-/// The words `help` and `help VERB` become --help, as in other programs.
 std::vector<const char*> without_help(int argc, const char* const* argv) {
   std::vector<const char*> words(argv, argv + argc);
   if (words.size() < 2 || std::string_view(words[1]) != "help") return words;
@@ -79,7 +78,7 @@ std::string usage_line(const CLI::App& app, const CLI::ParseError& error) {
 }
 
 int say(const char* prefix, const std::string& line, int status) {
-  // A corrupt file may contain megabytes in place of a word.
+  // An error message is shortened, because a corrupt file may contain megabytes in place of a word.
   constexpr std::size_t kBegin = 1500, kEnd = 300;
   std::string shown =
       line.size() <= kBegin + kEnd ? line : line.substr(0, kBegin) + " ... " + line.substr(line.size() - kEnd);
@@ -138,7 +137,6 @@ int dispatch(int argc, const char* const* argv) {
     options->add_flag("--quiet", session.quiet, "suppresses notes and progress on standard error");
     VerbOptions declared(*options);
     options->callback([action = verb.declare(declared, session), &chosen] { chosen = action; });
-    // Some verbs have another --format: that of a recording.
     if (options->get_option_no_throw("--format") == nullptr) add_table_format(*options, session);
   }
   check_verb(argc, argv);
@@ -165,7 +163,7 @@ int run_program(int argc, const char* const* argv) {
   } catch (const std::filesystem::filesystem_error& error) {
     return say("", error.what(), kBadInput);
   } catch (const std::system_error& error) {
-    // A lack of processes, pipes or threads is not a defect.
+    // A lack of processes, pipes or threads is not a defect of the program.
     return say("", error.what(), kBadInput);
   } catch (const sim::SimulationFailure& error) {
     return say("the simulation rejected the draw: ", error.what(), kCheckFailed);

@@ -47,7 +47,6 @@ std::string progress_line(const scenarios::SweepProgress& p, int bar_width) {
                       static_cast<int>(share * 100.0), p.outcomes, p.not_ok(), failures_text(p), p.rejected);
   if (p.to_keep > 0) line += fmt::format("  kept {}/{}", p.kept, p.to_keep);
   if (p.draws_done < p.draws_total) {
-    // The remaining time is unknown until the first run ends.
     line += "  left " + (p.draws_done == 0 ? "?" : duration_text(p.left_s));
   } else {
     line += "  in " + duration_text(p.elapsed_s);

@@ -10,12 +10,11 @@
 
 namespace tumble::tools {
 
-/// Formats a duration with at most two units: "42 s", "3 min 05 s", "1 h 02 min"; "?" if the duration is negative or
-/// not finite.
+/// Formats a duration with at most two units, for example "42 s", "3 min 05 s" or "1 h 02 min"; "?" if the duration is
+/// negative or not finite.
 std::string duration_text(double seconds);
 
-/// Formats the progress as "[####------]  4/10 draws  40 %  16 outcomes  3 not ok (2 diverged, 1 timeout)  0 rejected
-/// left 1 min 10 s". The bar has `bar_width` cells; 0 omits it.
+/// The progress bar has `bar_width` cells; 0 omits the bar.
 std::string progress_line(const scenarios::SweepProgress& progress, int bar_width);
 
 struct RegistrationProgress {
@@ -23,7 +22,6 @@ struct RegistrationProgress {
   double elapsed_s = 0.0;  ///< time since the first sweep of this pass
 };
 
-/// Formats the progress as "[####------]  40/100 lidar sweeps  87 sweeps/s".
 std::string progress_line(const RegistrationProgress& progress, int bar_width);
 
 /// A terminal shows one progress line that is overwritten; other outputs get a new line every ten seconds.

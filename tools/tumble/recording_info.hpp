@@ -18,8 +18,7 @@ scenarios::RecordingInfo recording_info(const sim::ResolvedSituation& situation,
 /// scenario's `duration_s` may be too short.
 std::string end_in_motion(const sim::Truth& truth);
 
-/// Sensors are omitted, so that unknown sensor parameters cause no error. Throws BadInput, with a message that starts
-/// with `place`, or sim::InvalidSituation if the world cannot be built.
+/// Sensors are omitted, so that unknown sensor parameters cause no error.
 sim::BuiltSituation built_from(const scenarios::RecordingInfo& info, const std::string& place,
                                const scenarios::DataRoot& data);
 

@@ -47,8 +47,7 @@ struct RenderContent {
 };
 
 bool is_recording(const std::string& what) {
-  // A name with the extension of a recording is a file, even if the file does not exist. A folder is no recording,
-  // because the folder from 'tumble run hill' must not hide the scenario 'hill'.
+  // A folder is no recording, because the folder from 'tumble run hill' must not hide the scenario 'hill'.
   if (std::filesystem::exists(what) && !std::filesystem::is_directory(what)) return !what.ends_with(".yaml");
   return what.ends_with(".h5") || what.ends_with(".hdf5");
 }
@@ -125,7 +124,7 @@ int render_maps(const Session& session, const RenderOptions& options, const scen
   return kDone;
 }
 
-/// More video frames would take minutes to render and to watch.
+/// More video frames than this would take minutes to render and to watch.
 constexpr std::size_t kFramesMax = 3000;
 
 constexpr double kSayEvery_s = 10.0;

@@ -80,7 +80,7 @@ RunOptions first_run(RunOptions options, const scenarios::Scenario& scenario) {
   return options;
 }
 
-/// `sweep` accepts only scenarios of the catalogue; a suite may have the name of a scenario.
+/// The verb `sweep` accepts only scenarios of the catalogue; a suite may have the name of a scenario.
 void say_what_next(const Session& session, const RunOptions& options, const scenarios::RunResult& result,
                    bool in_catalogue) {
   const std::string folder = options.folder.string();
@@ -165,7 +165,6 @@ std::uint64_t asked_seed(const RunOptions& options, const scenarios::Scenario& s
   return any_draw ? 1 : seed_of(scenario, options.seed);
 }
 
-/// Methods that calibrate the rig start with the calibration in the --learnt file.
 std::vector<scenarios::Method> asked_methods(const RunOptions& options, const scenarios::Scenario& scenario,
                                              LearntFile& learnt) {
   const auto selected = select_methods(options.methods);

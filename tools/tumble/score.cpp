@@ -60,17 +60,15 @@ void require_common_time(const ScoreOptions& options, const scenarios::Estimate&
 }
 
 constexpr double kHoleShare = 0.2;  // fraction of the recording; a longer gap is a divergence (scenarios::verdict)
-// Below these limits, little more than the aligned pose would be compared.
+// With fewer poses or a shorter overlap, little more than the aligned pose would be compared.
 constexpr std::size_t kComparedMin = 2;
 constexpr double kSpannedShareMin = 0.01;
 
-/// Alignment and temporal coverage of an external trajectory relative to the truth
 struct Standing {
   double first_s = 0, last_s = 0, end_s = 0;  ///< times of the first and last pose within the truth; end of the truth
   std::size_t compared = 0, poses = 0;        ///< number of poses within the time of the truth; number of all poses
   double covered_s = 0;                       ///< covered time of the truth, without gaps longer than a fifth of it
   scenarios::Alignment alignment;
-  /// Gaps between the first and the last pose count as covered.
   double spanned() const { return end_s > 0.0 ? (last_s - first_s) / end_s : 1.0; }
   double share() const { return end_s > 0.0 ? covered_s / end_s : 1.0; }
 };
@@ -93,8 +91,7 @@ Standing standing_of(const scenarios::Estimate& estimate, const sim::Truth& trut
   return out;
 }
 
-/// Throws BadInput for time stamps in ms, us or ns that were read as seconds. Only the first few poses, far apart,
-/// would then overlap the recording.
+/// Only the first few poses, far apart, would then overlap the recording.
 void require_seconds(const ScoreOptions& options, const scenarios::Estimate& estimate, const Standing& standing) {
   constexpr double kNear = 1.5, kLeastStep_s = 0.1;
   if (estimate.poses.size() < 2 || !(standing.end_s > 0.0)) return;
@@ -170,7 +167,6 @@ void add_cover(const Standing& standing, Table& table) {
   table.add_row({"poses_compared", fmt::format("{} of {}", standing.compared, standing.poses)});
 }
 
-/// Returns the user's choice, or else `position` for a rolling sphere or a recording without lidar, or else `slam`.
 scenarios::Kind kind_of(const std::string& name, const sim::Sensors& sensors) {
   if (name.empty()) {
     return sensors.lidars.empty() || sensors.sphere_radius_m > 0.0 ? scenarios::Kind::position : scenarios::Kind::slam;
@@ -234,7 +230,6 @@ std::unique_ptr<const sim::Surface> surface_of(const Session& session, const Sco
   return std::make_unique<const sim::Surface>(built_from(claim.info, options.recording.string(), session.data()));
 }
 
-/// Returns the method of this build that computed the estimate, or only kind and name of another method.
 scenarios::MethodInfo info_of(const Claim& claim) {
   for (const scenarios::Method& method : scenarios::methods())
     if (method.info.kind == claim.kind && method.info.name == claim.method) return method.info;

@@ -11,7 +11,6 @@
 
 namespace tumble::tools {
 
-/// A non-empty `status` replaces the status of the outcomes.
 std::vector<Table> score_tables(const std::string& title, std::span<const scenarios::Outcome> outcomes,
                                 const std::string& status = "");
 
@@ -19,7 +18,6 @@ nlohmann::json score_rows(std::span<const scenarios::Outcome> outcomes);
 
 nlohmann::json outcome_rows(std::span<const scenarios::Outcome> outcomes);
 
-/// Returns `ok` if all outcomes are ok, or else the first other status.
 std::string overall_status(std::span<const scenarios::Outcome> outcomes);
 
 }  // namespace tumble::tools

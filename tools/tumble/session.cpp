@@ -18,7 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Candidate folders for the project's files, by priority
 std::vector<fs::path> candidate_roots() {
   std::vector<fs::path> roots;
   if (const char* given = std::getenv("TUMBLE_DATA"); given != nullptr && *given != '\0') roots.emplace_back(given);

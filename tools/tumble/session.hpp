@@ -23,13 +23,10 @@ class Session {
   TableFormat format = TableFormat::text;
 
   /// Returns $TUMBLE_DATA if set, else share/tumble next to the program's folder, else the source tree of the build.
-  /// Throws BadInput if no folder contains models.
   scenarios::DataRoot data() const;
 
-  /// Throws BadInput with instructions if the Plotly bundle is missing.
   std::filesystem::path plotly() const;
 
-  /// Throws BadInput if the system does not provide the path of this program.
   std::filesystem::path program() const;
 
   /// Returns $TUMBLE_CACHE, else $XDG_CACHE_HOME/tumble, else ~/.cache/tumble; empty if no variable is set.
@@ -37,7 +34,6 @@ class Session {
 
   void note(std::string_view line) const;
 
-  /// With --json, prints `document` instead of the tables. Throws BadInput if standard output cannot be written.
   void print(const std::vector<Table>& tables, const nlohmann::json& document) const;
 };
 

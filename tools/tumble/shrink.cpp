@@ -107,7 +107,6 @@ std::string command_of(const ShrinkVerbOptions& options, std::uint64_t seed) {
   return words + fmt::format(" --budget {} -o ", options.budget) + shell_word(options.file.filename().string());
 }
 
-/// The file's name must be an identifier.
 std::string name_of(const std::filesystem::path& file) {
   const std::string name = file.stem().string();
   const auto allowed = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; };

@@ -60,7 +60,6 @@ void say_what_it_holds(const Session& session, const SweepVerbOptions& options, 
       options.suite, fmt::join(suite.scenarios, " ")));
 }
 
-/// Returns false if this shard has no seed.
 bool select(const scenarios::DataRoot& data, const SweepVerbOptions& options, scenarios::Suite& suite) {
   suite = scenarios::load_suite(data, options.suite);
   take_scenarios(options.scenarios, suite);
@@ -84,7 +83,6 @@ bool select(const scenarios::DataRoot& data, const SweepVerbOptions& options, sc
   return options.shard.empty() || shard_seeds(parse_shard(options.shard), suite.first_seed, suite.last_seed);
 }
 
-/// The certificate (checks of the simulation) is measured at most once per build and machine.
 void certify(const Session& session, const scenarios::DataRoot& data, const std::filesystem::path& database,
              const std::atomic<bool>& stop) {
   scenarios::Results results(database, scenarios::Results::Mode::create_or_append);
@@ -120,15 +118,13 @@ void note_command(scenarios::Results results, const SweepVerbOptions& options) {
   results.set_note(scenarios::kCommandNote, scenarios::with_commands(known, command_of(options)));
 }
 
-/// Examples require the complete suite, because typical runs of a part may be untypical of the suite. Errors in
-/// pictures are reported, but change neither table nor exit status.
+/// Examples require the complete suite, because typical runs of a part may be untypical of the suite.
 bool leave_examples(const Session& session, const scenarios::DataRoot& data, const scenarios::Suite& suite,
                     const SweepVerbOptions& options, std::uint64_t draws, const std::atomic<bool>& stop) {
   if (!options.shard.empty()) return true;
   LeaveOptions leave;
   leave.count = options.examples.value_or(std::min(kExamplesMax, draws / kDrawsPerExample));
-  // The option `--examples 0` also disables pictures of failures. A sweep that is too small for typical runs still
-  // shows failures.
+  // A sweep that is too small for typical runs still shows failures.
   const bool wants_none = options.examples && *options.examples == 0;
   leave.failures =
       options.failures.value_or(wants_none ? 0 : std::clamp(draws / kDrawsPerFailure, std::uint64_t{1}, kFailuresMax));
@@ -186,7 +182,6 @@ scenarios::SweepOptions sweep_options(const SweepVerbOptions& options, const std
   return out;
 }
 
-/// Removes a database that a rejected sweep created, if the database contains no runs.
 class NewDatabase {
  public:
   explicit NewDatabase(const std::filesystem::path& path) : path_(path), is_new_(!exists_at(path)) {}
@@ -219,7 +214,6 @@ class NewDatabase {
   bool is_new_, kept_ = false;
 };
 
-/// The question must be stored in the results before the first run; without --until, there is no question.
 std::optional<scenarios::Question> ask(const SweepVerbOptions& options, const scenarios::DataRoot& data,
                                        const scenarios::Suite& suite) {
   if (options.until.empty()) return std::nullopt;

@@ -24,7 +24,6 @@ AskedSweep sweep_until(const Session& session, const scenarios::DataRoot& data, 
                        const scenarios::DatabaseOwner& database, const scenarios::SweepOptions& options,
                        const scenarios::Question& question);
 
-/// Prints how many runs are stored, and how to continue; returns the exit status of a stopped sweep.
 int say_stopped(const scenarios::SweepProgress& progress);
 
 }  // namespace tumble::tools

@@ -104,14 +104,12 @@ int run_triage_of_draw(const Session& session, const TriageVerbOptions& options)
   return kDone;
 }
 
-/// The check of the name runs before CLI11 reports missing options; the content of a file is checked later.
 std::function<void(const std::string&)> known_name(const Session& session) {
   return [&session](const std::string& text) {
     if (!text.ends_with(".yaml")) scenarios::load_suite(session.data(), text);
   };
 }
 
-/// Without a seed or a named case, the name is that of a suite.
 bool is_one_draw(const Session& session, const TriageVerbOptions& options) {
   const bool named = !options.what.ends_with(".yaml") && names_cases(session.data(), options.what);
   const bool one = !options.seed.empty() || (named && options.seeds.empty());

@@ -95,7 +95,6 @@ json to_json(const std::vector<InputWorth>& worths, const std::vector<DrawTriage
           {"draws", std::move(all)}};
 }
 
-/// The replacement of all inputs is only a bound and is not considered.
 std::string conclusion(const std::vector<InputWorth>& worths) {
   if (worths.empty()) return "no draw could be run";
   const std::string& whole = worths.back().scenario;  // all scenarios, if there are several

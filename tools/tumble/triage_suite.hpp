@@ -18,7 +18,6 @@ struct SuiteTriage {
   std::filesystem::path database;  ///< if set: only runs on which the method failed in this database
 };
 
-/// Returns the exit status of the program.
 int run_suite_triage(const Session& session, SuiteTriage asked);
 
 }  // namespace tumble::tools

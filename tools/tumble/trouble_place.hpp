@@ -8,8 +8,7 @@
 
 namespace tumble::tools {
 
-/// Returns the place of the fault: the longest gap, or the first IMU reading that is not finite, out of range or out of
-/// order. If no sweep was registered, the text is the number of points in a sweep.
+/// If no sweep was registered, the text is the number of points in a sweep.
 std::string trouble_place(const Status& status, const sim::Sensors& sensors);
 
 }  // namespace tumble::tools

@@ -16,14 +16,12 @@ class VerbOption {
   explicit VerbOption(CLI::Option& option) : option_(&option) {}
 
   VerbOption required();
-  /// NaN is rejected.
   VerbOption within(double low, double high);
   VerbOption whole(int low, int high);
   /// The check runs before CLI11 reports missing options; `refuse` throws BadInput with a one-line message.
   VerbOption check(std::function<void(const std::string&)> refuse);
   VerbOption filled();
   VerbOption words(int count);
-  /// The next word is not part of the option.
   VerbOption one_at_a_time();
   VerbOption separated_by(char separator);
   VerbOption shows_default();
@@ -36,8 +34,7 @@ class VerbOptions {
  public:
   explicit VerbOptions(CLI::App& app) : app_(&app) {}
 
-  /// `Value` is one of the types instantiated in verb_options.cpp. The target must exist while the command line is
-  /// parsed.
+  /// The target must exist while the command line is parsed.
   template <class Value>
   VerbOption add(const std::string& names, Value& target, const std::string& doc);
   void add_flag(const std::string& name, bool& target, const std::string& doc);

@@ -9,7 +9,6 @@
 
 namespace tumble::tools {
 
-/// Returns the exit status of the program.
 using Action = std::function<int()>;
 
 /// The declaration of a verb adds its options to `verb` and returns its action; the session outlives the action.

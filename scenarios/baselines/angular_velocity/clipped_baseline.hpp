@@ -13,8 +13,8 @@
 namespace tumble::baselines {
 
 /// ClippedBaseline estimates clipped angular rates from the gyro alone, each axis independently. A cubic bridges each
-/// gap of clipped samples and matches the rate and its derivative at both ends of the gap. An impact at an end of the
-/// gap falsifies the derivative. On simulated tumbles, the cubic has a larger mean error than the clipped reading.
+/// gap of clipped samples and matches the rate and its derivative at both ends of the gap. On simulated tumbles, the
+/// cubic has a larger mean error than the clipped reading.
 class ClippedBaseline {
  public:
   struct Params {

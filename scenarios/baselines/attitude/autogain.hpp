@@ -79,8 +79,7 @@ class Autogain {
   explicit Autogain(const Params& params);
 
   /// The first IMU sample sets roll and pitch from gravity and yaw to 0; later samples integrate the gyro and correct
-  /// the tilt. For a specific force below 1e-6 m/s^2, the filter only integrates the gyro. On error, `state` keeps its
-  /// content.
+  /// the tilt. For a specific force below 1e-6 m/s^2, the filter only integrates the gyro.
   Status step(const ImuSample& sample, State& state) const;
 
   AutogainGains gains(const Eigen::Vector3d& w_I_rad_s, double dt_s) const;

@@ -39,8 +39,7 @@ class Complementary {
   explicit Complementary(const Params& params);
 
   /// The first IMU sample sets roll and pitch from gravity and yaw to 0; later samples integrate the gyro and correct
-  /// the tilt. For a specific force below 1e-6 m/s^2, the filter only integrates the gyro. On error, `state` keeps its
-  /// content.
+  /// the tilt. For a specific force below 1e-6 m/s^2, the filter only integrates the gyro.
   Status step(const ImuSample& sample, State& state) const;
 
  private:

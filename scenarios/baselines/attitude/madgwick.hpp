@@ -38,7 +38,7 @@ class Madgwick {
   explicit Madgwick(const Params& params);
 
   /// The first IMU sample sets roll and pitch from gravity and yaw to 0; later samples integrate the gyro and correct
-  /// the tilt. On error, `state` keeps its content.
+  /// the tilt.
   Status step(const ImuSample& sample, State& state) const;
 
  private:

@@ -19,11 +19,6 @@ namespace tumble::baselines {
 /// PublishedChain estimates trajectory and map from given angular rates with the published mapping chain (Deschenes et
 /// al., ICRA 2024) and the constants of its launch files.
 ///
-/// - Madgwick's filter estimates attitude, and accelerometer odometry estimates position, with velocity feedback from
-///   registration.
-/// - Each sweep is deskewed, voxelised and registered to the map by trimmed point-to-plane registration.
-/// - Points are inserted only where the map is empty.
-///
 /// One parameter switches each known error of the published chain.
 class PublishedChain {
  public:
@@ -84,7 +79,6 @@ class PublishedChain {
   };
   using SweepReport = LidarInertialOdometry::SweepReport;
 
-  /// The time offset of each point counts from `start_ns`; the points are in lidar axes.
   struct Sweep {
     TimeNs start_ns = 0, end_ns = 0;
     std::span<const LidarPoint> points;
@@ -95,9 +89,9 @@ class PublishedChain {
   PublishedChain(const Params& params, std::span<const ImuSample> samples, std::span<const RateState> rates);
 
   bool covers(const Sweep& sweep) const;
-  /// `covers(sweep)` must be true, and each sweep must be later than all earlier sweeps. Returns `out_of_range`, with
-  /// unchanged state, if a point is later than the last IMU sample. Returns `empty`, `degenerate` (all points have one
-  /// time) or `too_few` (points in range) if the sweep is not registered; the odometry still advances.
+  /// `covers(sweep)` must be true, and each sweep must be later than all earlier sweeps. Returns `empty`, `degenerate`
+  /// (all points have one time) or `too_few` (points in range) if the sweep is not registered; the odometry still
+  /// advances.
   Status add(const Sweep& sweep, SweepReport& report);
   std::vector<MapPoint> map() const;
 

@@ -12,7 +12,7 @@
 namespace tumble::baselines {
 
 /// PublishedImuOdometry computes attitude by Madgwick's filter and position from the accelerometer, in the odometry
-/// frame "odom". The position is constant until registration supplies the first velocity.
+/// frame "odom".
 class PublishedImuOdometry {
  public:
   /// `rates` contains one angular rate per IMU sample, which replaces the gyro reading. The data of `samples` must
@@ -28,8 +28,6 @@ class PublishedImuOdometry {
   /// Returns the pose of the IMU at `time_ns`, with linearly interpolated position and spherically interpolated
   /// attitude.
   Eigen::Isometry3d pose(TimeNs time_ns) const;
-  /// Returns the integrated velocity at the first sample at or after `time_ns`, without the effect of later velocity
-  /// feedback.
   const Eigen::Vector3d& velocity_m_s(TimeNs time_ns) const;
 
  private:

@@ -74,7 +74,6 @@ class RigidOdometry {
 
   explicit RigidOdometry(const Params& params);
 
-  /// Registers a sweep to the map; returns the same errors as LidarInertialOdometry::add_sweep.
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points, const Motion& motion,
                    LidarInertialOdometry::SweepReport& report);
 

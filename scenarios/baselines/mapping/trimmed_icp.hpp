@@ -15,9 +15,7 @@
 namespace tumble::baselines {
 
 /// TrimmedIcp aligns a sweep to a map by point-to-plane registration with k matches per point and inverse-variance
-/// weights. The registration keeps only the closest matches, and determines their number from the data (Chetverikov et
-/// al., 2005; Phillips et al., 2007). TrimmedIcp does not measure observability: along a corridor, the registration
-/// still reports success.
+/// weights. TrimmedIcp does not measure observability: along a corridor, the registration still reports success.
 class TrimmedIcp {
  public:
   struct Params {
@@ -75,9 +73,8 @@ class TrimmedIcp {
 
   explicit TrimmedIcp(const Params& params);
 
-  /// Estimates the pose that aligns `points` to `map`, starting from the pose `prior`. As in the published chain, a
-  /// registration that reaches the iteration limit counts as success. Returns an error if no point has a match or the
-  /// correction exceeds its limit.
+  /// As in the published chain, a registration that reaches the iteration limit counts as success. Returns an error if
+  /// no point has a match or the correction exceeds its limit.
   Result align(std::span<const Point> points, const Eigen::Isometry3d& prior, const VoxelMap& map);
 
   /// Returns how many of the n = `slots` sorted squared distances d^2 the registration keeps. The kept fraction f

@@ -42,8 +42,6 @@ Status AutogainFusion::step(const ImuSample& sample, const Eigen::Quaterniond& q
   return {};
 }
 
-/// Returns the velocity from the linear acceleration in world axes, weighted by the rotation factors (eqs 6-9 of the
-/// paper).
 Eigen::Vector3d AutogainFusion::accelerated(const ImuSample& sample, const Eigen::Quaterniond& q_WI, double dt_s,
                                             State& state) const {
   const double length = sample.specific_force_m_s2.norm();
@@ -56,7 +54,6 @@ Eigen::Vector3d AutogainFusion::accelerated(const ImuSample& sample, const Eigen
   const Eigen::Vector3d a_I = (params_.direction_only ? 1.0 : params_.gravity_m_s2) * linear_g;
   const Eigen::Vector3d scale = coupling(autogain_.gains(sample.angular_velocity_rad_s, dt_s).factor);
 
-  // The rotation factors refer to the sensor axes, even if the velocity is integrated in world axes.
   const Eigen::Quaterniond q = params_.integrate_in_body ? Eigen::Quaterniond::Identity() : q_WI;
   state.v_integral_m_s += dt_s * (params_.integrate_in_body ? a_I : q_mid * a_I);
   const Eigen::Vector3d gated_I = scale.cwiseProduct(q.conjugate() * state.v_integral_m_s);
@@ -64,8 +61,6 @@ Eigen::Vector3d AutogainFusion::accelerated(const ImuSample& sample, const Eigen
   return q_WI * gated_I;
 }
 
-/// Limits the integrated velocity (eq 12 of the paper), computes the vertical velocity, and returns the weighted mean
-/// (eq 13).
 Eigen::Vector3d AutogainFusion::fuse(const Eigen::Vector3d& v_acc_W, const Eigen::Vector3d& v_rot_W) const {
   Eigen::Vector2d acc = v_acc_W.head<2>(), rot = v_rot_W.head<2>();
   const double speed = rot.norm();

@@ -88,8 +88,6 @@ class AutogainFusion {
 
   explicit AutogainFusion(const Params& params);
 
-  /// The parameter `q_WI` is the attitude at the end of the IMU sample's averaging window. On error, `state` keeps its
-  /// content.
   Status step(const ImuSample& sample, const Eigen::Quaterniond& q_WI, State& state) const;
 
  private:

@@ -38,7 +38,7 @@ class RollingOdometry {
   explicit RollingOdometry(const Params& params);
 
   /// `w_I_rad_s` is the mean angular rate over the IMU sample's averaging window, and `q_WI` is the attitude at the end
-  /// of the window. On error, `state` keeps its content.
+  /// of the window.
   Status step(TimeNs time_ns, const Eigen::Vector3d& w_I_rad_s, const Eigen::Quaterniond& q_WI, State& state) const;
 
  private:

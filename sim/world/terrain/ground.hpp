@@ -13,7 +13,6 @@ namespace tumble::sim {
 
 class Ground {
  public:
-  /// `side` is the number of nodes along each side of |x|, |y| <= half_extent_m, at least 2.
   Ground(int side, double half_extent_m);
 
   int side() const { return side_; }
@@ -22,8 +21,7 @@ class Ground {
   double coordinate_m(int index) const { return index * cell_m() - half_extent_m_; }
   double node_m(int row, int column) const { return heights_m_[static_cast<std::size_t>(row) * side_ + column]; }
 
-  /// Returns the bilinear height between the nodes, or the height of the edge beyond the edge. MuJoCo's triangles
-  /// differ from the bilinear height by the twist of a cell: 4 mm per 20 cm cell at 0.4 /m.
+  /// MuJoCo's triangles differ from the bilinear height by the twist of a cell: 4 mm per 20 cm cell at 0.4 /m.
   double height_m(double x_m, double y_m) const;
 
   template <typename Function>
@@ -36,7 +34,6 @@ class Ground {
     }
   }
 
-  /// Adds f(x_m, y_m) at the nodes within the square of half width `reach_m` about (x_m, y_m).
   template <typename Function>
   void add_near(double x_m, double y_m, double reach_m, Function f) {
     for (int row = nearest(y_m - reach_m); row <= nearest(y_m + reach_m); ++row) {
@@ -58,8 +55,7 @@ class Ground {
   std::vector<double> heights_m_;
 };
 
-/// Returns 0 within `inner_m`, 1 beyond `outer_m`, and a smooth transition between. Relief multiplied by this factor is
-/// level around a position, so that a robot can rest there.
+/// Relief multiplied by this factor is level around a position, so that a robot can rest there.
 double fade(double distance_m, double inner_m, double outer_m);
 
 }  // namespace tumble::sim

@@ -17,7 +17,6 @@ struct Disc {
   double radius_m = 0.0;
 };
 
-/// After 1000 rejections by `fits`, throws InvalidSituation with `what`.
 template <typename Fits>
 Eigen::Vector2d draw_position(Stream& stream, const Rectangle& area, const char* what, Fits fits) {
   constexpr int kAttempts = 1000;

@@ -20,14 +20,13 @@ struct RockField {
   Disc clear;  ///< no rock reaches into this disc
 };
 
-/// More than a third of the ellipsoid is below the ground.
 struct Rock {
   Eigen::Vector3d centre_W_m;
   Eigen::Vector3d half_axes_m;
   double yaw_rad;
 };
 
-/// Rocks may overlap. Throws InvalidSituation if the clear disc leaves no room for rocks.
+/// Throws InvalidSituation if the clear disc leaves no room for rocks.
 std::vector<Rock> strew_rocks(Stream& stream, const RockField& field, const Ground& ground);
 void add_rocks(mjSpec* spec, engine::World& world, const std::vector<Rock>& rocks);
 

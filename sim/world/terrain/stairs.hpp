@@ -19,7 +19,6 @@ struct Flight {
   double length_m() const { return steps * tread_m; }
 };
 
-/// The last step is level with the ground below the stairs.
 struct Step {
   Eigen::Vector3d centre_W_m;
   Eigen::Vector3d half_m;

@@ -19,7 +19,6 @@ struct Stand {
   Disc clear;  ///< no tree is in this disc
 };
 
-/// The foot of the vertical cylinder is half a metre below the ground.
 struct Trunk {
   Eigen::Vector3d centre_W_m;
   double radius_m;
