@@ -113,7 +113,8 @@ class Shrinking {
 
   std::string other_cause(const Run& run) const {
     if (shrunk_.controlled && options_.failure.holds(run.outcome(*options_.control, options_.timeout_s)))
-      return fmt::format("the control method also fails: {}", options_.control->info.name);
+      return fmt::format("the failure does not come from the method, because the control method {} also fails",
+                         options_.control->info.name);
     if (cure_ != nullptr && !run.is_cured(*cure_, method_, options_))
       return fmt::format("the failure has another cause, because replacing the input {} by its truth does not cure it",
                          cure_->name);

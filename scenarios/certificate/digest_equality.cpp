@@ -68,7 +68,7 @@ std::vector<CertificateEntry> certify_digests(const CertificateInput& input, con
       entry("digest_threads", setup.scenario,
             "runs with 2 and 4 threads give the same bits as runs with 1 thread: number of different digests", threads),
       entry("digest_order", setup.scenario + ", " + setup.other_scenario,
-            "draws simulated in reverse order give the same bits: number of different digests", order)};
+            "simulated runs in reverse order give the same bits: number of different digests", order)};
 
   CertificateEntry restart = entry("digest_restart", setup.other_scenario,
                                    "a restarted program gives the same bits: number of different digests", 0);

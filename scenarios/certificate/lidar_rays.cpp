@@ -31,7 +31,8 @@ std::vector<CertificateEntry> certify_lidar_rays(const CertificateInput& input, 
     const sim::BuiltSituation built(draw(input.data, scenario, 1), input.data.models());
     const sim::RayDisagreement d = sim::compare_rays(built, {setup.rays, 1, setup.mirror_shift_m, setup.surface_shift});
     entries.push_back({"lidar_range_engine", name, "lidar ranges equal the ranges of mj_ray: maximum difference", "m",
-                       d.largest_difference_m, 0.0, 1e-3, d.hits > 0 ? "" : "no ray hit a surface"});
+                       d.largest_difference_m, 0.0, 1e-3,
+                       d.hits > 0 ? "" : "this comparison has no value, because no ray hit a surface"});
     entries.push_back({"lidar_surface_engine", name,
                        "each lidar return belongs to an existing surface: share of rays without a surface", "1",
                        static_cast<double>(d.other_surface) / static_cast<double>(d.rays), 0.0, kOtherSurface, ""});

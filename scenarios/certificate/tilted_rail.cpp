@@ -70,7 +70,10 @@ std::vector<CertificateEntry> certify_tilted_rail(const CertificateInput& input,
   std::vector<CertificateEntry> entries;
   for (const auto& [subject, errors] : {std::pair{"mti30 gyro", gyro}, std::pair{"mti30 accel", accel}}) {
     const bool enough = errors.samples >= kFewestClipped && errors.samples < kMany;
-    const std::string note = enough ? "" : "an element has fewer than 10 fully clipped samples of one sign";
+    const std::string note =
+        enough
+            ? ""
+            : "the fit of a saturation plane needs at least 10 samples per sign in which the element is always clipped";
     const double none = std::nan("");
     // The closed form of the saturation plane is exact: the measured error of 1e-15 is rounding.
     entries.push_back(

@@ -31,7 +31,8 @@ std::string count_problem(const Distribution& d) {
     case Shape::log_uniform:
       return n == 2 ? "" : std::string(to_string(d.shape)) + " needs [low, high]";
     case Shape::normal:
-      return n == 2 || n == 4 ? "" : "the distribution 'normal' needs [mean, sigma] or [mean, sigma, low, high]";
+      return n == 2 || n == 4 ? ""
+                              : "the distribution 'normal' needs the list [mean, sigma] or [mean, sigma, low, high]";
     case Shape::choice:
       return n >= 1 ? "" : "the distribution 'choice' must list at least one value";
   }
@@ -58,8 +59,8 @@ std::string normal_problem(const std::vector<double>& numbers) {
     const double kept = sigma > 0.0 ? normal_below((high - mean) / sigma) - normal_below((low - mean) / sigma)
                                     : (mean >= low && mean <= high ? 1.0 : 0.0);
     if (!(kept >= kLeastKept))
-      text << fmt::format("[{:g}, {:g}] contains less than 1 % of the normal distribution; widen [low, high]", low,
-                          high);
+      text << fmt::format(
+          "the interval [{:g}, {:g}] contains less than 1 % of the normal distribution; widen [low, high]", low, high);
   }
   return text.str();
 }

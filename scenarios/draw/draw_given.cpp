@@ -43,7 +43,7 @@ sim::Situation draw_given(const Scenario& scenario, std::span<const DataSheet> s
   for (std::size_t i = 0; i < scenario.sensors.size(); ++i) {
     const Scenario::Sensor& sensor = scenario.sensors[i];
     if (sheets[i].sensor_kind != sensor.kind) {
-      throw BadInput(fmt::format("{}:{}: sensors.{}: device '{}' is of kind '{}'; it must be of kind '{}'",
+      throw BadInput(fmt::format("{}:{}: sensors.{}: the device '{}' is a sensor of kind '{}'; it must be of kind '{}'",
                                  scenario.file, sensor.line, sensor.name, sensor.device, sheets[i].sensor_kind,
                                  sensor.kind));
     }

@@ -23,7 +23,7 @@ using Numbers = std::map<std::string, Distribution>;
 Distribution constant(const Scenario& scenario, const std::string& key, double value, const sim::Parameter& parameter) {
   if (!(value >= parameter.low && value <= parameter.high)) {
     fail(scenario, key,
-         fmt::format("the value is {:g} {}; it must be within [{:g}, {:g}]", value, parameter.unit, parameter.low,
+         fmt::format("the new value is {:g} {}; it must be within [{:g}, {:g}]", value, parameter.unit, parameter.low,
                      parameter.high));
   }
   return {Distribution::Shape::constant, {value}, 0};

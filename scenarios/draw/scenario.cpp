@@ -46,7 +46,9 @@ Scenario load_scenario(const DataRoot& data, const std::string& name) {
         fmt::format("{}: the name is '{}'; it must be the name of the file, '{}'", path.string(), scenario.name, name));
   }
   if (is_case && !scenario.named_case)
-    throw BadInput(fmt::format("{}: key 'case' is missing; a named case needs it", path.string()));
+    throw BadInput(fmt::format(
+        "{}: the key 'case' is missing; the file of a named case must contain the expected results under this key",
+        path.string()));
   return scenario;
 }
 

@@ -91,10 +91,10 @@ void add_bins(const char* axis, const std::string& words, std::vector<Metric>& a
 
 std::vector<MetricInfo> binned_rate_quantities() {
   return {
-      {"rate_error_median_rad_s", Unit::rad_s, "median rate error (norm) over clipped samples of one bin",
-       Sense::lower},
-      {"rate_error_p99_rad_s", Unit::rad_s, "99th percentile of the rate error (norm) over clipped samples of one bin",
-       Sense::lower},
+      {"rate_error_median_rad_s", Unit::rad_s,
+       "median rate error (norm) over the clipped samples of one interval of the x axis", Sense::lower},
+      {"rate_error_p99_rad_s", Unit::rad_s,
+       "99th percentile of the rate error (norm) over the clipped samples of one interval of the x axis", Sense::lower},
       {"clip_depth_rad_s", Unit::rad_s, "largest saturation deficit of an axis"},
       {"clip_length_s", Unit::s, "length of a segment of clipped samples"},
       {"clipped_axes", Unit::number, "number of clipped axes"},
@@ -103,7 +103,7 @@ std::vector<MetricInfo> binned_rate_quantities() {
 
 std::vector<Metric> binned_rate_metrics() {
   std::vector<Metric> all;
-  add_bins<BinAxis::depth>("clip_depth_rad_s", "whose largest saturation deficit is in this bin", all,
+  add_bins<BinAxis::depth>("clip_depth_rad_s", "whose largest saturation deficit is in this interval", all,
                            std::make_index_sequence<kDepthEdges.size() - 1>());
   add_bins<BinAxis::length>("clip_length_s", "in segments of this length", all,
                             std::make_index_sequence<kLengthEdges.size() - 1>());

@@ -20,7 +20,7 @@ constexpr float kSamePointM = 1e-3f;     // points in one cell of this size are 
 constexpr double kSeenRangeM = 100.0;    // surface points farther from the start need not be in the map
 
 static_assert(kErrorLimitM > kToleranceM && kErrorLimitM > kFineToleranceM,
-              "an error at the limit must exceed both tolerances");
+              "the limit of map errors must exceed both tolerances of map points");
 
 // The map's position and yaw are aligned with the true pose at the start.
 std::vector<Eigen::Vector3f> map_in_world(const ScoredEstimate& scored) {

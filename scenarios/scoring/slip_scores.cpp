@@ -61,8 +61,8 @@ class Events {
 
 std::vector<SlipSpan> true_spans(const sim::Truth& truth) {
   if (truth.label.size() != truth.q_WB.size()) {
-    throw BadInput(fmt::format("truth.label has {} entries; it must have {}, one per physics step", truth.label.size(),
-                               truth.q_WB.size()));
+    throw BadInput(fmt::format("the truth has {} contact labels; it must have {}, one per physics step",
+                               truth.label.size(), truth.q_WB.size()));
   }
   Events events;
   for (std::size_t k = 0; k < truth.label.size(); ++k) {
@@ -85,7 +85,7 @@ bool counts(const SlipSpan& span, const sim::Truth& truth) {
 /// A contact label of the estimate applies until the time of the next label.
 std::vector<SlipSpan> claimed_spans(const Estimate& estimate) {
   if (estimate.contacts.size() != estimate.poses.size()) {
-    throw BadInput(fmt::format("the estimate has {} contacts for {} poses; their numbers must be equal",
+    throw BadInput(fmt::format("the estimate has {} contact labels for {} poses; the two numbers must be equal",
                                estimate.contacts.size(), estimate.poses.size()));
   }
   Events events;

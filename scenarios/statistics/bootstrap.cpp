@@ -55,8 +55,10 @@ double acceleration(std::span<const double> sorted) {
 }  // namespace
 
 MedianBootstrap::MedianBootstrap(std::size_t size, std::size_t resamples) : size_(size) {
-  if (size == 0) throw BadInput("bootstrap: there are no values; at least one value is needed");
-  if (resamples < 100) throw BadInput(fmt::format("bootstrap: resamples is {}; it must be at least 100", resamples));
+  if (size == 0) throw BadInput("bootstrap of the median: there are no values; at least one value is needed");
+  if (resamples < 100)
+    throw BadInput(
+        fmt::format("bootstrap of the median: the number of resamples is {}; it must be at least 100", resamples));
   sim::Stream stream(size, "statistics.bootstrap");
   const auto n = static_cast<double>(size);
   const std::size_t rank = (size + 1) / 2;
@@ -73,14 +75,15 @@ MedianBootstrap::MedianBootstrap(std::size_t size, std::size_t resamples) : size
 
 Interval MedianBootstrap::interval(std::span<const double> values, double risk) const {
   if (values.size() != size_)
-    throw BadInput(
-        fmt::format("bootstrap: there are {} values, but the bootstrap was created for {}; the numbers must be equal",
-                    values.size(), size_));
+    throw BadInput(fmt::format(
+        "bootstrap of the median: there are {} values, but the bootstrap was created for {}; the numbers must be equal",
+        values.size(), size_));
   if (!(risk > 0.0 && risk < 1.0))
-    throw BadInput(fmt::format("bootstrap: risk is {}; it must be within (0, 1)", std::to_string(risk)));
+    throw BadInput(
+        fmt::format("bootstrap of the median: the risk is {}; it must be within (0, 1)", std::to_string(risk)));
   std::vector<double> sorted(values.begin(), values.end());
   if (std::any_of(sorted.begin(), sorted.end(), [](double v) { return std::isnan(v); }))
-    throw BadInput("bootstrap: a value is NaN; all values must be numbers");
+    throw BadInput("bootstrap of the median: a value is NaN; all values must be numbers");
   std::sort(sorted.begin(), sorted.end());
   const double median = sorted_median(sorted);
   if (size_ < kValuesMin) return {median, -kInfinity, kInfinity};

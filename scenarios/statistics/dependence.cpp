@@ -25,9 +25,10 @@ using CompletePairs = std::vector<std::pair<double, double>>;
 
 CompletePairs complete_pairs(std::span<const double> x, std::span<const double> y) {
   if (x.size() != y.size())
-    throw BadInput(fmt::format(
-        "dependence: the first set has {} numbers, but the second set has {}; both must have the same length", x.size(),
-        y.size()));
+    throw BadInput(
+        fmt::format("dependence of two numbers: the first list has {} values, but the second list has {}; both must "
+                    "have the same length",
+                    x.size(), y.size()));
   CompletePairs pairs;
   for (std::size_t i = 0; i < x.size(); ++i) {
     if (!std::isnan(x[i]) && !std::isnan(y[i])) pairs.emplace_back(x[i], y[i]);

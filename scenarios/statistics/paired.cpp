@@ -93,7 +93,7 @@ double sign_test(std::span<const double> differences) {
 
 double paired_failures_test(std::int64_t only_first, std::int64_t only_second) {
   if (only_first < 0 || only_second < 0)
-    throw BadInput(fmt::format("paired failures: the number of draws is {}; it must be at least 0",
+    throw BadInput(fmt::format("test of paired failures: the number of failed runs is {}; it must be at least 0",
                                std::min(only_first, only_second)));
   const auto n = static_cast<double>(only_first + only_second);
   if (n == 0.0) return 1.0;

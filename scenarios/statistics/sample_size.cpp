@@ -20,8 +20,8 @@ namespace {
 void require(const Plan& plan) {
   for (const auto& [name, value] : {std::pair{"risk", plan.risk}, std::pair{"power", plan.power}}) {
     if (!(value > 0.0 && value < 1.0))
-      throw BadInput(
-          fmt::format("sample size: {} is {}; it must be greater than 0 and less than 1", name, std::to_string(value)));
+      throw BadInput(fmt::format("sample size of a test: the {} is {}; it must be greater than 0 and less than 1", name,
+                                 std::to_string(value)));
   }
 }
 
@@ -66,8 +66,8 @@ double pairs_for_failures(std::int64_t only_first, std::int64_t only_second, std
   require(plan);
   if (only_first < 0 || only_second < 0 || only_first + only_second > pairs)
     throw BadInput(
-        fmt::format("plan: the numbers of pairs in which only one method fails are {} and {}; their sum must be at "
-                    "most the number of pairs, {}",
+        fmt::format("sample size of a test: the numbers of pairs in which only one method fails are {} and {}; their "
+                    "sum must be at most the number of pairs, {}",
                     only_first, only_second, pairs));
   if (only_first == only_second) return kInfinity;
   const auto n = static_cast<double>(pairs);

@@ -19,17 +19,21 @@ double spent_by(double risk, double share) {
 
 SequentialSignTest::SequentialSignTest(double risk) : risk_(risk) {
   if (!(risk > 0.0 && risk < 1.0))
-    throw BadInput(fmt::format("the risk is {}; it must be within (0, 1)", std::to_string(risk)));
+    throw BadInput(fmt::format("sequential test: the risk of a wrong answer is {}; it must be within (0, 1)",
+                               std::to_string(risk)));
 }
 
 SequentialSignTest::Verdict SequentialSignTest::look(double share, std::int64_t negative, std::int64_t positive) {
   if (!(share > 0.0 && share <= 1.0 && share >= share_))
-    throw BadInput(fmt::format("the share of the draws seen is {}; it must be within (0, 1] and must not decrease",
-                               std::to_string(share)));
+    throw BadInput(
+        fmt::format("sequential test: the share of the completed simulated runs is {}; it must be within (0, 1] and "
+                    "must not decrease",
+                    std::to_string(share)));
   if (negative < 0 || positive < 0 || negative + positive < pairs_)
-    throw BadInput(fmt::format(
-        "the numbers of pairs are {} and {}, but the previous look had {} pairs in total; the total must not decrease",
-        negative, positive, pairs_));
+    throw BadInput(
+        fmt::format("sequential test: the numbers of negative and positive pairs are {} and {}, but the previous "
+                    "analysis had {} pairs in total; the total must not decrease",
+                    negative, positive, pairs_));
   if (verdict_ != Verdict::open) return verdict_;
   share_ = share;
   toss(negative + positive - pairs_);

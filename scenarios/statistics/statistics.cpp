@@ -43,7 +43,7 @@ struct RankPlace {
 
 double quantile(std::span<const double> values, double share) {
   if (!(share >= 0.0 && share <= 1.0))
-    throw BadInput(fmt::format("quantile: share is {}; it must be within [0, 1]", std::to_string(share)));
+    throw BadInput(fmt::format("quantile: the probability is {}; it must be within [0, 1]", std::to_string(share)));
   std::vector<double> numbers = numbers_of(values);
   if (numbers.empty()) return kNaN;
   const RankPlace place(share, numbers.size());
@@ -123,7 +123,8 @@ std::vector<double> with_failures(std::vector<double> values, std::size_t failed
 Interval share_interval(std::int64_t count, std::int64_t total) {
   if (total <= 0) return {kNaN, 0.0, 1.0};
   if (count < 0 || count > total) {
-    throw BadInput(fmt::format("share_interval: count is {}; it must be within [0, {}]", count, total));
+    throw BadInput(
+        fmt::format("confidence interval of a fraction: the count is {}; it must be within [0, {}]", count, total));
   }
   const auto k = static_cast<double>(count);
   const auto n = static_cast<double>(total);

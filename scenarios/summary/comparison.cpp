@@ -27,15 +27,16 @@ struct ValuePair {
 
 void require_share(const char* name, double value) {
   if (!(value > 0.0 && value < 1.0))
-    throw BadInput(fmt::format("{} is {}; it must be within (0, 1)", name, std::to_string(value)));
+    throw BadInput(
+        fmt::format("the {} of the comparison is {}; it must be within (0, 1)", name, std::to_string(value)));
 }
 
 void require_sound(const Summary& summary, const ComparisonOptions& options) {
   require_share("risk", options.risk);
   require_share("power", options.power);
   if (options.margin && !(options.margin->value >= 0.0 && std::isfinite(options.margin->value)))
-    throw BadInput(
-        fmt::format("the margin is {}; it must be finite and at least 0", std::to_string(options.margin->value)));
+    throw BadInput(fmt::format("the margin of the comparison is {}; it must be finite and at least 0",
+                               std::to_string(options.margin->value)));
   std::vector<std::string> methods = options.methods;
   if (!options.against.empty()) methods.push_back(options.against);
   require_held(summary, methods, options.metrics);

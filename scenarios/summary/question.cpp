@@ -116,8 +116,8 @@ void require_sound(const Question& question) {
   const std::string kind = kind_of(question.method);
   for (const std::string& name : {question.method, question.against}) {
     if (kind_of(name).empty())
-      throw BadInput(
-          fmt::format("method '{}' of a question must be written with its kind, for example 'rate/tumble'", name));
+      throw BadInput(fmt::format(
+          "method '{}' of the question (--until) must be written with its kind, for example 'rate/tumble'", name));
     if (kind_of(name) != kind)
       throw BadInput(fmt::format(
           "methods '{}' and '{}' have different kinds, so no metric can compare them; choose methods of one kind",
@@ -127,14 +127,16 @@ void require_sound(const Question& question) {
     throw BadInput(fmt::format("method '{}' is compared with itself; name two different methods", question.method));
   require_contest(question.metric, kind);
   if (!(question.margin.value >= 0.0 && std::isfinite(question.margin.value)))
-    throw BadInput(
-        fmt::format("the margin is {}; it must be finite and at least 0", std::to_string(question.margin.value)));
+    throw BadInput(fmt::format("the margin of the question (--until) is {}; it must be finite and at least 0",
+                               std::to_string(question.margin.value)));
   if (!(question.risk > 0.0 && question.risk < 1.0))
-    throw BadInput(fmt::format("the risk is {}; it must be within (0, 1)", std::to_string(question.risk)));
+    throw BadInput(
+        fmt::format("the risk of a wrong answer is {}; it must be within (0, 1)", std::to_string(question.risk)));
   if (question.looks < 1 || question.looks > kLooksMax)
-    throw BadInput(fmt::format("the number of looks is {}; it must be within [1, {}]", question.looks, kLooksMax));
-  if (question.scenarios.empty()) throw BadInput("a question needs at least one scenario");
-  if (question.last_seed < question.first_seed) throw BadInput("a question needs at least one seed");
+    throw BadInput(
+        fmt::format("the number of interim analyses is {}; it must be within [1, {}]", question.looks, kLooksMax));
+  if (question.scenarios.empty()) throw BadInput("a question about two methods needs at least one scenario");
+  if (question.last_seed < question.first_seed) throw BadInput("a question about two methods needs at least one seed");
 }
 
 void claim(Results& results, const Question& question, const std::filesystem::path& database) {
@@ -147,7 +149,8 @@ void claim(Results& results, const Question& question, const std::filesystem::pa
                     database.string(), known, asked));
   if (!results.outcomes().empty())
     throw BadInput(
-        fmt::format("{}: this file contains draws of a run without --until; choose another file", database.string()));
+        fmt::format("{}: this database contains simulated runs of a sweep without --until; choose another file",
+                    database.string()));
   results.set_note(kQuestionNote, asked);
 }
 

@@ -168,7 +168,9 @@ std::unique_ptr<MadeDraw> made_draw(const DataRoot& data, const DrawTask& task, 
   } catch (const sim::SimulationFailure& error) {
     reject(task, error, fd);
   } catch (const std::bad_alloc&) {
-    give_up(task, OutcomeStatus::killed, "not enough memory to simulate the draw", fd);
+    give_up(task, OutcomeStatus::killed,
+            "there is not enough memory to simulate the run; free memory or increase the memory limit of a process",
+            fd);
   } catch (const std::exception& error) {
     give_up(task, OutcomeStatus::crashed, std::string("simulation error: ") + error.what(), fd);
   }
@@ -188,7 +190,9 @@ Outcome run_one(const DrawTask& task, const DrawTask::Run& run, const MadeDraw& 
                      run.setting.is_plain() ? files.estimate(run.method->info) : std::filesystem::path(), &not_kept);
     if (!not_kept.empty()) files.miss(not_kept);
   } catch (const std::bad_alloc&) {
-    outcome = unanswered(task, run, OutcomeStatus::killed, "not enough memory for the method");
+    outcome =
+        unanswered(task, run, OutcomeStatus::killed,
+                   "there is not enough memory for the method; free memory or increase the memory limit of a process");
   } catch (const std::system_error& error) {
     outcome = unanswered(task, run, OutcomeStatus::killed, error.what());
   }

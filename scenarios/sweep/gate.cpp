@@ -97,7 +97,7 @@ void hold_worst_draw(const MetricInfo& info, const std::vector<GatePair>& pairs,
   const double slack = by_difference(info) ? margin_of(info, policy) : 0.0;
   if (!(badness(info, now.now) > policy.worst * badness(info, before.before) + slack)) return;
   result.seed = now.seed;
-  result.fault = fmt::format("the worst value is {} (seed {}), but the worst value of the accepted run is {}",
+  result.fault = fmt::format("the worst value is {} (seed {}), but the worst value of the accepted results is {}",
                              three_digits(now.now), now.seed, three_digits(before.before));
 }
 
@@ -137,7 +137,7 @@ GateResult hold_metric(const GatePairs& found, const MethodRun& before, const Me
   if (!found.lost.empty()) {
     result.seed = found.lost.front();
     result.fault =
-        fmt::format("the metric has no value, but has a value in the accepted run, at seed {}", found.lost.front());
+        fmt::format("the metric has no value, but has a value in the accepted results, at seed {}", found.lost.front());
     if (found.lost.size() > 1) result.fault += " and " + std::to_string(found.lost.size() - 1) + " more";
   } else if (result.passes()) {
     hold_worst_draw(info, found.pairs, policy, result);
@@ -230,10 +230,10 @@ std::vector<GateResult> hold_to_gate(const GateRun& run, const Gate& gate) {
     throw BadInput(fmt::format(
         "the gate of {} has no accepted results; run 'tumble gate SUITE --accept' to create them", gate.suite));
   if (run.seeds != gate.accepted.seeds) {
-    throw BadInput(
-        fmt::format("the accepted run of the gate {} has {} draws with other seeds than the {} draws of this run; use "
-                    "the same seeds, or run 'tumble gate {} --accept' to accept this run",
-                    gate.suite, gate.accepted.seeds.size(), run.seeds.size(), gate.suite));
+    throw BadInput(fmt::format(
+        "the accepted results of gate {} contain {} simulated runs with other seeds than the {} simulated runs of this "
+        "comparison; use the same seeds, or run 'tumble gate {} --accept' to accept the new results",
+        gate.suite, gate.accepted.seeds.size(), run.seeds.size(), gate.suite));
   }
   std::vector<Pooled> all = pooled_metrics(gate.accepted);
   std::size_t tests = all.size();

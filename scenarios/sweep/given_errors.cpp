@@ -106,11 +106,11 @@ void report_rail(std::span<const sim::Parameter> known, double size, sim::Values
 std::span<const GivenError> given_errors() {
   static const std::array kErrors = {
       GivenError{{"lever_arm_error_m", 0.0, 0.0, 1.0, "m",
-                  "error of the stated lever arm, in a random direction for each draw; 0: exact lever arm"},
+                  "error of the stated lever arm, in a random direction for each simulated run; 0: exact lever arm"},
                  false,
                  lever_arm},
       GivenError{{"extrinsic_rotation_rad", 0.0, 0.0, 3.14, "rad",
-                  "error of the stated rotation between IMU and lidar, about a random axis for each draw"},
+                  "error of the stated rotation between IMU and lidar, about a random axis for each simulated run"},
                  true,
                  extrinsic_rotation},
       GivenError{{"time_offset_s", 0.0, -1.0, 1.0, "s", "delay added to the time stamps of the primary IMU"},

@@ -90,9 +90,9 @@ Keep parse_keep(const std::string& text) {
     if (read_number(std::string_view(text).substr(kWorst.size()), count) && count >= 1 && count <= kCountMax)
       return {Keep::Which::worst, count};
   }
-  throw BadInput(
-      fmt::format("the selection of kept draws is '{}'; it must be none, failed, all, or worst:N with N from 1 to {}",
-                  text, kCountMax));
+  throw BadInput(fmt::format(
+      "the rule for kept simulated runs is '{}'; it must be none, failed, all, or worst:N with N from 1 to {}", text,
+      kCountMax));
 }
 
 std::string to_string(const Keep& keep) {

@@ -176,7 +176,7 @@ class Joining {
     held_.bindNoCopy(5, row.varied);
     held_.bind(6, row.setting);
     if (!held_.executeStep())
-      throw BadInput(fmt::format("{}: a row of draw {} is stored more than once; the database is damaged",
+      throw BadInput(fmt::format("{}: a row of scenario {} is stored more than once; the database is damaged",
                                  path_.string(), row.scenario));
     const std::int64_t id = held_.getColumn(0).getInt64();
     const std::string status_text = held_.getColumn(1).getString(), recording = held_.getColumn(2).getString(),

@@ -35,7 +35,7 @@ void report_rows(const DataRoot& data, const Scenario& scenario, std::uint64_t s
     triage(data, scenario, seed, method, telling);
     write_all(fd, "\n");
   } catch (const std::bad_alloc&) {
-    report_trouble("not enough memory for the method");
+    report_trouble("there is not enough memory for the method; free memory or increase the memory limit of a process");
   } catch (const std::exception& error) {
     report_trouble(error.what());
   }
@@ -78,7 +78,8 @@ void conclude(Worker& worker, bool late, const Failure& failure, DrawTriage& dra
   if (late) worker.process.kill();
   const Process::End end = worker.process.wait();
   if (read_rows(worker.said, failure, draw)) return;
-  draw.error_code = late ? "the draw did not end within its time limit" : "the draw's process " + end.describe();
+  draw.error_code = late ? "the simulated run did not end within its time limit"
+                         : "the process of the simulated run " + end.describe();
 }
 
 bool begin(std::list<Worker>& workers, std::size_t index, double deadline_s, const std::function<void(int)>& work) {

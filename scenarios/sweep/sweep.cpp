@@ -164,7 +164,8 @@ class Sweep {
     try {
       workers_.emplace_back(terms_);
     } catch (const std::system_error& error) {
-      if (workers_.empty()) throw BadInput(fmt::format("cannot start a worker process: {}", error.what()));
+      if (workers_.empty())
+        throw BadInput(fmt::format("cannot start a worker process for simulated runs: {}", error.what()));
       return false;  // retry after another process has ended
     }
     return workers_.back().give(task, deadline_s);
@@ -217,8 +218,8 @@ class Sweep {
 
   // If the worker process of a task dies, each of its remaining methods gets an outcome without scores.
   void account_for_death(const DrawTask& draw, bool late, const Process::End& end) {
-    const std::string what =
-        late ? "the draw did not end within its time limit" : "the draw's process " + end.describe();
+    const std::string what = late ? "the simulated run did not end within its time limit"
+                                  : "the process of the simulated run " + end.describe();
     if (updating_kept_) {
       progress_.not_kept = what;
       return;
@@ -312,7 +313,8 @@ std::uint64_t SweepProgress::not_ok() const {
 void require_worker_memory(double mib) {
   constexpr double kMinMib = 64.0, kMaxMib = 1e7;
   if (!(mib >= kMinMib && mib <= kMaxMib))
-    throw BadInput(fmt::format("the memory limit is {} MiB; it must be within [64, 1e7]", std::to_string(mib)));
+    throw BadInput(fmt::format("the memory limit of a worker process is {} MiB; it must be within [64, 1e7]",
+                               std::to_string(mib)));
 }
 
 Results open_results(const DataRoot& data, const Suite& suite, const std::filesystem::path& database) {
@@ -328,18 +330,20 @@ SweepProgress sweep(const DataRoot& data, const Suite& suite, const std::filesys
 
 void require_sound(const Suite& suite, const SweepOptions& options) {
   if (options.jobs < 1 || options.jobs > kJobsMax) {
-    throw BadInput(fmt::format("jobs is {}; it must be within [1, {}]", options.jobs, kJobsMax));
+    throw BadInput(fmt::format("the number of parallel processes (--jobs) is {}; it must be within [1, {}]",
+                               options.jobs, kJobsMax));
   }
   require_seeds(suite);
   for (const OutcomeStatus status : options.again) {
     if (!may_run_again(status)) {
       throw BadInput(fmt::format(
-          "runs with status '{}' cannot be repeated; possible statuses: crashed, timeout, killed", to_string(status)));
+          "runs with status '{}' cannot be repeated; only runs with status crashed, timeout or killed can be repeated",
+          to_string(status)));
     }
   }
   if (!suite.recordings.empty() && options.keep.which != Keep::Which::none)
     throw BadInput(fmt::format(
-        "suite {}: the draws of this suite are recordings that already exist as files; set --keep none", suite.name));
+        "suite {}: the suite consists of recordings, which exist already as files; set --keep none", suite.name));
   require_worker_memory(options.memory_mib);
 }
 

@@ -196,8 +196,8 @@ std::span<const TrueInput> true_inputs() {
       TrueInput{"lidar_unbent",
                 "replaces the sweeps by sweeps without skew (all points within a microsecond); the range errors remain",
                 unbent_sweeps},
-      TrueInput{"series_exact", "removes the errors of all other sensors", exact_series},
-      TrueInput{"all", "applies all other replacements together", everything},
+      TrueInput{"series_exact", "removes the errors of all sensors other than IMU and lidar", exact_series},
+      TrueInput{"all", "replaces all inputs of the method by their true values at once", everything},
   };
   return kInputs;
 }

@@ -24,9 +24,9 @@ namespace fs = std::filesystem;
 constexpr int kPollMs = 200;
 /// Time limit for simulation and rendering, in addition to the methods, in time limits of one method
 constexpr double kOtherTimeouts = 3.0;
-constexpr const char* kTypical = "The draw with the median score of its scenario";
-constexpr const char* kFailed = "The draw on which most methods failed";
-constexpr const char* kAlsoFailed = "A draw on which methods failed";
+constexpr const char* kTypical = "The simulated run with the median score of its scenario";
+constexpr const char* kFailed = "The simulated run on which most methods failed";
+constexpr const char* kAlsoFailed = "A simulated run on which methods failed";
 
 enum class Extent { whole, of_failure };
 
@@ -177,8 +177,8 @@ class Makers {
   };
 
   void start(Making& making) {
-    say(fmt::format("{}, seed {}: the program runs this draw again to create its pictures", making.draw.scenario,
-                    making.draw.seed));
+    say(fmt::format("scenario {}, seed {}: the program simulates this run again to create its pictures",
+                    making.draw.scenario, making.draw.seed));
     const double limit_s = timeout_s_ * (static_cast<double>(making.methods.size()) + kOtherTimeouts);
     try {
       scenarios::Process process([&](int fd) { make(data_, folder_, making, fd); }, true);
@@ -202,7 +202,7 @@ class Makers {
     if (late) worker.process.kill();
     const scenarios::Process::End end = worker.process.wait();
     worker.making->done = !late && end.normal && worker.making->text.starts_with('{');
-    if (late) worker.making->text = "the run exceeded its time limit";
+    if (late) worker.making->text = "the simulated run exceeded its time limit";
     if (!late && !end.normal) worker.making->text = "its process " + end.describe();
     if (!worker.making->done) say_failed(*worker.making);
     return true;
@@ -213,8 +213,8 @@ class Makers {
   }
 
   void say_failed(const Making& making) const {
-    say(fmt::format("the pictures of {}, seed {} could not be created: {}", making.draw.scenario, making.draw.seed,
-                    making.text));
+    say(fmt::format("the pictures of scenario {}, seed {} could not be created: {}", making.draw.scenario,
+                    making.draw.seed, making.text));
   }
 
   const scenarios::DataRoot& data_;

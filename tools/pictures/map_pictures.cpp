@@ -130,7 +130,7 @@ std::array<std::uint8_t, 3> error_colour(float error_m) {
 
 sim::Picture map_picture(const std::vector<ErrorMap>& maps, const sim::Truth& truth, int width, int height) {
   if (maps.empty() || truth.p_WB_m.empty() || width < 1 || height < 1) {
-    throw std::invalid_argument("map_picture needs at least one map, a true path and a positive size");
+    throw std::invalid_argument("a picture of maps needs at least one map, a true path and a positive size");
   }
   sim::Picture picture;
   const auto count = static_cast<int>(maps.size());

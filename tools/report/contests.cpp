@@ -121,7 +121,7 @@ std::string tally_text(const Tally& tally) {
   if (tally.leader.empty() && tally.lost == tally.contests)
     return fmt::format("The baseline is better in all of {}", contests_text(tally.contests));
   if (tally.leader.empty() && tally.ahead > 0)
-    return fmt::format("{} ahead of the baseline in {} of {}, but there are too few draws for certainty",
+    return fmt::format("{} ahead of the baseline in {} of {}, but there are too few simulated runs for certainty",
                        tally.ahead_by.empty() ? "The best methods are" : tally.ahead_by + " is", tally.ahead,
                        contests_text(tally.contests));
   if (tally.leader.empty())
@@ -139,17 +139,20 @@ std::string tally_text(const Tally& tally) {
 std::string certainty_text(const ContestResult& result, std::size_t comparisons) {
   switch (result.certainty) {
     case Certainty::corrected:
-      return fmt::format("significantly {}, after correction for {} comparisons", result.better ? "better" : "worse",
-                         comparisons);
-    case Certainty::interval:
-      return fmt::format("{} according to the interval, but not significant after correction for {} comparisons",
+      return fmt::format("The method is significantly {}, after correction for {} comparisons",
                          result.better ? "better" : "worse", comparisons);
+    case Certainty::interval:
+      return fmt::format(
+          "The method is {} according to the interval, but the difference is not significant after correction for {} "
+          "comparisons",
+          result.better ? "better" : "worse", comparisons);
     case Certainty::open:
       break;
   }
   const double more = result.row.pairs_needed - static_cast<double>(result.row.pairs);
   if (more >= 1.0 && more < 1e6)
-    return fmt::format("not significant; about {:.0f} more draws are needed for a decision", std::ceil(more));
+    return fmt::format("The difference is not significant; about {:.0f} more simulated runs are needed for a decision",
+                       std::ceil(more));
   return "not significant";
 }
 

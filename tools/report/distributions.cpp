@@ -22,7 +22,8 @@ std::string thinned_text(std::span<const Spread> spreads) {
   const auto is_thinned = [](const Spread& spread) { return spread.of_draws && spread.values.size() > kBoxPoints; };
   if (std::none_of(spreads.begin(), spreads.end(), is_thinned)) return "";
   return fmt::format(
-      " For scenarios with more draws, the plot shows only {} draws, evenly spaced in the sorted values.", kBoxPoints);
+      " For scenarios with more simulated runs, the plot shows only {} runs, evenly spaced in the sorted values.",
+      kBoxPoints);
 }
 
 json shaded(const Spread& spread) {
@@ -42,14 +43,14 @@ json shaded(const Spread& spread) {
 json layout_of(const Spread& spread) {
   json layout = {{"barmode", "overlay"},
                  {"xaxis", {{"title", {{"text", spread.quantity + " [" + spread.unit + "]"}}}}},
-                 {"yaxis", {{"title", {{"text", "share of the draws [%]"}}}}}};
+                 {"yaxis", {{"title", {{"text", "share of the simulated runs [%]"}}}}}};
   if (!std::isnan(spread.published_low)) layout["shapes"] = json::array({shaded(spread)});
   return layout;
 }
 
 std::string caption_of(std::span<const Spread> spreads) {
   const Spread& spread = spreads.front();
-  std::string out = fmt::format("The histogram shows the distribution over the draws: {}.", spread.quantity);
+  std::string out = fmt::format("The histogram shows the distribution over the simulated runs: {}.", spread.quantity);
   if (!spread.published.empty())
     out += fmt::format(" Published value for the rig: {} {}.", spread.published, spread.unit);
   return out + thinned_text(spreads);

@@ -60,7 +60,9 @@ std::string draws_html(const PageContent& content) {
       "the most failed methods come first. The command below a run repeats the run. With <code>-o FOLDER</code>, "
       "<code>tumble run</code> writes recording, estimates, pictures and a replay.</p>\n",
       failed.draws, failed.draws == 1 ? "" : "s",
-      failed.shown.size() < failed.draws ? fmt::format("The page shows {} of these draws. ", failed.shown.size()) : "");
+      failed.shown.size() < failed.draws
+          ? fmt::format("The page shows {} of the simulated runs on which methods failed. ", failed.shown.size())
+          : "");
   out += "<ul class=\"failed\">" + open + "</ul>\n";
   if (!folded.empty())
     out += fmt::format("<details><summary>{} more</summary><ul class=\"failed\">{}</ul></details>\n",

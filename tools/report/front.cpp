@@ -93,10 +93,11 @@ std::string difference_text(const ContestResult& result) {
   const Interval& own = result.row.difference;
   if (!std::isfinite(own.value)) {
     const scenarios::MetricComparison& row = result.row;
-    if (!std::isfinite(row.median)) return fmt::format("{} failed on at least half of the draws", row.contest.method);
+    if (!std::isfinite(row.median))
+      return fmt::format("{} failed on at least half of the simulated runs", row.contest.method);
     if (!std::isfinite(row.against_median))
-      return fmt::format("{} failed on at least half of the draws", row.contest.against);
-    return "one of the two methods failed on at least half of the draws";
+      return fmt::format("{} failed on at least half of the simulated runs", row.contest.against);
+    return "one of the two methods failed on at least half of the simulated runs";
   }
   const std::string value = styled_value(result.row.metric, own.value, true);
   const std::string sign = own.value > 0.0 ? "+" : "";

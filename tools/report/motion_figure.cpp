@@ -90,12 +90,12 @@ std::string caption_of(const MotionMap& map) {
     shown += cloud.points.size();
   }
   std::string out = fmt::format(
-      "Each point shows the largest rate of the body in one draw, and the largest specific force that an IMU without "
-      "saturation would have measured. The shaded area shows the density of all {} draws{}. The outlines show the "
-      "largest values in published campaigns",
-      draws, shown < draws ? fmt::format("; {} of the draws are shown as points", shown) : "");
+      "Each point shows the largest rate of the body in one simulated run, and the largest specific force that an IMU "
+      "without saturation would have measured. The shaded area shows the density of all {} runs{}. The outlines show "
+      "the largest values in published campaigns",
+      draws, shown < draws ? fmt::format("; {} of the simulated runs are shown as points", shown) : "");
   for (const PublishedExtreme& extreme : map.extremes) out += "; " + extreme.source;
-  return fmt::format("{}. The two maxima of a draw may occur at different instants.", out);
+  return fmt::format("{}. The two maxima of a simulated run may occur at different instants.", out);
 }
 
 }  // namespace

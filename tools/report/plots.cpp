@@ -281,7 +281,8 @@ Figure box_figure(const Summary& summary, Kind kind, const std::string& metric, 
   figure.caption = caption;
   if (holds_more_than_shown(summary, kind, metric))
     figure.caption += fmt::format(
-        " A box of more than {0} draws shows {0} of them as points, evenly spaced in the sorted values.", kBoxPoints);
+        " A box of more than {0} simulated runs shows {0} of them as points, evenly spaced in the sorted values.",
+        kBoxPoints);
   Boxes boxes(metric, palette);
   for (const Section& section : summary.sections) {
     if (section.kind == kind) boxes.add(section, section.scenario, true);
@@ -294,7 +295,7 @@ Figure cost_figure(const Summary& summary, const Palette& palette) {
   Figure figure;
   figure.id = "cost";
   figure.caption = fmt::format(
-      "The plot shows the CPU time of one estimate. Each point shows one draw; a box has at most {} points.",
+      "The plot shows the CPU time of one estimate. Each point shows one simulated run; a box has at most {} points.",
       kBoxPoints);
   std::set<Kind> kinds;
   for (const Section& section : summary.sections) kinds.insert(section.kind);

@@ -49,7 +49,7 @@ std::vector<Fact> listed_methods(const Summary& summary) {
   for (const scenarios::Section& section : summary.sections) {
     for (const scenarios::MethodSummary& method : section.methods) {
       Fact fact(full_name(section.kind, method.method) + (method.method == section.baseline ? " (baseline)" : ""),
-                method.what.empty() ? "A file describes this method." : method.what);
+                method.what.empty() ? "A file (--method FILE) describes this external method." : method.what);
       if (std::ranges::find(out, fact) == out.end()) out.push_back(std::move(fact));
     }
   }
@@ -72,11 +72,11 @@ std::vector<Fact> commands(const scenarios::Results& results, const ReportOption
     const char* what = "This command computes the results";
     for (const std::string& sweep : scenarios::commands_of(results.note(scenarios::kCommandNote))) {
       out.emplace_back(what, "tumble sweep " + sweep + " --db " + database);
-      what = "and this command adds results";
+      what = "This command adds results to the database";
     }
   }
   if (!options.page.empty())
-    out.emplace_back("This command writes this page",
+    out.emplace_back("This command writes this report page",
                      "tumble report " + database + " -o " + scenarios::shell_word(options.page.string()));
   if (!content.comparison.failures.empty())
     out.emplace_back("This command prints the paired differences as tables; add --metric NAME for other metrics",
@@ -112,7 +112,7 @@ bool is_of(const scenarios::Results& results, const Example& example) {
 
 std::string how_to_get_pictures(const scenarios::Results& results, const ReportOptions& options) {
   const std::string none =
-      fmt::format("There are no pictures of single draws in {}", examples_folder(options.database).string());
+      fmt::format("There are no pictures of single simulated runs in {}", examples_folder(options.database).string());
   const std::string made_by = results.note("build"), made_of = results.note("data");
   if (made_by == scenarios::kMixedBuilds)
     return fmt::format(
@@ -154,7 +154,7 @@ void add_examples(const scenarios::Results& results, const ReportOptions& option
   }
   // Errors of the pictures must not hide the scores, so they become warnings.
   for (const std::string& what : found.unreadable)
-    content.warnings.push_back(fmt::format("The page cannot show some pictures of single draws: {}", what));
+    content.warnings.push_back(fmt::format("The page cannot show some pictures of single simulated runs: {}", what));
   if (!found.unreadable.empty()) return;
   if (content.examples.empty()) content.warnings.push_back(how_to_get_pictures(results, options));
 }
@@ -202,7 +202,7 @@ PageContent report_content(ReportInput input, const ReportOptions& options) {
   content.commands = commands(results, options, content);
   content.certificates = results.certificates();
   if (content.certificates.empty() && !content.recorded)
-    content.warnings.push_back("These results contain no certificate of their build.");
+    content.warnings.push_back("These results contain no certificate of the simulation of their build.");
   for (const scenarios::Certificate& certificate : content.certificates) {
     content.versions.emplace_back("certificate", certificate_summary(certificate));
     if (!certificate.passes()) content.warnings.push_back("The certificate of build " + certificate.build + " fails.");

@@ -59,7 +59,9 @@ std::string metric_cell(const std::string& name, const MetricSummary* metric, bo
   out += "<small>" + html::escaped(styled_interval(name, metric->centre)) + "</small>";
   if (metric->wins.pairs > 0) {
     out += "<small class=\"wins\">" +
-           html::escaped(fmt::format("better in {} of {} draws", metric->wins.count, metric->wins.pairs)) + "</small>";
+           html::escaped(fmt::format("better than the baseline in {} of {} simulated runs", metric->wins.count,
+                                     metric->wins.pairs)) +
+           "</small>";
   }
   return out + "</td>";
 }

@@ -59,8 +59,8 @@ scenarios::Suite suite_of(const scenarios::DataRoot& data, const BenchOptions& o
   scenarios::Suite suite =
       scenarios::load_suite(data, options.suite.empty() ? scenarios::bench_suite_name(kind) : options.suite);
   if (suite.classes.empty())
-    throw BadInput(
-        fmt::format("suite {} has no classes of draws; add the key 'draws' to the file of the suite", suite.name));
+    throw BadInput(fmt::format(
+        "suite {} has no classes of simulated runs; add the key 'draws' to the file of the suite", suite.name));
   suite.methods = options.methods;
   return suite;
 }
@@ -119,7 +119,8 @@ BenchPage page_of(const scenarios::Results& results, const scenarios::Suite& sui
       page.stored.push_back(std::move(each));
     else
       page.left_out.push_back(
-          fmt::format("{}: the recording of {} in these results differs, because another build simulated the recording",
+          fmt::format("{}: the recording of simulated run {} in these results differs, because another build simulated "
+                      "the recording",
                       each.method, draw));
   }
   return page;
@@ -167,9 +168,10 @@ int bench(const Session& session, const BenchOptions& options) {
   if (!options.lines.empty()) prepare_file(options.lines, {}, {".jsonl"});
   const fs::path database = database_of(data, options, suite, methods);
   if (database.has_parent_path()) make_folder(database.parent_path());
-  session.note(fmt::format(
-      "suite {} has {} draws. The program stores the results in {}. A stopped run continues from this database",
-      suite.name, suite.draw_count(), database.string()));
+  session.note(
+      fmt::format("suite {} has {} simulated runs. The program stores the results in {}. A stopped run continues from "
+                  "this database",
+                  suite.name, suite.draw_count(), database.string()));
   const scenarios::DatabaseOwner owner(database);
   const InterruptFlag interrupt;
   scenarios::SweepOptions how;
@@ -208,7 +210,7 @@ Action declare_bench(VerbOptions& verb, const Session& session) {
            "must have the same kind")
       .required();
   verb.add("--suite", options->suite,
-           "runs this suite, which must list its draws [default: the standard suite of the method's kind]");
+           "runs this suite, which must list its simulated runs [default: the standard suite of the method's kind]");
   verb.add("--beside", options->beside, "also shows the published results in this FILE.jsonl").one_at_a_time();
   verb.add("--jobs", options->jobs, "runs this number of processes in parallel [default: number of processors]")
       .whole(1, 1024)

@@ -197,9 +197,10 @@ int compare(const Session& session, const CompareOptions& options) {
   const scenarios::Results results(options.database, scenarios::Results::Mode::read_only);
   const Comparison comparison = scenarios::compare(scenarios::summarize(results), asked);
   if (comparison.failures.empty())
-    throw BadInput(fmt::format(
-        "{}: no draw of this database has results of two of the named methods; name methods that ran on the same draws",
-        options.database.string()));
+    throw BadInput(
+        fmt::format("{}: no simulated run of this database has results of two of the named methods; name methods that "
+                    "ran on the same simulated runs",
+                    options.database.string()));
   const bool apart = session.format == TableFormat::csv;
   std::vector<Table> tables = tables_of(comparison.metrics, "paired with ", [&](const MetricComparison& row) {
     return cells_of(row, asked.margin.has_value(), apart);
@@ -227,7 +228,7 @@ Action declare_compare(VerbOptions& verb, const Session& session) {
   verb.add("--against", options->against,
            "sets the method with which the other methods are compared [default: the last --method, or the baseline]");
   verb.add("--metric", options->metrics,
-           "compares this metric; repeat the option for more metrics [default: the headline metrics of the kind]")
+           "compares this metric; repeat the option for more metrics [default: the most important metrics of the kind]")
       .one_at_a_time();
   verb.add("--margin", options->margin,
            "sets the margin: a smaller loss counts as 'not worse'. Write a number in the metric's unit, or a "
@@ -236,7 +237,7 @@ Action declare_compare(VerbOptions& verb, const Session& session) {
       .within(1e-6, 0.5)
       .shows_default();
   verb.add("--power", options->power,
-           "sets the power of the tests, from which the program computes the needed number of draws")
+           "sets the power of the tests, from which the program computes the needed number of simulated runs")
       .within(0.5, 0.999)
       .shows_default();
   return [&session, options] { return compare(session, *options); };

@@ -172,7 +172,8 @@ std::string certificate_text(const Session& session, const scenarios::DataRoot& 
   scenarios::Results results(database, scenarios::Results::Mode::create_or_append);
   const auto certificate = scenarios::known_certificate(results, scenarios::CertificateStore(session.cache(), data));
   return certificate ? certificate_summary(*certificate)
-                     : "not measured for this build on this machine; run 'tumble certify' or 'tumble sweep'";
+                     : "not measured for this build on this machine; 'tumble certify' or 'tumble sweep' measures the "
+                       "agreement of the simulation with physics";
 }
 
 int run_case_gate(const Session& session, const scenarios::DataRoot& data, const GateOptions& options) {
@@ -189,9 +190,10 @@ int run_gate(const Session& session, const GateOptions& options) {
   scenarios::Suite suite = scenarios::load_suite(data, options.suite);
   if (!suite.recordings.empty())
     throw scenarios::BadInput(
-        fmt::format("suite '{}' contains recordings; a gate needs draws of scenarios", suite.name));
+        fmt::format("suite '{}' contains recordings; a gate needs simulated runs of scenarios", suite.name));
   if (!suite.classes.empty())
-    throw scenarios::BadInput(fmt::format("suite '{}' names its draws; a gate needs a range of seeds", suite.name));
+    throw scenarios::BadInput(
+        fmt::format("suite '{}' lists its simulated runs; a gate needs a range of seeds", suite.name));
   if (!options.accepted.empty() && options.accepted.extension() != ".yaml")
     throw scenarios::BadInput(
         fmt::format("--against {}: the accepted results must be in a FILE.yaml", options.accepted.string()));
@@ -240,8 +242,8 @@ int run_gate(const Session& session, const GateOptions& options) {
 Action declare_gate(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<GateOptions>();
   verb.add("SUITE", options->suite,
-           "runs the fixed seeds of this suite, suite file or scenario; or this named case; or all named cases "
-           "('regressions')")
+           "runs the fixed seeds of this suite, suite file or scenario; or this named case (a stored failure); or all "
+           "named cases ('regressions')")
       .required()
       .check(a_suite_or_cases(session));
   verb.add("--against", options->accepted,

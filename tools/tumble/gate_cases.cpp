@@ -51,9 +51,10 @@ Reached reached(const scenarios::Results& results, const scenarios::Scenario& na
     }
   }
   if (out.size() != named.named_case->expected.size())
-    throw scenarios::BadInput(fmt::format(
-        "case {} has missing outcomes, because its draw cannot be simulated; correct or delete the file of the case",
-        named.name));
+    throw scenarios::BadInput(
+        fmt::format("named case {} has missing results, because its run cannot be simulated; correct or delete the "
+                    "file of the case",
+                    named.name));
   return out;
 }
 

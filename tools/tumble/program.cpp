@@ -166,7 +166,7 @@ int run_program(int argc, const char* const* argv) {
     // A lack of processes, pipes or threads is not a defect of the program.
     return say("", error.what(), kBadInput);
   } catch (const sim::SimulationFailure& error) {
-    return say("the simulation rejected the draw: ", error.what(), kCheckFailed);
+    return say("the simulation rejected the run: ", error.what(), kCheckFailed);
   } catch (const std::bad_alloc&) {
     return say("", "the program needs more memory than is available", kBadInput);
   } catch (const std::exception& error) {

@@ -178,7 +178,7 @@ int render(const Session& session, const RenderOptions& options) {
   inputs.emplace_back(options.what);
   prepare_file(options.output, inputs, {options.video ? ".webp" : ".png"});
   if (is_recording(options.what) && !options.seed.empty()) {
-    throw BadInput(fmt::format("--seed applies to a scenario; '{}' is a recording of one draw", options.what));
+    throw BadInput(fmt::format("--seed applies to a scenario; '{}' is a recording of one simulated run", options.what));
   }
   if (options.map) return render_maps(session, options, data);
   RenderContent content;
@@ -205,14 +205,16 @@ int render(const Session& session, const RenderOptions& options) {
 
 Action declare_render(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<RenderOptions>();
-  verb.add("WHAT", options->what, "renders this recording, FILE.h5, or one draw of this scenario (with --seed)")
+  verb.add("WHAT", options->what,
+           "renders this recording, FILE.h5, or one simulated run of this scenario (with --seed)")
       .required()
       .check([&session](const std::string& text) {
         if (is_recording(text)) return a_recording(text);
         scenarios::load_scenario(session.data(), text);
       });
   verb.add("ESTIMATE", options->estimates, "also shows the estimates in these folders");
-  verb.add("--seed", options->seed, "sets the seed of the draw [default: for a named case, the seed of the case]");
+  verb.add("--seed", options->seed,
+           "sets the seed of the simulated run [default: for a named case, the seed of the case]");
   verb.add("-o,--output", options->output, "writes this picture, FILE.png; with --video FILE.webp").required();
   verb.add("--film", options->film, "renders a film strip with this number of frames").whole(1, 64);
   verb.add_flag("--map", options->map,

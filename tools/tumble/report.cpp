@@ -110,7 +110,7 @@ std::string read_text(const std::filesystem::path& path) {
   std::ifstream stream(path, std::ios::binary);
   std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
   if (!stream.good() && !stream.eof())
-    throw scenarios::BadInput(fmt::format("{}: the file cannot be read", path.string()));
+    throw scenarios::BadInput(fmt::format("{}: the file cannot be read; give an existing file", path.string()));
   return text;
 }
 
@@ -136,8 +136,8 @@ void add_sensitivity(const Session& session, const std::string& data_found, Repo
   } else {
     numbers = numbers_of_motions(input.draws, some);
     input.sensitivity_note =
-        "The random parameters of these draws are unknown, because the results come from other models and scenarios. "
-        "The page therefore lists the influence of the motions. ";
+        "The random parameters of these simulated runs are unknown, because the results come from other models and "
+        "scenarios. The page therefore lists the influence of the motions. ";
   }
   scenarios::SensitivityOptions options;
   for (const Section& section : input.summary->sections) {
@@ -150,11 +150,12 @@ void add_sensitivity(const Session& session, const std::string& data_found, Repo
   const std::string needed = draws_needed_text(input.summary->draws);
   input.sensitivity_note += needed;
   if (input.sensitivity.empty() && needed.empty())
-    input.sensitivity_note += "All known parameters of a scenario are equal in all draws. ";
+    input.sensitivity_note += "All known parameters of a scenario are equal in all simulated runs. ";
   for (const auto& [scenario, draws] : input.summary->draws) {
     if (draws <= static_cast<std::int64_t>(kSensitivityDraws)) continue;
-    input.sensitivity_note += fmt::format(
-        "For scenarios with more draws, the analysis uses only {} draws, with evenly spaced seeds.", kSensitivityDraws);
+    input.sensitivity_note +=
+        fmt::format("For scenarios with more simulated runs, the analysis uses only {} runs, with evenly spaced seeds.",
+                    kSensitivityDraws);
     break;
   }
 }
@@ -230,8 +231,10 @@ Action declare_report(VerbOptions& verb, const Session& session) {
   verb.add("DATABASE", options->database, "reads this results database, FILE.db").required();
   verb.add("-o,--output", options->page, "writes this page, FILE.html [default: prints only tables]");
   verb.add("--badge", options->badge,
-           "writes this badge, FILE.svg, which shows the suite and the number of contests won");
-  verb.add_flag("--all", options->all, "prints all metrics and the curves over bins, not only the headline metrics");
+           "writes this badge, FILE.svg, which shows the suite and in how many scenarios a method is better than the "
+           "baseline");
+  verb.add_flag("--all", options->all,
+                "prints all metrics and the curves over bins, not only the most important metrics");
   return [&session, options] { return report(session, *options); };
 }
 

@@ -94,13 +94,13 @@ void say_what_next(const Session& session, const RunOptions& options, const scen
   if (std::any_of(result.methods.begin(), result.methods.end(),
                   [](const auto& method) { return method->info.kind == scenarios::Kind::slam; })) {
     say(fmt::format("tumble render {0}/recording.h5 {0}/estimates/slam-* --map -o {0}/maps.png", folder),
-        "renders the maps, coloured by error");
+        "renders the estimated maps, coloured by error");
   }
   say(fmt::format("tumble run {} --seed 2 -o {}_seed_2", options.scenario, folder),
-      "runs every method on another draw");
+      "runs every method on another simulated run");
   if (in_catalogue) {
     say(fmt::format("tumble sweep {0} --scenario {0} --seeds 1..8 --db {1}.db", options.scenario, folder),
-        "runs every method on eight draws");
+        "runs every method on eight simulated runs");
     say(fmt::format("tumble report {0}.db -o {0}.html", folder), "prints the tables and writes a page with the tables");
   }
   say("tumble list methods", "lists all methods");
@@ -235,7 +235,8 @@ Action declare_run(VerbOptions& verb, const Session& session) {
   verb.add("SCENARIO", options->scenario, "simulates this scenario of the catalogue, or this scenario file")
       .required()
       .check(a_scenario(session));
-  verb.add("--seed", options->seed, "sets the seed of the draw [default: 1; for a named case, the seed of the case]");
+  verb.add("--seed", options->seed,
+           "sets the seed of the simulated run [default: 1; for a named case, the seed of the case]");
   verb.add("--method", options->methods,
            "runs this method, for example 'saave' or 'rate/saave'; repeat the option for more methods [default: all "
            "methods that apply; with only a scenario and a seed, the baseline and our method of each kind]")

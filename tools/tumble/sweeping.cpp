@@ -75,7 +75,7 @@ AskedSweep sweep_until(const Session& session, const scenarios::DataRoot& data, 
 }
 
 int say_stopped(const scenarios::SweepProgress& progress) {
-  std::fprintf(stderr, "tumble: stopped: %llu of %llu draws are stored; run again to continue\n",
+  std::fprintf(stderr, "tumble: stopped: %llu of %llu simulated runs are stored; run again to continue\n",
                static_cast<unsigned long long>(progress.draws_done),
                static_cast<unsigned long long>(progress.draws_total));
   return kCheckFailed;
