@@ -5,7 +5,6 @@
 
 namespace tumble::scenarios {
 
-/// DataRoot returns the folders of the data files that the program reads at run time, below a common root.
 struct DataRoot {
   std::filesystem::path root;
   std::filesystem::path models() const { return root / "models"; }

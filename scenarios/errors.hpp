@@ -8,14 +8,12 @@
 namespace tumble::scenarios {
 
 /// BadInput is the exception for wrong use or bad input, for example an unknown name, a truncated file, or a value
-/// outside its limits. The message is one line with the fault, its location and the allowed range. The program then
-/// exits with status 2.
+/// outside its limits. The program then prints the one-line message and exits with status 2.
 class BadInput : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Throws BadInput if the array `place.field` of a sensor record has another length than the other arrays.
 inline void require_length(const std::string& place, const char* field, std::size_t found, std::size_t expected) {
   if (found == expected) return;
   throw BadInput(place + "." + field + " has " + std::to_string(found) + " entries; it must have " +

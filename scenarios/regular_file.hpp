@@ -12,20 +12,17 @@
 
 namespace tumble::scenarios {
 
-/// Throws BadInput if `path` is missing or a folder. The check follows symbolic links. Pipes are accepted, because the
-/// caller reads the input once, from beginning to end.
+/// Pipes are accepted, because the caller reads the input once, from beginning to end.
 inline std::filesystem::file_status require_file(const std::filesystem::path& path) {
   std::error_code error;
   const std::filesystem::file_status found = std::filesystem::status(path, error);
-  // For a dangling link, or a file in place of a folder in the path, the path is also missing.
   if (found.type() == std::filesystem::file_type::not_found) throw BadInput(path.string() + ": no such file");
   if (error) throw BadInput(path.string() + ": cannot be read: " + error.message());
   if (std::filesystem::is_directory(found)) throw BadInput(path.string() + ": is a folder; it must be a file");
   return found;
 }
 
-/// Throws BadInput if `path` is not a regular file. The check follows symbolic links; the message contains the type of
-/// the path. The check must precede opening: opening a pipe without a writer blocks for ever, and devices have no end.
+/// The check must precede opening, because opening a pipe without a writer blocks for ever, and devices have no end.
 inline void require_regular_file(const std::filesystem::path& path) {
   switch (require_file(path).type()) {
     case std::filesystem::file_type::regular:
@@ -39,7 +36,6 @@ inline void require_regular_file(const std::filesystem::path& path) {
   }
 }
 
-/// Opens a regular file for binary reading. Throws BadInput if the path is not a regular file or cannot be read.
 inline std::ifstream open_regular_file(const std::filesystem::path& path) {
   require_regular_file(path);
   errno = 0;

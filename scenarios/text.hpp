@@ -10,19 +10,16 @@
 
 namespace tumble::scenarios {
 
-/// Parses `text` into `value`. Returns true if the whole `text` is one number.
 template <typename Number>
 bool read_number(std::string_view text, Number& value) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   return error == std::errc() && end == text.data() + text.size();
 }
 
-/// Returns the beginning of a long text, for use in a message.
 inline std::string shortened(std::string_view text, std::size_t most = 120) {
   return text.size() <= most ? std::string(text) : std::string(text.substr(0, most)) + "...";
 }
 
-/// Converts a message to one line, for a table.
 inline std::string one_line(std::string text) {
   std::replace_if(
       text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r' || c == '\t'; }, ' ');

@@ -6,7 +6,6 @@
 
 namespace tumble::sim {
 
-/// BodyState is the motion state of the robot's body at one instant.
 struct BodyState {
   double time_s = 0.0;
   Eigen::Vector3d p_WB_m = Eigen::Vector3d::Zero();
@@ -15,7 +14,6 @@ struct BodyState {
   Eigen::Vector3d w_WB_B_rad_s = Eigen::Vector3d::Zero();
 };
 
-/// Wrench is a force at the centre of mass and a torque, both in world axes.
 struct Wrench {
   Eigen::Vector3d force_W_n = Eigen::Vector3d::Zero();
   Eigen::Vector3d torque_W_nm = Eigen::Vector3d::Zero();

@@ -23,14 +23,13 @@ using SpecPtr = std::unique_ptr<mjSpec, SpecDeleter>;
 constexpr double kStep_s = 0.0005;
 constexpr int kFewPairs = 100;
 
-/// Throws std::bad_alloc if MuJoCo's error message reports a lack of memory, because a larger machine may be able to
-/// simulate the situation.
+/// A lack of memory throws std::bad_alloc and not InvalidSituation, because a larger machine may be able to simulate
+/// the situation.
 void refuse_for_memory(std::string_view message) {
   if (message.find("ould not allocate") != std::string_view::npos) throw std::bad_alloc();
 }
 
-/// Installs error handlers for MuJoCo, which would otherwise write a log file, and end the process on an error. Physics
-/// checks MuJoCo's counters of warnings after every step.
+/// Without these error handlers, MuJoCo writes a log file, and ends the process on an error.
 void install_handlers() {
   static const bool kInstalled = [] {
     mju_user_warning = [](const char*) {};
@@ -47,7 +46,6 @@ bool touches(const mjModel& model, int geom) {
   return model.geom_contype[geom] != 0 || model.geom_conaffinity[geom] != 0;
 }
 
-/// Counts the pairs of a moving geom and a static geom.
 int count_pairs(const mjModel& model) {
   int moving = 0, all = 0;
   for (int i = 0; i < model.ngeom; ++i) {
@@ -57,8 +55,8 @@ int count_pairs(const mjModel& model) {
   return moving * (all - moving);
 }
 
-/// Returns whether contacts have the same order with and without MuJoCo's bounding-volume tree. The robot must have a
-/// single geom; the tree sorts contacts by the geom of a pair with the lower type number.
+/// With a single robot geom, contacts have the same order with and without MuJoCo's bounding-volume tree, which sorts
+/// contacts by the geom of a pair with the lower type number.
 bool sorts_as_asked(const mjModel& model) {
   int robot = -1;
   for (int i = 0; i < model.ngeom; ++i) {
@@ -77,7 +75,6 @@ bool sorts_as_asked(const mjModel& model) {
   return true;
 }
 
-/// Returns whether the moving bodies are subject only to gravity, contacts and the wrench that the motion applies.
 bool moves_freely(const mjModel& model) {
   const auto none = [](const mjtNum* numbers, int count) {
     return std::all_of(numbers, numbers + count, [](mjtNum number) { return number == 0.0; });
@@ -88,18 +85,17 @@ bool moves_freely(const mjModel& model) {
          none(model.dof_frictionloss, model.nv);
 }
 
-/// Disables computations of MuJoCo whose results are unused; the motion stays bit-identical. With sleeping enabled,
-/// MuJoCo computes the poses of static bodies once instead of at every stage of a step. The robot is always awake.
+/// The disabled computations of MuJoCo do not change the motion, which stays bit-identical.
 void spare_work(mjModel& model) {
   model.opt.enableflags |= mjENBL_SLEEP;
   std::fill(model.tree_sleep_policy, model.tree_sleep_policy + model.ntree, static_cast<int>(mjSLEEP_NEVER));
   model.opt.disableflags |= mjDSBL_ISLAND;  // the robot is a single island of connected bodies
-  // Height fields are below every strut, so tests of their bounding boxes are disabled. Planes have no box.
+  // Height fields are below every strut (capsule of the robot's cage), so tests of their bounding boxes are disabled.
   for (int i = 0; i < model.ngeom; ++i) {
     if (model.geom_type[i] == mjGEOM_HFIELD)
       std::fill(model.geom_aabb + 6 * i + 3, model.geom_aabb + 6 * i + 6, mjMAXVAL);
   }
-  // With few pairs of geoms, the tree over the world's geoms saves time only if it contains just the geoms near the
+  // With few pairs of geoms, MuJoCo's bounding-volume tree saves time only if it contains just the geoms near the
   // robot.
   if (count_pairs(model) <= kFewPairs && !(NearGeoms::serves(model) && sorts_as_asked(model))) {
     model.opt.disableflags |= mjDSBL_MIDPHASE;

@@ -26,7 +26,6 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row[b.size()];
 }
 
-/// Returns whether the value of a parameter must be a whole number, because the name indicates a count or an index.
 bool is_whole(std::string_view name) {
   return name.ends_with("_count") || name == "shape";
 }

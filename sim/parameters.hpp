@@ -11,8 +11,7 @@
 
 namespace tumble::sim {
 
-/// Parameter describes a number that a component of a situation uses: default, limits, unit and meaning. A switch is
-/// also a number: 0 is off, 1 is on.
+/// Parameter describes a number that a component of a situation uses; a switch is 0 (off) or 1 (on).
 struct Parameter {
   std::string_view name;  ///< ends in its unit if it has one: slope_rad, mass_kg
   double default_value;
@@ -31,20 +30,15 @@ constexpr std::array<Parameter, M + N> joined(const std::array<Parameter, M>& fi
   return all;
 }
 
-/// InvalidSituation is thrown for a value out of bounds, an unknown name or an unknown component. The error message
-/// states place, value and limit.
 class InvalidSituation : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Values contains the values of parameters by name. resolve() returns Values that are complete and within their
-/// limits.
 class Values {
  public:
   void set(const std::string& name, double value) { numbers_[name] = value; }
   bool has(const std::string& name) const { return numbers_.contains(name); }
-  /// Throws InvalidSituation if the name is absent.
   double at(std::string_view name) const;
   const std::map<std::string, double>& all() const { return numbers_; }
   bool operator==(const Values&) const = default;
@@ -53,21 +47,18 @@ class Values {
   std::map<std::string, double> numbers_;
 };
 
-/// Fills in the defaults of a component's parameters. Throws InvalidSituation for an unknown name (with the nearest
-/// known name), NaN, or a value outside its limits. Error messages start with `place`, for example "world.hill".
+/// Throws InvalidSituation, with a message that starts with `place`, for an unknown name, NaN, or a value outside its
+/// limits.
 Values resolve(const std::string& place, const Values& given, std::span<const Parameter> known);
 
-/// Returns the known name nearest to `name` by edit distance, or an empty text if no name is similar.
 std::string nearest_name(std::string_view name, std::span<const std::string> known);
 
-/// ComponentType is a kind of world, robot, motion or sensor: one entry of a registry.
 struct ComponentType {
   std::string name;
   std::string doc;
   std::span<const Parameter> parameters;
 };
 
-/// Component is a part of a situation: the name of its type, and its numbers.
 struct Component {
   std::string type;
   Values values;

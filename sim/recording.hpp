@@ -9,26 +9,21 @@
 
 #include "sim/sensors.hpp"
 
-/// recording.hpp defines the results of a simulation, with the truth separate from the sensors. Frames and units are as
-/// in docs/design.md: W world (z up), B body at the centre of mass, I an IMU, L the lidar, X any other sensor, G the
-/// sphere's geometric centre; SI units; int64 nanoseconds from the start.
 namespace tumble::sim {
 
-/// ContactLabel is the state of contact at one time, see label_contacts().
 enum class ContactLabel : std::uint8_t { air, grip, slip, slide };
 
-/// ContactTruth is one contact at one instant of the true motion.
 struct ContactTruth {
   std::int64_t time_ns = 0;
   Eigen::Vector3d point_W_m;
   Eigen::Vector3d normal_W;  ///< unit vector, into the robot
-  /// Tangential velocity of the robot's surface at the contact, relative to the world.
+  /// Tangential velocity of the robot's surface at the contact, relative to the world
   Eigen::Vector3d slip_velocity_W_m_s;
   double normal_force_n = 0;
   std::int32_t surface_id = -1;
 };
 
-/// ImuTruth contains the true quantities at one IMU. Each entry is for the averaging window of one reading.
+/// Each entry belongs to the averaging window of one IMU reading.
 struct ImuTruth {
   std::string name;
   Eigen::Isometry3d T_BI = Eigen::Isometry3d::Identity();  ///< true mounting
@@ -39,14 +34,13 @@ struct ImuTruth {
   std::vector<Eigen::Vector3d> gyro_bias_rad_s;  ///< bias at each sample
   std::vector<Eigen::Vector3d> accel_bias_m_s2;
   /// Sensing elements (sim/imu/elements.hpp): the three rows of the misalignment matrix M, in whose axes saturation
-  /// acts; empty if the elements are aligned.
+  /// acts; empty if the elements are aligned
   std::vector<Eigen::Vector3d> gyro_elements, accel_elements;
   Eigen::Vector3d gyro_element_offset_rad_s = Eigen::Vector3d::Zero();
   Eigen::Vector3d accel_element_offset_m_s2 = Eigen::Vector3d::Zero();
   std::vector<Eigen::Vector3d> magnetic_field_t;  ///< true mean over the window, disturbances included
 };
 
-/// LidarTruth contains the exact lidar returns, parallel to the points of LidarRecord.
 struct LidarTruth {
   std::string name;
   Eigen::Isometry3d T_BL = Eigen::Isometry3d::Identity();
@@ -54,21 +48,18 @@ struct LidarTruth {
   std::vector<std::int32_t> surface_id;  ///< index into Truth::surfaces; -2 is the robot's own cage
 };
 
-/// QuantityTruth contains the true values of a Quantity, parallel to its readings.
 struct QuantityTruth {
   std::string name;
   std::string unit;
   std::vector<double> values;  ///< exact means over the windows of the readings
 };
 
-/// SeriesTruth contains the readings of a SeriesRecord without any error.
 struct SeriesTruth {
   std::string name;
   Eigen::Isometry3d T_BX = Eigen::Isometry3d::Identity();  ///< true mounting
   std::vector<QuantityTruth> quantities;
 };
 
-/// Truth contains the true motion and contacts of a simulated run, sampled every `period_ns` from time 0.
 struct Truth {
   std::int64_t period_ns = 500000;
   std::vector<Eigen::Vector3d> p_WB_m;
@@ -85,7 +76,6 @@ struct Truth {
   std::vector<SeriesTruth> series;  ///< in the order of Sensors::series
 };
 
-/// Recording contains the sensor data and the truth of a simulated run.
 struct Recording {
   Sensors sensors;
   Truth truth;

@@ -10,8 +10,6 @@
 
 namespace tumble::sim {
 
-/// Returns the registry entry with this name. For an unknown name, throws InvalidSituation with the nearest known name.
-/// Error messages start with `what` ("world").
 template <typename Type>
 const Type& find_entry(std::span<const Type* const> registry, std::string_view name, const std::string& what) {
   std::vector<std::string> names;

@@ -7,12 +7,10 @@
 #include <string>
 #include <vector>
 
-/// sensors.hpp defines the sensor data, which are the complete input of an estimator. Frames and units are as in
-/// docs/design.md: B body at the centre of mass, I an IMU, L the lidar, X any other sensor; SI units; int64 nanoseconds
-/// from the start.
+/// The sensor data are the complete input of an estimator. Frames and units are as in docs/design.md: B body at the
+/// centre of mass, I an IMU, L the lidar, X any other sensor; SI units; int64 nanoseconds from the start.
 namespace tumble::sim {
 
-/// ImuRecord contains the readings of one IMU, as the device delivers them.
 struct ImuRecord {
   std::string name;    ///< name of the sensor in the situation: "imu"
   std::string device;  ///< for example "mti30"
@@ -27,20 +25,18 @@ struct ImuRecord {
   std::vector<Eigen::Vector3d> accel_m_s2;        ///< specific force
   std::vector<std::uint8_t> clip_flags;           ///< bits gyro x y z, accel x y z; zero for devices without flags
   std::vector<Eigen::Vector3d> magnetic_field_t;  ///< flux density in I, one per sample; empty without magnetometer
-  /// Undisturbed field of the Earth, from a map; 0: unknown.
+  /// Undisturbed field of the Earth, from a map; 0: unknown
   Eigen::Vector3d earth_field_W_t = Eigen::Vector3d::Zero();
 };
 
-/// PointTimes states whether the times of the points within a sweep are known.
 enum class PointTimes : std::uint8_t {
   measured,  ///< each point has its own time in offset_ns
-  /// All points belong to the start of the sweep, because the lidar is a flash or the sweep is deskewed; offset_ns is
-  /// 0.
+  /// All points belong to the start of the sweep, because the lidar is a flash or the sweep is deskewed; offset_ns is 0
   not_skewed,
   unknown  ///< the motion distortion of the sweep is unknown; offset_ns is 0
 };
 
-/// LidarRecord contains the returns of one lidar, sweep after sweep. A firing without a hit gives no point.
+/// A lidar firing without a hit gives no point.
 struct LidarRecord {
   std::string name;
   std::string device;
@@ -56,7 +52,6 @@ struct LidarRecord {
   std::vector<std::uint16_t> ring;
 };
 
-/// Quantity is one quantity that a sensor measures, with all its readings.
 struct Quantity {
   std::string name;            ///< ends in its unit: "pressure_pa"
   std::string unit;            ///< for example "Pa"
@@ -64,14 +59,11 @@ struct Quantity {
   std::vector<double> values;  ///< one per time stamp of the sensor
 };
 
-/// Constant is a known constant of a sensor, for example the position of a beacon.
 struct Constant {
   std::string name;  ///< ends in its unit
   double value = 0.0;
 };
 
-/// SeriesRecord contains the readings of any other sensor, for example a barometer: one number per quantity at each
-/// time stamp.
 struct SeriesRecord {
   std::string name;
   std::string kind;  ///< kind of sensor: "barometer"
@@ -83,7 +75,6 @@ struct SeriesRecord {
   std::vector<Constant> constants;  ///< needed to interpret the readings
 };
 
-/// Sensors contains all data that an estimator receives.
 struct Sensors {
   std::string robot;           ///< "rig", "sphere", "pendulum"; empty if the robot is unknown
   double sphere_radius_m = 0;  ///< 0 if the robot is not a sphere

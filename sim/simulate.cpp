@@ -11,7 +11,6 @@ namespace tumble::sim {
 
 namespace {
 
-/// Returns the pose of a sensor's site in the true body frame.
 Eigen::Isometry3d site_pose(const engine::World& world, const SensorSpec& sensor) {
   const mjModel& model = *world.model;
   const int site = mj_name2id(&model, mjOBJ_SITE, sensor.site.c_str());
@@ -55,7 +54,7 @@ Recording simulate(const BuiltSituation& built, int threads) {
   // The world is a copy, because the floor's friction changes with the robot's position.
   engine::World world = engine::copy_of(built.world());
   const auto motion = find_motion_type(situation.motion.type).make(situation.motion.values, world);
-  // The mountings are computed before the long simulation, so that an unknown site is reported immediately.
+  // The sensor mountings are computed before the long simulation, so that an unknown site is reported immediately.
   std::vector<Eigen::Isometry3d> mountings;
   for (const SensorSpec& sensor : situation.sensors) mountings.push_back(site_pose(world, sensor));
 

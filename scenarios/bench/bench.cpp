@@ -23,7 +23,6 @@ std::string name_of(const BenchDraw& draw) {
   return draw.scenario + " " + std::to_string(draw.seed);
 }
 
-/// Returns the scenarios and seeds of the bench suite, with empty results.
 std::vector<BenchDraw> draws_of(const Suite& suite) {
   std::vector<BenchDraw> draws;
   for (const DrawClass& each : suite.classes)
@@ -42,8 +41,7 @@ std::optional<double> value_of(const BenchDraw& draw, const std::string& metric)
   return it->second;
 }
 
-/// Returns true if the run does not count for the metric: at least one method completed the run with status `ok` but
-/// without a value.
+/// Returns true if a method completed the simulated run with status `ok` but without a value of the metric.
 bool has_nothing(const BenchDraw& draw, const std::string& metric, std::span<const BenchResult> beside) {
   const auto says_so = [&](const BenchDraw* each) {
     return each != nullptr && each->status == OutcomeStatus::ok && !each->values.contains(metric);
@@ -81,7 +79,9 @@ BenchResult collect_bench_result(const Results& results, const Suite& suite, con
     key.kind = method.kind;
     key.method = method.name;
     const std::optional<Outcome> outcome = results.find(key);
-    if (!outcome) throw BadInput(fmt::format("draw {} has no outcome of method {}", name_of(draw), method.name));
+    if (!outcome)
+      throw BadInput(fmt::format("the simulated run {} has no result of method {}; run the bench of this method again",
+                                 name_of(draw), method.name));
     draw.recording = outcome->recording_digest;
     draw.status = outcome->status;
   }
@@ -101,8 +101,8 @@ BenchResult collect_bench_result(const Results& results, const Suite& suite, con
 void add_published(std::span<const BenchResult> published, Results& results) {
   results.in_one_transaction([&] {
     for (const BenchResult& result : published) {
-      const std::string origin =
-          fmt::format("this is a published result of build {} from {}", result.build, result.date);
+      const std::string origin = fmt::format(
+          "this method was not run here: this is a published result of build {} from {}", result.build, result.date);
       results.set_note(method_note(result.kind, result.method), origin);
       for (const BenchDraw& draw : result.draws) {
         Outcome outcome;
@@ -131,15 +131,16 @@ void require_of_suite(const BenchResult& result, const Suite& suite) {
                     whose, result.suite, result.suite_digest, suite.name, digest));
   const std::vector<BenchDraw> draws = draws_of(suite);
   if (result.draws.size() != draws.size())
-    throw BadInput(fmt::format("{} has {} draws; it must have {}", whose, result.draws.size(), draws.size()));
+    throw BadInput(fmt::format("{} contains {} simulated runs; it must contain {}, one per run of the bench suite",
+                               whose, result.draws.size(), draws.size()));
   for (const BenchDraw& draw : draws)
-    if (result.find(draw) == nullptr) throw BadInput(whose + " has no draw " + name_of(draw));
+    if (result.find(draw) == nullptr)
+      throw BadInput(fmt::format("{} has no result of simulated run {}", whose, name_of(draw)));
 }
 
 std::string other_recording(const BenchResult& a, const BenchResult& b) {
   for (const BenchDraw& draw : a.draws) {
     const BenchDraw* other = b.find(draw);
-    // The digest of the recording is missing if the method's process crashed.
     if (other != nullptr && !draw.recording.empty() && !other->recording.empty() && draw.recording != other->recording)
       return name_of(draw);
   }

@@ -50,7 +50,7 @@ BenchDraw draw_from(const ordered_json& node) {
   draw.status = *status;
   for (const auto& [metric, value] : node.at("values").items()) {
     if (!value.is_number() || !std::isfinite(value.get<double>()))
-      throw BadInput(fmt::format("the value of '{}' is not a number", metric));
+      throw BadInput(fmt::format("the value of metric '{}' is not a finite number", metric));
     draw.values[metric] = value.get<double>();
   }
   return draw;
@@ -58,7 +58,7 @@ BenchDraw draw_from(const ordered_json& node) {
 
 BenchResult result_from(const ordered_json& node) {
   if (!node.is_object() || node.value("format", "") != kFormat)
-    throw BadInput(fmt::format("this line does not have the format '{}'", kFormat));
+    throw BadInput(fmt::format("this line is not a bench result, because its key 'format' is not '{}'", kFormat));
   const ordered_json version = node.value("format_version", ordered_json());
   if (version != kBenchFormatVersion)
     throw BadInput(fmt::format("format_version is {}; it must be {}", version.dump(), kBenchFormatVersion));
@@ -76,7 +76,8 @@ BenchResult result_from(const ordered_json& node) {
   for (const ordered_json& each : node.at("draws")) {
     BenchDraw draw = draw_from(each);
     if (result.find(draw) != nullptr)
-      throw BadInput(fmt::format("draw {} {} occurs twice; each draw may occur once", draw.scenario, draw.seed));
+      throw BadInput(fmt::format("the simulated run of scenario {} with seed {} occurs twice; each run may occur once",
+                                 draw.scenario, draw.seed));
     result.draws.push_back(std::move(draw));
   }
   return result;

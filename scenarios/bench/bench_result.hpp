@@ -13,7 +13,6 @@
 
 namespace tumble::scenarios {
 
-/// BenchDraw is the result of one method on one simulated run of a bench suite.
 struct BenchDraw {
   std::string scenario;
   std::uint64_t seed = 0;
@@ -37,21 +36,14 @@ struct BenchResult {
   const BenchDraw* find(const BenchDraw& draw) const;
 };
 
-/// Converts the bench result to one line of JSON without a newline.
 std::string to_line(const BenchResult& result);
 
-/// Parses one line of JSON, as written by `to_line`. Throws BadInput, with a message that starts with `place`, if the
-/// line is invalid. A line is invalid if it is not JSON, repeats a simulated run, lacks a key, or has an unknown
-/// format, version, type, kind or status.
 BenchResult parse_bench_result(const std::string& line, const std::string& place);
 
-/// Returns the path of the file with the stored results of a suite: SUITE.jsonl.
 std::filesystem::path bench_results_file(const DataRoot& data, const std::string& suite);
 
-/// Reads the results in a file, one per line. Empty lines are ignored. A missing file gives an empty list.
 std::vector<BenchResult> read_bench_results(const std::filesystem::path& file);
 
-/// Stores bench results in the file. A new result replaces the stored result of the same method.
 void store_bench_results(const std::filesystem::path& file, const std::vector<BenchResult>& results);
 
 }  // namespace tumble::scenarios

@@ -14,7 +14,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Ideal names a scenario parameter and its ideal value, at which the parameter disturbs nothing (for example noise 0).
 struct Ideal {
   std::string_view number;
   double value = 0.0;
@@ -22,16 +21,12 @@ struct Ideal {
 
 enum class Sort { several, size, count };
 
-/// ComplicationLine registers one complication (removable detail): its name and the scenario parameters that cause it.
-/// Parameters that a component type lacks are skipped.
 struct ComplicationLine {
   std::string_view what;
   std::vector<Ideal> numbers;
   Sort sort = Sort::several;
 };
 
-/// Returns the removable details of a world, such as rocks, with the parameter values that remove them (sim/world, "0:
-/// none"). The ideal values change neither type nor size of the world.
 std::span<const ComplicationLine> of_world() {
   static const std::vector<ComplicationLine> kLines = {
       {"rocks", {{"rock_count"}}, Sort::count},
@@ -93,8 +88,7 @@ std::span<const ComplicationLine> of_motion() {
   return kLines;
 }
 
-// These saturation limits exceed every reading of a tumble, so no reading is clipped. Methods accept limits of this
-// size.
+// The saturation limits are so large that no reading of a tumbling robot is clipped.
 constexpr double kBeyondRates_rad_s = 100.0, kBeyondForces_m_s2 = 1000.0;
 
 std::span<const ComplicationLine> of_imu() {
@@ -183,8 +177,6 @@ std::span<const ComplicationLine> of_mounting() {
 
 using Numbers = std::map<std::string, Distribution>;
 
-/// Adds each complication from `lines` that has a parameter with another value than its ideal value. `place` is the
-/// prefix of the parameter names.
 void add(const std::string& part, const std::string& place, std::span<const ComplicationLine> lines,
          const Numbers& numbers, std::vector<Complication>& out) {
   for (const ComplicationLine& line : lines) {
@@ -202,7 +194,6 @@ void add(const std::string& part, const std::string& place, std::span<const Comp
   }
 }
 
-/// Combines the complications (error types) of one sensor into one, for sensors that few methods use.
 Complication joined(const std::string& name, const std::vector<Complication>& parts) {
   Complication whole{name, {}, {}, false};
   for (const Complication& part : parts)

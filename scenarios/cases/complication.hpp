@@ -10,8 +10,8 @@
 
 namespace tumble::scenarios {
 
-/// Complication is a removable detail of a simulated run, for example a sensor error, stones on the floor or a spin. A
-/// complication consists of scenario parameters, each with the ideal value that removes the detail.
+/// Complication is a removable detail of a simulated run, for example a sensor error, stones on the floor or a spin:
+/// scenario parameters, each with the ideal value that removes the detail.
 struct Complication {
   std::string name;                                     ///< "sensors.imu: white noise", "world: rocks"
   std::vector<std::pair<std::string, double>> without;  ///< parameter name (fixed_number.hpp) and ideal value
@@ -19,12 +19,10 @@ struct Complication {
   bool whole = false;                                   ///< `amount` is an integer count
 };
 
-/// Returns all complications (removable details) of a scenario whose parameters are constants (fixed_scenario.hpp). The
-/// order is world, robot, motion, then the errors of each sensor, so related complications are adjacent. A complication
-/// is omitted if all its parameters are ideal. The tables in complication.cpp list the complications.
+/// Returns all removable details of a scenario with constant parameters, in the order world, robot, motion, errors of
+/// each sensor. Details whose parameters are already ideal are omitted.
 std::vector<Complication> complications(const Scenario& scenario);
 
-/// Removes a complication from the scenario by setting its parameters to their ideal values.
 void take_away(const Complication& complication, Scenario& scenario);
 
 }  // namespace tumble::scenarios

@@ -19,7 +19,6 @@ Indices without(const Indices& kept, std::size_t first, std::size_t count) {
   return out;
 }
 
-/// Asked runs each trial once and caches its result.
 class Asked {
  public:
   explicit Asked(const FailsWith& fails) : fails_(fails) {}

@@ -6,12 +6,11 @@
 #include <optional>
 #include <vector>
 
-/// The functions in delta_debugging.hpp search for the smallest set of items, or the smallest number, with which a run
-/// still fails. The caller runs the trials. If a trial returns no result, the trial budget is used up. The search then
-/// ends with its best result.
+/// The search finds the smallest set of items, or the smallest number, with which a simulated run still fails.
 namespace tumble::scenarios {
 
-/// FailsWith returns true if a run with only the items `kept` (ascending indices) still fails.
+/// A FailsWith runs a trial with only the items `kept` (ascending indices), and returns true if the trial fails; empty
+/// means that the trial budget is used up.
 using FailsWith = std::function<std::optional<bool>(const std::vector<std::size_t>& kept)>;
 
 struct LeastSet {
@@ -21,14 +20,11 @@ struct LeastSet {
 };
 
 /// Returns a 1-minimal failing subset of the items 0 to `count` - 1: without any single item of the subset, the run
-/// does not fail. The run with all items must fail. The method is delta debugging (Zeller and Hildebrandt, IEEE TSE
-/// 28:183, 2002, algorithm ddmin) with tests of complements only. The search tries to remove all items, then halves,
-/// quarters and so on, down to single items. Related items should be adjacent in the list. A smaller failing set may
-/// exist if adding an item can prevent the failure. The search needs about 2 log2(count) trials if one item is needed,
-/// and at most O(count^2). No trial is repeated.
+/// does not fail. The method is delta debugging (Zeller and Hildebrandt, IEEE TSE 28:183, 2002, algorithm ddmin) with
+/// tests of complements only. The run with all items must fail, and related items should be adjacent. The search needs
+/// about 2 log2(count) trials if one item is needed, and at most O(count^2).
 LeastSet least_failing_set(std::size_t count, const FailsWith& fails);
 
-/// FailsAt returns true if a run with the parameter value `value` still fails.
 using FailsAt = std::function<std::optional<bool>(double value)>;
 
 struct LeastNumber {
@@ -38,8 +34,7 @@ struct LeastNumber {
 };
 
 /// Bisects between the value `failing`, at which a run fails, and the value `ideal`, at which a run is assumed to
-/// succeed. Returns the failing value closest to `ideal`, within `resolution` (above 0). If `whole` is true, all tried
-/// values are integers.
+/// succeed. Returns the failing value closest to `ideal`, within `resolution` (above 0).
 LeastNumber least_failing_number(double failing, double ideal, double resolution, bool whole, const FailsAt& fails);
 
 }  // namespace tumble::scenarios

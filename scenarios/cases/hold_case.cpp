@@ -20,13 +20,11 @@ std::string four_digits(double value) {
   return text.str();
 }
 
-/// Returns the value of the metric in an outcome; empty if the value is missing or not finite.
 std::optional<double> finite_value_of(const Outcome& outcome, const std::string& metric) {
   const double value = value_of(outcome.scores, metric);
   return std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
-/// Describes a shrunk run (simplified failing run) in one line.
 std::string doc_of(const Shrunk& shrunk, const std::string& method, const std::string& scenario, std::uint64_t seed) {
   std::string needed;
   std::size_t not_tried = 0;
@@ -38,11 +36,10 @@ std::string doc_of(const Shrunk& shrunk, const std::string& method, const std::s
       needed += (needed.empty() ? "" : ", ") + line.what;
   }
   std::string doc = fmt::format(
-      "The method {} fails ({}) on a simplified form of draw {} of scenario {}. Removing any of these parts removes "
-      "the "
-      "failure: {}",
+      "The method {} fails ({}) on a simplified form of the simulated run with seed {} of scenario {}. Removing any of "
+      "these parts removes the failure: {}",
       method, shrunk.failure, seed, scenario, needed.empty() ? "none" : needed);
-  if (not_tried > 0) doc += fmt::format(". The number of untried parts is {}", not_tried);
+  if (not_tried > 0) doc += fmt::format(". The number of parts whose removal was not tried is {}", not_tried);
   return doc + ".";
 }
 
@@ -85,7 +82,8 @@ CaseResult hold_case(const std::string& name, const Expectation& expected, const
   }
   const auto is_better = [&](const std::string& what) {
     result.better = true;
-    result.fault = fmt::format("{}; run the command again with '--accept' to store the new result", what);
+    result.fault = fmt::format(
+        "{}; this is an improvement, so run the command again with '--accept' to store the new result", what);
   };
   if (!result.fails) {
     is_better("cured: " + how_it_fails(result));
@@ -93,15 +91,18 @@ CaseResult hold_case(const std::string& name, const Expectation& expected, const
     result.fault = fmt::format("the run fails with status '{}', but the accepted result has the status '{}'",
                                to_string(outcome.status), expected.status);
   } else if (expected.value.has_value() != result.value.has_value()) {
-    result.fault = result.value ? fmt::format("{} has the value {}, but the accepted result has no value",
-                                              expected.metric, four_digits(*result.value))
-                                : fmt::format("{} has no value, but the accepted result has a value", expected.metric);
+    result.fault =
+        result.value
+            ? fmt::format("the metric {} has the value {}, but the accepted result has no value of this metric",
+                          expected.metric, four_digits(*result.value))
+            : fmt::format("the metric {} has no value, but the accepted result has a value of this metric",
+                          expected.metric);
   } else if (result.value) {
     const MetricInfo& info = metric_info(expected.metric);
     const double was = *expected.value, is = *result.value;
     const bool within = std::abs(is) <= kCaseFactor * std::abs(was) && std::abs(was) <= kCaseFactor * std::abs(is);
-    const std::string what =
-        fmt::format("{} is {}, but the accepted value is {}", expected.metric, four_digits(is), four_digits(was));
+    const std::string what = fmt::format("the metric {} is {}, but the accepted value is {}", expected.metric,
+                                         four_digits(is), four_digits(was));
     if (!within && tumble::scenarios::is_better(info, is, was)) is_better("better: " + what);
     if (!within && !result.better) result.fault = what;
   }
@@ -118,7 +119,9 @@ Expectation accepted(const Expectation& expected, const Outcome& outcome) {
 
 void require_known(const Scenario& scenario) {
   if (!scenario.named_case)
-    throw BadInput(fmt::format("{}: key 'case' is missing; a named case needs it", scenario.file));
+    throw BadInput(fmt::format(
+        "{}: the key 'case' is missing; the file of a named case must contain the expected results under this key",
+        scenario.file));
   for (const Expectation& expected : scenario.named_case->expected) {
     const std::string place = scenario.file + ": expect: ";
     const std::vector<MethodPointer> found = find_methods(expected.method);
@@ -132,8 +135,9 @@ void require_known(const Scenario& scenario) {
       return metric.info.name == expected.metric && metric.kind == found.front()->info.kind;
     };
     if (!expected.metric.empty() && std::none_of(known.begin(), known.end(), is_it))
-      throw BadInput(fmt::format("{}'{}' is not a metric of kind {}", place, expected.metric,
-                                 to_string(found.front()->info.kind)));
+      throw BadInput(
+          fmt::format("{}'{}' is not a metric of the method's kind, {}; 'tumble list metrics' lists the metrics", place,
+                      expected.metric, to_string(found.front()->info.kind)));
   }
 }
 

@@ -14,7 +14,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Returns true if the metric is worse than its limit, and false if the metric is missing.
 bool is_beyond(const Outcome& outcome, const std::string& metric, double limit) {
   const double value = value_of(outcome.scores, metric);
   if (std::isnan(value)) return false;
@@ -39,14 +38,12 @@ SameFailure::SameFailure(const Failure& failure, const Outcome& outcome) : statu
     metric_ = condemned->metric;  // metric of unit verdict: 0 passes, 1 fails
     return;
   }
-  std::string text = "the run does not fail: its status is 'ok', and no metric fails";
-  if (!failure.metric.empty()) {
-    const Score* const score = find_score(outcome.scores, failure.metric);
-    text += score != nullptr ? fmt::format(", {} is {:g}, which is not worse than the limit {:g}", failure.metric,
-                                           score->value, failure.limit)
-                             : fmt::format(", {} is missing", failure.metric);
-  }
-  throw BadInput(text);
+  const std::string text = "the run does not fail: its status is 'ok', and no pass-fail metric has failed";
+  if (failure.metric.empty()) throw BadInput(text);
+  const Score* const score = find_score(outcome.scores, failure.metric);
+  if (score == nullptr) throw BadInput(fmt::format("{}; metric {} is missing", text, failure.metric));
+  throw BadInput(fmt::format("{}; metric {} is {:g}, which is not worse than the limit {:g}", text, failure.metric,
+                             score->value, failure.limit));
 }
 
 bool SameFailure::holds(const Outcome& outcome) const {

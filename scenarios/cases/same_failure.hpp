@@ -8,18 +8,14 @@
 namespace tumble::scenarios {
 
 /// SameFailure describes how an outcome failed: by its status, by the metric that the caller chose, or by a pass-fail
-/// metric (`map_failed`). The search for a simpler run (shrink.hpp) uses SameFailure to reject runs that fail for
-/// another reason. A run without the metric passes, for example because a run without clipping has no error at clipped
-/// samples. In contrast, struct Failure (sweep/triage.hpp) treats a run without the metric as failed.
+/// metric (`map_failed`). A run without the metric passes, for example because a run without clipping has no error at
+/// clipped samples.
 class SameFailure {
  public:
-  /// Throws BadInput if `outcome` does not fail, or if its status is `killed`.
   SameFailure(const Failure& failure, const Outcome& outcome);
 
   bool holds(const Outcome& outcome) const;
-  /// Describes the failure, for example "diverged", "map_failed" or "translation_error_end_m worse than 0.5".
   std::string describe() const;
-  /// Returns the metric that defines the failure; empty if the status defines the failure.
   const std::string& metric() const { return metric_; }
 
  private:

@@ -35,7 +35,6 @@ std::string text_of(double value) {
   return text.str();
 }
 
-/// Run contains a simulated run, the true surface for map scores, and the method under test.
 class Run {
  public:
   Run(const DataRoot& data, const Scenario& scenario, std::uint64_t seed, Kind kind)
@@ -45,7 +44,6 @@ class Run {
   Outcome outcome(const Method& method, double timeout_s) const {
     return run_isolated(method, draw_, draw_, surface_ ? &*surface_ : nullptr, timeout_s);
   }
-  /// Returns true if the method succeeds after the true value replaces one input.
   bool is_cured(const TrueInput& input, const Method& method, const ShrinkOptions& options) const {
     SimulatedDraw cured = draw_;
     if (!input.replace(cured.recording.sensors, draw_.recording.truth)) return false;
@@ -60,7 +58,6 @@ class Run {
 
 using Indices = std::vector<std::size_t>;
 
-/// Returns the scenario with only the complications (removable details) whose indices are in `kept`.
 Scenario with_only(const std::vector<Complication>& all, const Indices& kept, Scenario scenario) {
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (!std::binary_search(kept.begin(), kept.end(), i)) take_away(all[i], scenario);
@@ -68,7 +65,6 @@ Scenario with_only(const std::vector<Complication>& all, const Indices& kept, Sc
   return scenario;
 }
 
-/// Names the removed complication; if several were removed, counts them.
 std::string difference(const std::vector<Complication>& all, const Indices& left, const Indices& kept) {
   Indices gone;
   std::set_difference(left.begin(), left.end(), kept.begin(), kept.end(), std::back_inserter(gone));
@@ -106,8 +102,6 @@ class Shrinking {
   }
 
  private:
-  /// Finds the first single input whose true value prevents the original failure. The last entry of true_inputs(),
-  /// which replaces all inputs, is not tried.
   void find_cure(const Run& run) {
     const std::span<const TrueInput> single = true_inputs().first(true_inputs().size() - 1);
     const auto cure = std::find_if(single.begin(), single.end(),
@@ -117,18 +111,16 @@ class Shrinking {
     shrunk_.cure = cure->name;
   }
 
-  /// Explains how the cause of a run's failure differs from the original cause; empty if both causes are equal.
   std::string other_cause(const Run& run) const {
     if (shrunk_.controlled && options_.failure.holds(run.outcome(*options_.control, options_.timeout_s)))
-      return fmt::format("the control method also fails: {}", options_.control->info.name);
+      return fmt::format("the failure does not come from the method, because the control method {} also fails",
+                         options_.control->info.name);
     if (cure_ != nullptr && !run.is_cured(*cure_, method_, options_))
       return fmt::format("the failure has another cause, because replacing the input {} by its truth does not cure it",
                          cure_->name);
     return "";
   }
 
-  /// Returns true if a simpler scenario fails like the original scenario; the search then continues from the simpler
-  /// scenario. Returns nothing if the trial budget is used up.
   std::optional<bool> try_out(const Scenario& simpler, const std::string& what, Outcome* outcome_out = nullptr) {
     if (shrunk_.runs >= options_.budget) return std::nullopt;
     bool fails = false;
@@ -166,12 +158,10 @@ class Shrinking {
       return try_out(shorter, text_of(length_s) + " s");
     };
     const double now_s = shrunk_.scenario.duration_s.numbers.front();
-    // Complications were removed since the first bisection, so a shorter duration may now fail.
+    // The bisection of the duration is repeated, because a shorter run may fail after details of the run were removed.
     return least_failing_number(now_s, 0.0, kLengthResolution * drawn_s, false, fails).complete;
   }
 
-  /// Removes complications from the scenario while the method still fails. `needed_` receives the complications that
-  /// cannot be removed.
   bool simplify() {
     const std::vector<Complication> all = complications(shrunk_.scenario);
     const Scenario whole = shrunk_.scenario;

@@ -18,7 +18,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Registers a measurement of the simulation (a row of the certificate) with its default settings.
 template <auto kMeasure>
 std::vector<CertificateEntry> as_certified(const CertificateInput& input) {
   return kMeasure(input, {});
@@ -48,7 +47,8 @@ std::vector<const CertificateRow*> select(const std::vector<std::string>& names)
   }
   for (const std::string& name : names) {
     if (std::find(known.begin(), known.end(), name) == known.end()) {
-      throw BadInput(fmt::format("the certificate has no row '{}'{}", name, suggestion(name, known)));
+      throw BadInput(
+          fmt::format("the certificate of the simulation has no measurement '{}'{}", name, suggestion(name, known)));
     }
   }
   return selected;
@@ -83,7 +83,8 @@ std::span<const CertificateRow> certificate_rows() {
                      "compares energy, periods and specific force of the pendulum with Lagrange's equations",
                      as_certified<certify_pendulum>},
       CertificateRow{"digests",
-                     "checks that the digests do not depend on the number of threads, the order of draws and restarts",
+                     "checks that the digests of recordings do not depend on the number of threads, the order of "
+                     "simulated runs and restarts",
                      as_certified<certify_digests>},
   };
   return kRows;

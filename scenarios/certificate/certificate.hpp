@@ -12,12 +12,11 @@
 
 namespace tumble::scenarios {
 
-/// CertificateEntry is one measured quantity of the simulation, with its accepted range.
 struct CertificateEntry {
   std::string row;      ///< measured quantity: "free_flight_energy"
   std::string subject;  ///< measured object: "rig", "hill", "mti30 gyro"
-  std::string law;      ///< physical law or specification, in one sentence
-  std::string unit;     ///< "1" if dimensionless
+  std::string law;
+  std::string unit;  ///< "1" if dimensionless
   double value = 0.0;
   double low = 0.0;
   double high = 0.0;                                             ///< both bounds are inclusive
@@ -26,7 +25,6 @@ struct CertificateEntry {
   bool operator==(const CertificateEntry&) const = default;
 };
 
-/// Certificate contains the measured deviations of this build's simulation from physical laws and sensor data sheets.
 struct Certificate {
   std::string build;  ///< build_id()
   std::vector<CertificateEntry> entries;
@@ -34,21 +32,18 @@ struct Certificate {
   bool operator==(const Certificate&) const = default;
 };
 
-/// CertificateInput contains the data files and the program that the certificate's measurements need.
 struct CertificateInput {
   DataRoot data;
   std::filesystem::path program;  ///< the program `tumble`, which computes a digest in a new process
 };
 
-/// CertificateRow registers one measurement that checks the simulation. Each measurement has its own source file and
-/// one registration line. `measure` uses the default settings; rows.hpp declares functions with settings.
+/// A CertificateRow registers one measurement that checks the simulation against a physical law or a data sheet.
 struct CertificateRow {
   std::string name;
   std::string doc;
   std::vector<CertificateEntry> (*measure)(const CertificateInput& input);
 };
 
-/// Returns all registered measurements that check the simulation, in order.
 std::span<const CertificateRow> certificate_rows();
 
 struct CertifyOptions {
@@ -57,10 +52,7 @@ struct CertifyOptions {
   std::function<void(const CertificateRow&, double elapsed_s)> on_row;  ///< called before each measurement
 };
 
-/// Runs the measurements that check the simulation, in this process. All measurements take about a minute on one core.
-/// If a measurement cannot be made, its entry contains the reason and the value NaN, and does not pass. Throws BadInput
-/// for missing models or an unknown name; the message suggests the nearest name. Throws sim::InvalidSituation if a
-/// situation cannot be simulated.
+/// If a measurement cannot be made, its entry contains the reason and the value NaN, and does not pass.
 Certificate measure_certificate(const CertificateInput& input, const CertifyOptions& options);
 
 }  // namespace tumble::scenarios

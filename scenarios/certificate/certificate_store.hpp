@@ -8,11 +8,10 @@
 
 namespace tumble::scenarios {
 
-/// CertificateStore caches certificates (checks of the simulation) in a folder. Each combination of build, data and
-/// processor model has one file. A file system error disables the cache without a message.
+/// CertificateStore caches certificates (checks of the simulation) in a folder, one file per combination of build, data
+/// and processor model. A file system error disables the cache without a message.
 class CertificateStore {
  public:
-  /// Opens the cache in `folder`; an empty path disables the cache.
   CertificateStore(std::filesystem::path folder, const DataRoot& data);
 
   std::optional<Certificate> find() const;

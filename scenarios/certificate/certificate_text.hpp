@@ -7,12 +7,11 @@
 
 namespace tumble::scenarios {
 
-/// Converts a certificate (checks of the simulation) to JSON: {"build", "verdict": "pass" | "fail", "entries": [{row,
-/// subject, law, unit, value, low, high, verdict, note}]}. Non-finite numbers become null.
+/// The JSON format is {"build", "verdict": "pass" | "fail", "entries": [{row, subject, law, unit, value, low, high,
+/// verdict, note}]}; non-finite numbers become null.
 std::string to_json(const Certificate& certificate);
 
-/// Parses the JSON text of a certificate without loss of bits. JSON null becomes NaN. The verdict is computed from the
-/// value and its range. Throws BadInput with a message that starts with `place`.
+/// JSON null becomes NaN, and the verdict is computed again from the value and its range.
 Certificate certificate_from_json(const std::string& text, const std::string& place);
 
 }  // namespace tumble::scenarios

@@ -21,8 +21,6 @@ Matrix3d matrix(const std::vector<Vector3d>& rows) {
   return out;
 }
 
-/// Returns the sign of the saturated reading if, during all of sample k, element `j` is saturated and the others are
-/// not; otherwise 0.
 int side(const SensedTriad& triad, std::size_t k, int j) {
   constexpr double kMargin = 0.08;  // fraction of the limit, above the change of the signal between samples
   int sign = 0;
@@ -86,7 +84,6 @@ ClippedPlane fit_clipped_plane(const SensedTriad& triad, int j, int& samples) {
   }
   samples = std::min(count[0], count[1]);
   if (samples < kFewestClipped) return {std::nan(""), std::nan(""), std::nan(""), std::nan("")};
-  // Each sample gives one matrix row: the readings of the two other axes, the sign, and 1.
   Eigen::MatrixX4d known(clipped.size(), 4);
   Eigen::VectorXd read(clipped.size());
   for (std::size_t i = 0; i < clipped.size(); ++i) {

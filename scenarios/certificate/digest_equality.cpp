@@ -21,8 +21,6 @@ std::string digest_of(const CertificateInput& input, const sim::Situation& situa
   return digest(recording.sensors, &recording.truth);
 }
 
-/// Simulates a run in a new process and returns the digest of the recording. Throws std::runtime_error with the reason
-/// if the process fails.
 std::string digest_after_restart(const CertificateInput& input, const std::string& scenario, std::uint64_t seed) {
   const std::filesystem::path file =
       std::filesystem::temp_directory_path() / ("tumble_certify_" + std::to_string(getpid()) + ".h5");
@@ -70,7 +68,7 @@ std::vector<CertificateEntry> certify_digests(const CertificateInput& input, con
       entry("digest_threads", setup.scenario,
             "runs with 2 and 4 threads give the same bits as runs with 1 thread: number of different digests", threads),
       entry("digest_order", setup.scenario + ", " + setup.other_scenario,
-            "draws simulated in reverse order give the same bits: number of different digests", order)};
+            "simulated runs in reverse order give the same bits: number of different digests", order)};
 
   CertificateEntry restart = entry("digest_restart", setup.other_scenario,
                                    "a restarted program gives the same bits: number of different digests", 0);

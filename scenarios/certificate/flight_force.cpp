@@ -25,7 +25,7 @@ std::vector<CertificateEntry> certify_flight_force(const CertificateInput& input
 
   double largest_m_s2 = 0.0;
   for (const Eigen::Vector3d& f : record.accel_m_s2) largest_m_s2 = larger(largest_m_s2, f.norm());
-  // The measured value is 3e-12 m/s^2.
+  // The measured specific force in free flight is 3e-12 m/s^2.
   return {{"flight_specific_force", "rig",
            "an ideal accelerometer at the centre of mass reads zero in free flight: maximum reading", "m/s^2",
            largest_m_s2, 0.0, 1e-6, ""}};

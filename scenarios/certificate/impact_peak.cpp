@@ -14,7 +14,6 @@ namespace {
 constexpr double kWindow_s = 0.002;  // averaging time, about the inverse bandwidth of the IMUs
 constexpr double kAfterTouch_s = 0.06;
 
-/// Returns attitudes in which the rig's cage lands on a corner, on an edge and obliquely.
 const std::array<Eigen::Quaterniond, 4>& attitudes() {
   using Eigen::AngleAxisd;
   using Eigen::Vector3d;
@@ -25,8 +24,6 @@ const std::array<Eigen::Quaterniond, 4>& attitudes() {
   return kAll;
 }
 
-/// Drops the rig and returns the largest specific force at the centre of mass until shortly after the first contact,
-/// averaged over kWindow_s.
 double peak_m_s2(const CertificateInput& input, const Eigen::Quaterniond& attitude, double height_m, double step_s,
                  double contact_time_s) {
   sim::Situation situation = bare_room("rig");

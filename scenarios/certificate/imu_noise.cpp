@@ -16,13 +16,12 @@ namespace {
 
 constexpr double kRate_hz = 100.0;
 
-/// RestReadings contains the rates [rad/s] and specific forces [m/s^2] of an IMU at rest.
 struct RestReadings {
   std::vector<Eigen::Vector3d> gyro, accel;
 };
 
-/// Returns the sensor specification with noise and bias only. Filters would need a higher sample rate. Sensor errors
-/// other than noise and bias are constant at rest.
+/// Sensor errors other than noise and bias are constant at rest, and filters would need a higher sample rate, so both
+/// are omitted.
 sim::SensorSpec resting(const DataSheet& sheet) {
   sim::SensorSpec sensor = imu_of_sheet(sheet);
   for (const char* off :
@@ -62,7 +61,6 @@ std::vector<sim::AllanPoint> curve_of(const std::vector<Eigen::Vector3d>& sample
   return sim::mean_deviation(axes);
 }
 
-/// Stated contains the data sheet values of a sensor triad (gyro or accelerometer) that apply at rest.
 struct Stated {
   double noise;
   sim::Bias::Params bias;
@@ -82,8 +80,7 @@ struct Stated {
   }
 };
 
-/// Computes the ratio of the measured Allan deviation to the data sheet's Allan deviation at one averaging time. The
-/// accepted range is the statistical interval of the ratio for three axes.
+/// The accepted range of an Allan deviation is its statistical interval for three axes.
 CertificateEntry entry(const std::string& row, const std::string& subject, const std::string& law,
                        const sim::AllanPoint& measured, double stated, sim::AllanNoise noise) {
   constexpr double kSigmas = 4.0;  // wide enough that none of about twenty entries fails by chance
@@ -102,7 +99,7 @@ std::vector<CertificateEntry> entries_of(const std::string& subject, const State
                                          const std::vector<sim::AllanPoint>& curve,
                                          const std::vector<sim::AllanPoint>& walk) {
   const sim::AllanPoint& white = sim::nearest_point(curve, 0.1);
-  // The Allan deviation of the bias instability is flat up to half of the longest correlation time.
+  // The Allan deviation of a gyro's bias instability is flat up to half of the longest correlation time.
   const sim::AllanPoint& floor = sim::nearest_point(curve, stated.bias.in_run_s / 10.0);
   std::vector<CertificateEntry> entries = {
       entry("imu_white_noise", subject, "white noise at rest, Allan deviation at 0.1 s: ratio to the data sheet", white,

@@ -14,7 +14,6 @@ namespace {
 
 constexpr double kRoomHalf_m = 6.0;
 
-/// Returns a situation in which a robot with a lidar moves through an empty room; the lidar has no range error.
 sim::Situation moving_lidar(const CertificateInput& input, const std::string& robot, const std::string& device) {
   sim::Situation situation = bare_room(robot);
   situation.duration_s = 2.0;
@@ -35,8 +34,6 @@ sim::Situation moving_lidar(const CertificateInput& input, const std::string& ro
   return situation;
 }
 
-/// Returns the distance of a lidar point from the plane of its surface, or -1 if the surface is not a plane of the
-/// room.
 double off_plane_m(const std::string& surface, const Eigen::Vector3d& p_W_m) {
   if (surface == "floor") return std::abs(p_W_m.z());
   if (surface == "wall_front") return std::abs(p_W_m.x() - kRoomHalf_m);
@@ -51,8 +48,6 @@ struct RangeErrors {
   std::int64_t points = 0;
 };
 
-/// Returns the distances of the lidar points from the planes of the room. The true pose at each firing transforms the
-/// point to world axes.
 RangeErrors against_planes(const sim::Recording& recording, double added_range_m) {
   const sim::LidarRecord& record = recording.sensors.lidars.at(0);
   const sim::LidarTruth& truth = recording.truth.lidars.at(0);

@@ -10,8 +10,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Returns one scenario for each type of world: the scenario with the name of the world, or else the first scenario
-/// that uses the world.
 std::map<std::string, std::string> scenario_of_each_world(const DataRoot& data) {
   std::map<std::string, std::string> chosen;
   for (const std::string& name : scenario_names(data)) {
@@ -25,7 +23,7 @@ std::map<std::string, std::string> scenario_of_each_world(const DataRoot& data) 
 }  // namespace
 
 std::vector<CertificateEntry> certify_lidar_rays(const CertificateInput& input, const LidarRaysSetup& setup) {
-  // Accepted fraction of rays with another surface: a ray at an edge may hit either adjacent surface.
+  // A ray at an edge may hit either adjacent surface, so this fraction of rays may hit another surface.
   constexpr double kOtherSurface = 1e-3;
   std::vector<CertificateEntry> entries;
   for (const auto& [world, name] : scenario_of_each_world(input.data)) {
@@ -33,7 +31,8 @@ std::vector<CertificateEntry> certify_lidar_rays(const CertificateInput& input, 
     const sim::BuiltSituation built(draw(input.data, scenario, 1), input.data.models());
     const sim::RayDisagreement d = sim::compare_rays(built, {setup.rays, 1, setup.mirror_shift_m, setup.surface_shift});
     entries.push_back({"lidar_range_engine", name, "lidar ranges equal the ranges of mj_ray: maximum difference", "m",
-                       d.largest_difference_m, 0.0, 1e-3, d.hits > 0 ? "" : "no ray hit a surface"});
+                       d.largest_difference_m, 0.0, 1e-3,
+                       d.hits > 0 ? "" : "this comparison has no value, because no ray hit a surface"});
     entries.push_back({"lidar_surface_engine", name,
                        "each lidar return belongs to an existing surface: share of rays without a surface", "1",
                        static_cast<double>(d.other_surface) / static_cast<double>(d.rays), 0.0, kOtherSurface, ""});

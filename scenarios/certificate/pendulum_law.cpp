@@ -27,8 +27,6 @@ class Chain {
       const double below = 2.0 - i;  // number of bars below
       weight_nm_[i] = kMass_kg * gravity_m_s2 * segment_m * (0.5 + below);
       for (int j = 0; j <= i; ++j) {
-        // Off-diagonal entries couple the end of the upper bar to the middle of the lower bar. A diagonal entry is the
-        // inertia of a bar about its end, with the lower bars as point masses at its other end.
         coupling_(i, j) = kMass_kg * segment_m * segment_m * (i == j ? 1.0 / 3.0 + below : 0.5 + below);
         coupling_(j, i) = coupling_(i, j);
       }
@@ -43,7 +41,6 @@ class Chain {
     return out;
   }
 
-  /// Returns the energy of the pendulum relative to its energy at rest.
   double energy_j(const Vector3d& angle, const Vector3d& rate) const {
     return 0.5 * rate.dot(mass(angle) * rate) + weight_nm_.dot((1.0 - angle.array().cos()).matrix());
   }
@@ -56,7 +53,6 @@ class Chain {
     return mass(angle).ldlt().solve(moment);
   }
 
-  /// Returns the specific force at a point of the lowest bar, in world axes.
   Vector3d specific_force_W(const Vector3d& angle, const Vector3d& rate, const Vector3d& p_B_m,
                             double gravity_m_s2) const {
     const Vector3d alpha = acceleration(angle, rate);
@@ -69,13 +65,11 @@ class Chain {
     return f_W + turned(q_WB * p_B_m, rate[2], alpha[2]);
   }
 
-  /// Computes the angular frequencies of small oscillations, lowest first, and the mode shapes in columns.
   Eigen::GeneralizedSelfAdjointEigenSolver<Matrix3d> modes() const {
     return Eigen::GeneralizedSelfAdjointEigenSolver<Matrix3d>(Matrix3d(weight_nm_.asDiagonal()), coupling_);
   }
 
  private:
-  /// Returns the acceleration of one end of a rotating arm relative to the other end.
   static Vector3d turned(const Vector3d& arm_W_m, double rate, double acceleration) {
     const Vector3d w(0.0, rate, 0.0);
     return Vector3d(0.0, acceleration, 0.0).cross(arm_W_m) + w.cross(w.cross(arm_W_m));
@@ -86,7 +80,6 @@ class Chain {
   Vector3d weight_nm_;
 };
 
-/// Pendulum simulates the pendulum without friction.
 class Pendulum {
  public:
   Pendulum(const CertificateInput& input, sim::Integrator integrator)
@@ -147,7 +140,6 @@ CertificateEntry energy(const CertificateInput& input, const PendulumSetup& setu
           ""};
 }
 
-/// Returns the period of the lowest bar's angle, averaged over ten periods.
 double measured_period_s(Pendulum& pendulum, double expected_s) {
   constexpr int kPeriods = 10;
   double before = pendulum.angle()[2], first_s = 0.0;
@@ -178,8 +170,8 @@ CertificateEntry periods(const CertificateInput& input, const PendulumSetup& set
     pendulum.set(kSmall_rad / shape.cwiseAbs().maxCoeff() * shape, Vector3d::Zero());
     worst = larger(worst, std::abs(measured_period_s(pendulum, expected_s) / expected_s - 1.0));
   }
-  // The accepted range includes the effect of the amplitude of 0.001 rad on the period. The effect is 6e-8 for a simple
-  // pendulum, and about fifty times more for the higher modes.
+  // The accepted range includes the effect of the amplitude of 0.001 rad on the period: 6e-8 for a simple pendulum,
+  // about fifty times more for the higher modes.
   return {"pendulum_period",
           "pendulum",
           "the periods of the three small oscillations equal their closed form: maximum relative difference",
@@ -190,13 +182,10 @@ CertificateEntry periods(const CertificateInput& input, const PendulumSetup& set
           ""};
 }
 
-/// Joints contains the angles and rates of the three bars at one instant.
 struct Joints {
   Vector3d angle, rate;
 };
 
-/// Returns the mean specific force over a step by Simpson's rule, in axes midway between the attitudes at both ends of
-/// the step. A cubic Hermite polynomial gives the joint angles in the middle of the step.
 Vector3d mean_force(const Chain& chain, const Joints& before, const Joints& after, double step_s,
                     const Vector3d& lever_m, double gravity_m_s2) {
   const Joints middle{0.5 * (before.angle + after.angle) + 0.125 * step_s * (before.rate - after.rate),
@@ -213,7 +202,6 @@ CertificateEntry force(const CertificateInput& input, const PendulumSetup& setup
   const double gravity_m_s2 = pendulum.trial().gravity_m_s2();
   const Chain chain(kSegment_m, gravity_m_s2);
 
-  // The closed form uses the joint angles; the simulated reading uses the pose of the body.
   pendulum.set(kWildAngle, kWildRate);
   std::vector<Vector3d> expected;
   Joints before{pendulum.angle(), pendulum.rate()};
@@ -243,7 +231,7 @@ CertificateEntry force(const CertificateInput& input, const PendulumSetup& setup
   for (std::size_t k = 0; k < expected.size(); ++k) {
     largest_m_s2 = larger(largest_m_s2, (record.accel_m_s2.at(k) - expected[k]).norm());
   }
-  // The measured error is 1e-6 m/s^2. During fast changes at the bars' turning points, Simpson's rule and RK4 have
+  // The measured error of the specific force is 1e-6 m/s^2: at the bars' turning points, Simpson's rule and RK4 have
   // errors of a few parts in 1e8.
   return {"pendulum_specific_force",
           "pendulum",

@@ -1,29 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The measured saturation planes of two real gyros are references for the simulation (equation: clipped_plane.hpp). A
-// simulated device with the sensing elements of a measured plane must have the same plane in its readings. The
-// simulated distribution of devices must include the measured planes.
-//
-// The planes were fitted by least squares to recordings of RepoIMU (Szczesna et al., ICCVG 2016). The fit uses readings
-// inside saturated intervals, without repeated readings. The command is tests/bench/rail_measures x 7.3 (or y 7.2, z
-// 10.29) FILE.csv. The recordings are Test05 and Test10 trial 1, Test06, and for the pendulum Test02a and Test07 trial
-// 3.
-//
+// The measured saturation planes of two real gyros are references for the simulation (equation: clipped_plane.hpp). The
+// planes were fitted by least squares to recordings of RepoIMU (Szczesna et al., ICCVG 2016). The fit uses readings
+// inside saturated intervals, without repeated readings: tests/bench/rail_measures x 7.3 (or y 7.2, z 10.29) FILE.csv.
 // The accepted interval of each plane parameter includes the fitted values of all recordings and their errors.
-// Residuals are in rad/s. A residual in brackets belongs to a fit without cross-axis sensitivity.
 //
-// Hand-held wand, x axis: Test05 trials 1 to 3 and Test10 trials 1 to 3 have 100 to 1700 readings each. The residual of
-// the fitted plane is 0.003 to 0.009 (0.005 to 0.010). The offset of the plane changes from day to day with the gyro
-// bias.
+// Hand-held wand, x axis: Test05 trials 1 to 3 and Test10 trials 1 to 3 have 100 to 1700 readings each. The residual is
+// 0.003 to 0.009 rad/s, or 0.005 to 0.010 rad/s without cross-axis sensitivity.
 //
-// Wand, y axis: Test06 trial 1 has 39 and 42 readings at the two limits. The residual is 0.004 (0.014). Only one
-// recording exists, so the accepted interval is three standard errors. The interval includes planes that were fitted to
-// additional readings at the ends of the saturated intervals.
+// Wand, y axis: Test06 trial 1 has 39 and 42 readings at the two limits. The residual is 0.004 rad/s, or 0.014 rad/s
+// without cross-axis sensitivity. The accepted interval is three standard errors, because only one recording exists.
 //
-// Pendulum, z axis: the gyro of the third segment saturates in Test02a, 02b, 07 trials 1 to 3 and 08. Test02a (37
-// readings) and Test07 trial 3 (10 readings) have residuals of 0.0003 (0.07 and 0.09), below the gyro's resolution of
-// 0.0005. The offsets of the two planes are 0.0001 and 0.0003. Fits with repeated readings and partly saturated windows
-// have residuals of 0.02 to 0.07. The cross-axis sensitivities of such fits scatter: 0.045 to 0.054 and -0.027 to
-// 0.009.
+// Pendulum, z axis: Test02a (37 readings) and Test07 trial 3 (10 readings) have residuals of 0.0003 rad/s, or 0.07 and
+// 0.09 rad/s without cross-axis sensitivity.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -40,7 +28,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// MeasuredRange is the range of one parameter of the saturation plane over all recordings of one gyro.
 struct MeasuredRange {
   double low, high;
   double middle() const { return 0.5 * (low + high); }
@@ -64,8 +51,8 @@ const char* axis_name(int axis) {
   return kNames[static_cast<std::size_t>(axis % 3)];
 }
 
-/// Returns sensing elements whose saturation plane is the mean measured plane. A plane does not determine the scale of
-/// the saturated element, nor the other two elements; these parameters are ideal.
+/// A measured plane does not determine the scale of the saturated element, nor the other two elements; the unknown
+/// parameters are ideal.
 sim::Elements elements_of(const MeasuredPlane& plane, const RealRailsSetup& setup) {
   const int j = plane.element;
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
@@ -110,8 +97,6 @@ void show_plane(const DataSheet& sheet, const MeasuredPlane& plane, const RealRa
       "rad/s", fitted.offset, plane.offset_rad_s);
 }
 
-/// DrawnPlanes contains the RMS slope and the RMS offset of the saturation planes of random devices from one data
-/// sheet.
 struct DrawnPlanes {
   double slope = 0.0, offset_rad_s = 0.0;
 };

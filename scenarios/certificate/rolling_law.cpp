@@ -12,14 +12,11 @@ namespace {
 
 constexpr double kMoving_m_s = 0.05;
 
-/// Lengths contains the path length of the sphere's centre during rolling contact, and the path error of the rolling
-/// law v = r w x n.
 struct Lengths {
   double path_length_m = 0.0, missed_m = 0.0;
 };
 
-/// Compares the velocity of the sphere's centre with r w x n over a simulated motion. The vector n is the contact
-/// normal with the largest load. Samples during short interruptions of contact are skipped.
+/// The vector n of the rolling law v = r w x n is the contact normal with the largest load.
 Lengths compare(const sim::Truth& truth, double radius_m) {
   Lengths lengths;
   const double dt_s = static_cast<double>(truth.period_ns) * 1e-9;
@@ -70,8 +67,7 @@ std::vector<CertificateEntry> certify_rolling(const CertificateInput& input, con
   plane.robot.values.set("inner_z_m", -0.01);
   std::vector<CertificateEntry> entries = {entry(input, setup, sim::resolve(plane), "plane", 1e-3)};
   if (!setup.terrains) return entries;
-  // Within the 10 ms window of a contact label, a sphere may cross the edge of a patch or obstacle, and slip at up to
-  // 0.02 m/s. On the terrains of the scenarios, edges and permitted slip cause errors of 2e-4 to 5.1e-4.
+  // On the terrains of the scenarios, edges and permitted slip cause relative path errors of 2e-4 to 5.1e-4.
   constexpr double kTerrainHigh = 1e-3;
   for (const std::string& name : scenario_names(input.data)) {
     const Scenario scenario = load_scenario(input.data, name);

@@ -8,13 +8,12 @@
 #include "scenarios/certificate/certificate.hpp"
 #include "sim/trial/trial.hpp"
 
-/// rows.hpp declares the measurements of the certificate (checks of the simulation) with their settings. The
-/// certificate uses the default settings. Tests change one setting and check that the measurement then fails. Members
-/// named `stated_*` replace a value that the closed form assumes.
+/// Tests change one setting and check that the measurement then fails. Members named `stated_*` replace a value that
+/// the closed form assumes.
 namespace tumble::scenarios {
 
-/// The free-flight measurement throws the rig high, with a rotation near its unstable axis. Energy and angular momentum
-/// must be constant (Euler's equations).
+/// The free-flight measurement throws the rig with a rotation near its unstable axis; energy and angular momentum must
+/// be constant.
 struct FreeFlightSetup {
   double duration_s = 5.0;
   double rate_rad_s = 18.0;
@@ -22,8 +21,6 @@ struct FreeFlightSetup {
 };
 std::vector<CertificateEntry> certify_free_flight(const CertificateInput& input, const FreeFlightSetup& setup = {});
 
-/// The measured IMU is ideal and has the distance `lever_arm_m` from the centre of mass. At distance 0, its specific
-/// force in free flight must be zero.
 struct FlightForceSetup {
   double duration_s = 2.0;
   double rate_rad_s = 18.0;
@@ -38,8 +35,7 @@ struct FreeFallSetup {
 };
 std::vector<CertificateEntry> certify_free_fall(const CertificateInput& input, const FreeFallSetup& setup = {});
 
-/// The velocity of a rolling sphere's centre must equal r w x n. The law is tested on a plane and on the ground of each
-/// sphere scenario.
+/// The velocity of a rolling sphere's centre must equal r w x n (radius, angular velocity, contact normal).
 struct RollingSetup {
   double stated_radius_m = 0.0;  ///< 0: the sphere's true radius
   bool terrains = true;          ///< also tests the ground of the sphere scenarios
@@ -56,7 +52,7 @@ std::vector<CertificateEntry> certify_slip_to_grip(const CertificateInput& input
 
 /// The impact measurement drops the rig on its corners and computes the first peak of the specific force, averaged over
 /// 2 ms. The measurement reports the relative change of the peak at a quarter of the simulation step. The measurement
-/// also reports the exponent of the peak as a function of the contact time constant. An ideal spring has the exponent
+/// also reports the exponent of the peak as a function of the contact time constant; an ideal spring has the exponent
 /// -1.
 struct ImpactSetup {
   double height_m = 1.0;
@@ -65,16 +61,12 @@ struct ImpactSetup {
 };
 std::vector<CertificateEntry> certify_impact(const CertificateInput& input, const ImpactSetup& setup = {});
 
-/// The range measurement compares the points of a moving lidar without range error with the walls of an empty room. The
-/// true pose at each firing transforms the points to world axes. `added_range_m` is an error that is added to every
-/// range.
+/// The range measurement compares the points of a moving lidar without range error with the walls of an empty room.
 struct LidarRangeSetup {
   double added_range_m = 0.0;
 };
 std::vector<CertificateEntry> certify_lidar_range(const CertificateInput& input, const LidarRangeSetup& setup = {});
 
-/// The ray measurement compares two copies of each world by ray casting: that of the lidar simulation and that of the
-/// physics engine.
 struct LidarRaysSetup {
   int rays = 2000;              ///< rays per world
   double mirror_shift_m = 0.0;  ///< error: the rays in the lidar simulation start this much higher
@@ -82,8 +74,7 @@ struct LidarRaysSetup {
 };
 std::vector<CertificateEntry> certify_lidar_rays(const CertificateInput& input, const LidarRaysSetup& setup = {});
 
-/// The noise measurement compares an hour of each IMU at rest with the noise and bias of its data sheet. The factors
-/// multiply the noise and bias of the simulated IMU.
+/// The noise measurement compares one hour of each IMU at rest with the noise and bias of its data sheet.
 struct ImuNoiseSetup {
   double duration_s = 3600.0;
   std::uint64_t seed = 1;
@@ -93,7 +84,7 @@ struct ImuNoiseSetup {
 std::vector<CertificateEntry> certify_imu_noise(const CertificateInput& input, const ImuNoiseSetup& setup = {});
 
 /// The plane measurement fits planes to the clipped readings of IMUs with tilted sensing elements, and compares them
-/// with the simulated planes. `assumed_tilt` is added to one entry of the misalignment matrix in the closed form.
+/// with the simulated planes.
 struct TiltedRailSetup {
   double misalignment = 0.02;  ///< standard deviation; scales use half of it, offsets use 0.5 % of the limit
   double assumed_tilt = 0.0;
@@ -101,9 +92,8 @@ struct TiltedRailSetup {
 };
 std::vector<CertificateEntry> certify_tilted_rail(const CertificateInput& input, const TiltedRailSetup& setup = {});
 
-/// The real-gyro measurement compares the saturation planes of two real gyros (a hand-held device, a pendulum) with the
-/// simulation. First, a simulated device has the sensing elements of the real gyro. Second, simulated devices have
-/// random sensing elements from the distributions in the data sheets.
+/// The measurement compares the saturation planes of two real gyros (a hand-held device, a pendulum) with those of
+/// simulated gyros.
 struct RealRailsSetup {
   double tilt_factor = 1.0;         ///< factor on the slopes of the measured plane; 0: aligned elements
   double added_tilt = 0.0;          ///< added to each slope

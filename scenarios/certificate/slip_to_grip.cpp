@@ -9,7 +9,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Returns the speed of the sphere's lowest point relative to the floor, along x.
 double slip_m_s(const sim::BodyState& state, double radius_m) {
   return state.v_WB_m_s.x() - radius_m * (state.q_WB * state.w_WB_B_rad_s).y();
 }
@@ -31,7 +30,7 @@ std::vector<CertificateEntry> certify_slip_to_grip(const CertificateInput& input
   state.v_WB_m_s = {setup.speed_m_s, 0.0, 0.0};
   trial.set_state(state);
 
-  // With soft contact, the last 0.5 % of the slip velocity decays slowly, so the measurement stops there.
+  // With soft contact, the last 0.5 % of the sphere's slip velocity decays slowly, so the measurement stops there.
   constexpr double kLeftOver = 0.005;
   const double mass_kg = trial.mass_kg(), inertia_kg_m2 = trial.inertia_B_kg_m2()(1, 1);
   const double expected_s =

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Each sensing element saturates along its own axis, so its saturated readings form one plane per sign
-// (clipped_plane.hpp). The measurement simulates IMUs with random misalignments, scales and offsets, and saturates one
-// sensing element at a time. The measurement then compares the plane that fits the readings with the simulated plane.
-// The file real_rails.cpp contains the measurement with planes of real devices.
+// (clipped_plane.hpp).
 #include <algorithm>
 #include <cmath>
 
@@ -30,7 +28,6 @@ sim::SensorSpec tilted(const DataSheet& sheet, const TiltedRailSetup& setup) {
   return sensor;
 }
 
-/// PlaneErrors contains the differences between fitted and simulated saturation planes.
 struct PlaneErrors {
   double slope = 0.0, distance_share = 0.0;
   int samples = 0;  ///< smallest number of samples over elements and signs
@@ -73,9 +70,12 @@ std::vector<CertificateEntry> certify_tilted_rail(const CertificateInput& input,
   std::vector<CertificateEntry> entries;
   for (const auto& [subject, errors] : {std::pair{"mti30 gyro", gyro}, std::pair{"mti30 accel", accel}}) {
     const bool enough = errors.samples >= kFewestClipped && errors.samples < kMany;
-    const std::string note = enough ? "" : "an element has fewer than 10 fully clipped samples of one sign";
+    const std::string note =
+        enough
+            ? ""
+            : "the fit of a saturation plane needs at least 10 samples per sign in which the element is always clipped";
     const double none = std::nan("");
-    // The closed form is exact: the measured error of 1e-15 is rounding.
+    // The closed form of the saturation plane is exact: the measured error of 1e-15 is rounding.
     entries.push_back(
         {"tilted_rail_slope", subject,
          "clipped readings of simulated devices are on the saturation planes of their elements: maximum slope error",

@@ -31,7 +31,7 @@ Expectation expectation_from(const YamlNode& node) {
   const auto number = [&](const std::string& key, std::optional<double>& value) {
     if (!fields.contains(key)) return;
     if (out.metric.empty())
-      fields.at(key).fail("this key needs the key 'metric', which names the metric of this value");
+      fields.at(key).fail("this key needs the key 'metric' next to it, which names the metric of this value");
     value = fields.at(key).number();
   };
   number("worse_than", out.worse_than);
@@ -71,7 +71,9 @@ NamedCase case_from_yaml(const YamlNode& node) {
     }
     out.expected.push_back(std::move(expected));
   }
-  if (out.expected.empty()) fields.at("expect").fail("the case must name at least one expected result");
+  if (out.expected.empty())
+    fields.at("expect").fail(
+        "the list of expected results is empty; a named case must contain the expected result of at least one method");
   return out;
 }
 

@@ -8,9 +8,6 @@
 
 namespace tumble::scenarios {
 
-/// The functions case_from_yaml and to_yaml convert a NamedCase from and to the value of the YAML key `case`, without
-/// loss. Reading rejects an unknown key, a repeated method, a `run` other than `fails` or `holds`, and a
-/// `worse_than` without a metric. The error message contains file and line.
 NamedCase case_from_yaml(const YamlNode& node);
 std::string to_yaml(const NamedCase& named);
 

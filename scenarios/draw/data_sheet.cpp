@@ -15,13 +15,14 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Throws BadInput if a number is missing, because the simulation would otherwise silently use a default.
+/// A missing number in a data sheet is an error, because the simulation would otherwise silently use a default.
 void require_every_number(const DataSheet& sheet, const std::string& file, const Registry& registry) {
   for (const sim::Parameter& parameter : find_type(registry.sensors, sheet.sensor_kind)->parameters) {
     const auto is_it = [&](const DataSheet::Entry& entry) { return entry.name == parameter.name; };
     if (std::none_of(sheet.entries.begin(), sheet.entries.end(), is_it)) {
-      throw BadInput(fmt::format("{}: '{}' is missing; a data sheet of kind '{}' must state each of its numbers ({})",
-                                 file, parameter.name, sheet.sensor_kind, parameter.doc));
+      throw BadInput(
+          fmt::format("{}: the number '{}' is missing; a data sheet of kind '{}' must state each of its numbers ({})",
+                      file, parameter.name, sheet.sensor_kind, parameter.doc));
     }
   }
 }
@@ -37,7 +38,7 @@ DataSheet load_data_sheet(const DataRoot& data, const std::string& device) {
   const Registry registry = Registry::of_simulation();
   DataSheet sheet = parse_data_sheet(read_text_file(path), path.string(), registry);
   if (sheet.device != device) {
-    throw BadInput(fmt::format("{}: the device is '{}'; it must be the name of the file, '{}'", path.string(),
+    throw BadInput(fmt::format("{}: the key 'device' is '{}'; it must be the name of the file, '{}'", path.string(),
                                sheet.device, device));
   }
   require_every_number(sheet, path.string(), registry);

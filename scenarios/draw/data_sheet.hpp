@@ -9,8 +9,6 @@
 
 namespace tumble::scenarios {
 
-/// DataSheet contains the numbers of a sensor, each with value, unit and source. The file of a data sheet is
-/// models/sensors/DEVICE.yaml.
 struct DataSheet {
   struct Entry {
     std::string name;
@@ -26,8 +24,7 @@ struct DataSheet {
 };
 
 std::vector<std::string> device_names(const DataRoot& data);
-/// Loads the data sheet of the sensor `device`. Throws BadInput for an unknown device (the message suggests the nearest
-/// name), an unknown key, a wrong unit, a missing number, or a number without a source.
+/// Throws BadInput for an unknown device or key, a wrong unit, a missing number, or a number without a source.
 DataSheet load_data_sheet(const DataRoot& data, const std::string& device);
 
 }  // namespace tumble::scenarios

@@ -15,10 +15,10 @@ DataSheet::Entry parse_entry(const std::string& name, const YamlNode& node, cons
   const auto fields = node.fields(kKeys);
   DataSheet::Entry entry{name, fields.at("value").number(), fields.at("unit").text(), fields.at("source").text()};
   if (entry.unit != parameter.unit) {
-    fields.at("unit").fail(fmt::format("the unit is '{}'; it must be '{}'", entry.unit, parameter.unit));
+    fields.at("unit").fail(fmt::format("the unit of this number is '{}'; it must be '{}'", entry.unit, parameter.unit));
   }
   if (!(entry.value >= parameter.low && entry.value <= parameter.high)) {
-    fields.at("value").fail(fmt::format("the value is {:g} {}; it must be within [{:g}, {:g}]", entry.value,
+    fields.at("value").fail(fmt::format("the number is {:g} {}; it must be within [{:g}, {:g}]", entry.value,
                                         parameter.unit, parameter.low, parameter.high));
   }
   return entry;
@@ -47,7 +47,7 @@ DataSheet parse_data_sheet(const std::string& text, const std::string& file, con
   for (const auto& [name, node] : fields.at("values").entries()) {
     const sim::Parameter* const parameter = find_parameter(type->parameters, name);
     if (parameter == nullptr) {
-      node.fail(fmt::format("unknown key '{}' for kind '{}'{}", name, type->name,
+      node.fail(fmt::format("the key '{}' is not a number of sensors of kind '{}'{}", name, type->name,
                             suggestion(name, names_of(type->parameters))));
     }
     sheet.entries.push_back(parse_entry(name, node, *parameter));

@@ -16,7 +16,6 @@ namespace {
 
 using Shape = Distribution::Shape;
 
-/// kLeastKept is the smallest probability that the limits of a truncated normal distribution may contain.
 constexpr double kLeastKept = 0.01;
 
 double normal_below(double x) {
@@ -32,7 +31,8 @@ std::string count_problem(const Distribution& d) {
     case Shape::log_uniform:
       return n == 2 ? "" : std::string(to_string(d.shape)) + " needs [low, high]";
     case Shape::normal:
-      return n == 2 || n == 4 ? "" : "the distribution 'normal' needs [mean, sigma] or [mean, sigma, low, high]";
+      return n == 2 || n == 4 ? ""
+                              : "the distribution 'normal' needs the list [mean, sigma] or [mean, sigma, low, high]";
     case Shape::choice:
       return n >= 1 ? "" : "the distribution 'choice' must list at least one value";
   }
@@ -59,16 +59,16 @@ std::string normal_problem(const std::vector<double>& numbers) {
     const double kept = sigma > 0.0 ? normal_below((high - mean) / sigma) - normal_below((low - mean) / sigma)
                                     : (mean >= low && mean <= high ? 1.0 : 0.0);
     if (!(kept >= kLeastKept))
-      text << fmt::format("[{:g}, {:g}] contains less than 1 % of the normal distribution; widen [low, high]", low,
-                          high);
+      text << fmt::format(
+          "the interval [{:g}, {:g}] contains less than 1 % of the normal distribution; widen [low, high]", low, high);
   }
   return text.str();
 }
 
 double draw_normal(const std::vector<double>& numbers, sim::Stream& stream) {
   if (numbers.size() == 2) return numbers[0] + numbers[1] * stream.normal();
-  // The limits contain at least 1 % of the distribution (find_problem). The probability that 10000 random numbers in a
-  // row are outside is then 1e-43.
+  // The limits contain at least 1 % of the distribution (find_problem), so the probability that 10000 random numbers in
+  // a row are outside is 1e-43.
   for (int attempt = 0; attempt < 10000; ++attempt) {
     const double value = numbers[0] + numbers[1] * stream.normal();
     if (value >= numbers[2] && value <= numbers[3]) return value;

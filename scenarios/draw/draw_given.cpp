@@ -21,8 +21,8 @@ sim::Component draw_part(const Scenario::Part& part, std::uint64_t seed, const s
 }
 
 sim::SensorSpec draw_sensor(const Scenario::Sensor& sensor, const DataSheet& sheet, std::uint64_t seed) {
-  // The random stream has the name of the sensor and not its index. An inserted sensor therefore does not change the
-  // random numbers of other sensors.
+  // The random stream has the name of the sensor and not its index, so an inserted sensor does not change the random
+  // numbers of other sensors.
   const std::string place = "sensors." + sensor.name;
   sim::SensorSpec out{sensor.name, sensor.kind, sensor.device, sensor.site, sheet.values(), {}};
   draw_numbers(sensor.numbers, seed, place, out.values);
@@ -43,7 +43,7 @@ sim::Situation draw_given(const Scenario& scenario, std::span<const DataSheet> s
   for (std::size_t i = 0; i < scenario.sensors.size(); ++i) {
     const Scenario::Sensor& sensor = scenario.sensors[i];
     if (sheets[i].sensor_kind != sensor.kind) {
-      throw BadInput(fmt::format("{}:{}: sensors.{}: device '{}' is of kind '{}'; it must be of kind '{}'",
+      throw BadInput(fmt::format("{}:{}: sensors.{}: the device '{}' is a sensor of kind '{}'; it must be of kind '{}'",
                                  scenario.file, sensor.line, sensor.name, sensor.device, sheets[i].sensor_kind,
                                  sensor.kind));
     }

@@ -15,7 +15,6 @@ void add(const std::string& place, const std::map<std::string, Distribution>& nu
 
 }  // namespace
 
-// The places must match those in draw_given.cpp; a test compares them.
 std::vector<DrawnNumber> drawn_numbers(const Scenario& scenario) {
   std::vector<DrawnNumber> out;
   add("duration_s", scenario.duration_s, out);

@@ -23,7 +23,7 @@ using Numbers = std::map<std::string, Distribution>;
 Distribution constant(const Scenario& scenario, const std::string& key, double value, const sim::Parameter& parameter) {
   if (!(value >= parameter.low && value <= parameter.high)) {
     fail(scenario, key,
-         fmt::format("the value is {:g} {}; it must be within [{:g}, {:g}]", value, parameter.unit, parameter.low,
+         fmt::format("the new value is {:g} {}; it must be within [{:g}, {:g}]", value, parameter.unit, parameter.low,
                      parameter.high));
   }
   return {Distribution::Shape::constant, {value}, 0};
@@ -41,8 +41,6 @@ void fix(const Scenario& scenario, const std::string& key, const std::string& na
   fix(scenario, key, name, value, find_type(types, part.type)->parameters, part.numbers);
 }
 
-/// Replaces one parameter of a sensor by a constant. `rest` is the part of the key after "sensors.", for example
-/// "imu.output_rate_hz".
 void fix_of_sensor(Scenario& scenario, const std::string& key, const std::string& rest, double value,
                    const Registry& registry) {
   const std::size_t dot = rest.find('.');

@@ -7,12 +7,9 @@
 
 namespace tumble::scenarios {
 
-/// Replaces one random parameter of a scenario by a constant. All other parameters keep their values, because each has
-/// its own random stream. `key` names the parameter, for example "duration_s", "world.slope_rad", "robot.mass_kg",
-/// "motion.rest_s", "sensors.imu.output_rate_hz" or "sensors.lidar.mount_error.yaw_rad".
-///
-/// Throws BadInput, without file and line, for a value outside its limits or an unknown parameter. For an unknown
-/// parameter, the message suggests the nearest name.
+/// Replaces one random parameter by a constant; all others keep their values, because each has its own random stream.
+/// `key` names the parameter, for example "duration_s", "world.slope_rad", "sensors.imu.output_rate_hz" or
+/// "sensors.lidar.mount_error.yaw_rad".
 void fix_number(Scenario& scenario, const std::string& key, double value);
 
 }  // namespace tumble::scenarios

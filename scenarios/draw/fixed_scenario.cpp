@@ -60,8 +60,9 @@ Scenario fixed_as(Scenario scenario, const sim::Situation& situation) {
 std::string to_yaml(const Scenario& scenario) {
   const std::vector<DrawnNumber> drawn = drawn_numbers(scenario);
   if (!drawn.empty())
-    throw BadInput(fmt::format("scenario {}: {} is drawn from a distribution; it must be a fixed number", scenario.name,
-                               drawn.front().place));
+    throw BadInput(fmt::format(
+        "scenario {}: the number {} is random; it must be a constant, so that the file describes one simulated run",
+        scenario.name, drawn.front().place));
   std::string out = "# SPDX-License-Identifier: BSD-3-Clause\nname: " + yaml_word(scenario.name) +
                     "\ndoc: " + yaml_word(scenario.doc) + "\n";
   if (scenario.named_case) out += to_yaml(*scenario.named_case);

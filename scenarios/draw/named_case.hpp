@@ -8,7 +8,6 @@
 
 namespace tumble::scenarios {
 
-/// Expectation is the expected result of one method on a named case.
 struct Expectation {
   std::string method;                ///< "slam/tumble"
   bool fails = false;                ///< true: the method is expected to fail
@@ -20,9 +19,8 @@ struct Expectation {
   bool operator==(const Expectation&) const = default;
 };
 
-/// NamedCase is the value of the key `case` in a file of scenarios/regressions: origin and expected results of one
-/// simulated run. Methods, metrics and statuses are plain texts here; the code in scenarios/cases checks that they
-/// exist.
+/// NamedCase is the origin of one simulated run and the expected results of methods: the value of the key `case` in a
+/// file of scenarios/regressions.
 struct NamedCase {
   std::string scenario;    ///< scenario that contains the original run
   std::uint64_t seed = 0;  ///< seed of all random values that the file does not fix

@@ -9,7 +9,6 @@
 
 namespace tumble::scenarios {
 
-/// Registry contains the component types (robots, sensors, worlds) that scenario files and data sheets may name.
 struct Registry {
   std::span<const sim::ComponentType> worlds;
   std::span<const sim::ComponentType> robots;
@@ -17,13 +16,10 @@ struct Registry {
   std::span<const sim::ComponentType> sensors;
   std::span<const sim::Parameter> mount_error;
 
-  /// Returns the component types that this build can simulate.
   static Registry of_simulation();
 };
 
-/// Returns the component type `name`, or null if `types` does not contain it.
 const sim::ComponentType* find_type(std::span<const sim::ComponentType> types, const std::string& name);
-/// Returns the parameter `name`, or null if `parameters` does not contain it.
 const sim::Parameter* find_parameter(std::span<const sim::Parameter> parameters, const std::string& name);
 std::vector<std::string> names_of(std::span<const sim::ComponentType> types);
 std::vector<std::string> names_of(std::span<const sim::Parameter> parameters);

@@ -17,15 +17,12 @@ std::vector<std::string> scenario_names(const DataRoot& data) {
 }
 
 std::vector<std::string> case_names(const DataRoot& data) {
-  // The folder of the named cases may be missing.
   return std::filesystem::is_directory(data.regressions()) ? yaml_stems(data.regressions())
                                                            : std::vector<std::string>{};
 }
 
 namespace {
 
-/// Returns the path of a scenario in the catalogue. For an unknown name, the error message also suggests names of named
-/// cases.
 std::filesystem::path find_scenario(const DataRoot& data, std::span<const std::string> cases, const std::string& name) {
   std::vector<std::string> known = scenario_names(data);
   if (std::binary_search(known.begin(), known.end(), name)) return data.catalogue() / (name + ".yaml");
@@ -49,7 +46,9 @@ Scenario load_scenario(const DataRoot& data, const std::string& name) {
         fmt::format("{}: the name is '{}'; it must be the name of the file, '{}'", path.string(), scenario.name, name));
   }
   if (is_case && !scenario.named_case)
-    throw BadInput(fmt::format("{}: key 'case' is missing; a named case needs it", path.string()));
+    throw BadInput(fmt::format(
+        "{}: the key 'case' is missing; the file of a named case must contain the expected results under this key",
+        path.string()));
   return scenario;
 }
 

@@ -15,7 +15,6 @@
 
 namespace tumble::scenarios {
 
-/// Scenario contains the content of a scenario file. Each parameter of the situation is constant or random.
 struct Scenario {
   struct Part {
     std::string type;
@@ -37,26 +36,21 @@ struct Scenario {
   std::optional<NamedCase> named_case;  ///< set for files in scenarios/regressions, whose parameters are constants
 };
 
-/// Returns the names of all scenario files, sorted.
 std::vector<std::string> scenario_names(const DataRoot& data);
 
-/// Returns the names of the named cases (scenarios/regressions/NAME.yaml), sorted. Functions that accept a scenario
-/// name also accept the name of a named case. The names of scenarios and named cases differ.
+/// Functions that accept a scenario name also accept the name of a named case.
 std::vector<std::string> case_names(const DataRoot& data);
 
 /// Loads the scenario scenarios/catalogue/NAME.yaml, the named case scenarios/regressions/NAME.yaml, or the file `name`
-/// if it ends in ".yaml". Throws BadInput, with file and line, if the file is missing or invalid. For an unknown name
-/// or key, the message suggests the nearest known name.
+/// if it ends in ".yaml". Throws BadInput, with file and line, if the file is missing or invalid.
 Scenario load_scenario(const DataRoot& data, const std::string& name);
 
-/// Draws all random parameters of the scenario with `seed`, and fills in the numbers of the sensors' data sheets. Each
-/// parameter has a random stream with the name of its place ("world.slope_rad", "sensors.imu.mount_error.x_m"). Throws
+/// Draws all random parameters of the scenario with `seed`, and adds the numbers of the sensors' data sheets. Throws
 /// BadInput if the scenario contradicts a data sheet or contains a component that this build lacks.
 sim::ResolvedSituation draw(const DataRoot& data, const Scenario& scenario, std::uint64_t seed);
 
-/// The functions to_yaml and situation_from_yaml convert a resolved situation to and from YAML without loss of bits.
-/// Reading rejects unknown keys; sim::resolve rejects types and parameters that this build lacks. On invalid text or
-/// values, both functions throw BadInput with a message that starts with `place`.
+/// The functions to_yaml and situation_from_yaml convert a resolved situation to and from YAML without loss of bits. On
+/// invalid text or values, both throw BadInput with a message that starts with `place`.
 std::string to_yaml(const sim::Situation& situation);
 sim::Situation situation_from_yaml(const std::string& text, const std::string& place);
 

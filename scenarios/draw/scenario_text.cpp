@@ -28,10 +28,11 @@ Distribution parse_distribution(const YamlNode& node) {
     out.numbers = {node.number()};
     return out;
   }
-  if (!node.is_map()) node.fail("the value must be a number or one of {uniform|normal|log_uniform|choice: [...]}");
+  if (!node.is_map())
+    node.fail("the value must be a number or one of the distributions {uniform|normal|log_uniform|choice: [...]}");
   const auto entries = node.entries();
   if (entries.size() != 1)
-    node.fail("the value must have exactly one of the keys uniform, normal, log_uniform, choice");
+    node.fail("the distribution must have exactly one of the keys uniform, normal, log_uniform, choice");
   const auto& [name, values] = entries[0];
   const auto shape = std::find(kShapes.begin(), kShapes.end(), name);
   if (shape == kShapes.end()) values.fail("unknown distribution '" + name + "'" + suggestion(name, kShapes));
@@ -47,14 +48,13 @@ Distribution parse_checked(const YamlNode& node, const sim::Parameter& parameter
   if (!problem.empty()) node.fail(problem);
   for (const double point : support_points(out)) {
     if (point >= parameter.low && point <= parameter.high) continue;
-    node.fail(fmt::format("the value {} {:g} {}; it must be within [{:g}, {:g}]",
+    node.fail(fmt::format("the value of this parameter {} {:g} {}; it must be within [{:g}, {:g}]",
                           out.shape == Shape::constant ? "is" : "can reach", point, parameter.unit, parameter.low,
                           parameter.high));
   }
   return out;
 }
 
-/// Parses the parameters of a YAML map, except for the keys in `other`.
 Numbers parse_numbers(const YamlNode& map, std::span<const std::string> other, std::span<const sim::Parameter> known) {
   Numbers out;
   for (const auto& [name, value] : map.entries()) {
@@ -150,8 +150,9 @@ Scenario parse_scenario(const std::string& text, const std::string& file, const 
     out.named_case = case_from_yaml(fields.at("case"));
     const std::vector<DrawnNumber> drawn = drawn_numbers(out);
     if (!drawn.empty())
-      fields.at("case").fail(fmt::format(
-          "a case is a single draw, but {} is drawn from a distribution; give a fixed number", drawn.front().place));
+      fields.at("case").fail(
+          fmt::format("a named case describes one simulated run, but its number {} is random; give a constant",
+                      drawn.front().place));
   }
   return out;
 }

@@ -24,7 +24,7 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr std::uintmax_t kLargestFile = 4u << 20;
-/// Identifiers become file names. A file name has at most 255 bytes, including a seed and an extension.
+/// Identifiers become file names, which have at most 255 bytes, including a seed and an extension.
 constexpr std::size_t kIdentifierMax = 100;
 
 /// Counter counts the events of the YAML parser, because some invalid texts cause an endless loop. Each event consumes
@@ -119,7 +119,7 @@ void YamlNode::fail(const std::string& what) const {
 }
 
 std::string YamlNode::any_text() const {
-  if (!node_.IsScalar()) fail(fmt::format("the value must be text; it is {}", kind_of(node_)));
+  if (!node_.IsScalar()) fail(fmt::format("the value of this key must be text; it is {}", kind_of(node_)));
   return node_.Scalar();
 }
 
@@ -149,18 +149,18 @@ double YamlNode::number_or_infinity() const {
 }
 
 double YamlNode::parse_number(bool infinity_allowed) const {
-  if (!node_.IsScalar()) fail(fmt::format("the value must be a number; it is {}", kind_of(node_)));
+  if (!node_.IsScalar()) fail(fmt::format("the value of this key must be a number; it is {}", kind_of(node_)));
   const std::string& written = node_.Scalar();
-  // The parser gives the tag "!" to quoted text.
-  if (node_.Tag() == "!") fail(fmt::format("the value must be a number; it is the text \"{}\"", written));
+  if (node_.Tag() == "!") fail(fmt::format("the value of this key must be a number; it is the text \"{}\"", written));
   if (infinity_allowed && written == ".inf") return std::numeric_limits<double>::infinity();
   if (infinity_allowed && written == "-.inf") return -std::numeric_limits<double>::infinity();
   double value = 0.0;
   const char* const end = written.data() + written.size();
   const auto [stop, error] = std::from_chars(written.data(), end, value);
   if (error == std::errc::result_out_of_range) fail(fmt::format("the number '{}' is too large for a double", written));
-  if (error != std::errc() || stop != end) fail(fmt::format("the value must be a number; it is '{}'", written));
-  if (!std::isfinite(value)) fail(fmt::format("the value must be finite; it is '{}'", written));
+  if (error != std::errc() || stop != end)
+    fail(fmt::format("the value of this key must be a number; it is '{}'", written));
+  if (!std::isfinite(value)) fail(fmt::format("the value of this key must be finite; it is '{}'", written));
   return value;
 }
 
@@ -170,12 +170,12 @@ std::uint64_t YamlNode::unsigned_integer() const {
   const char* const end = written.data() + written.size();
   const auto [stop, error] = std::from_chars(written.data(), end, value);
   if (error != std::errc() || stop != end)
-    fail(fmt::format("the value must be an integer from 0 to 2^64-1; it is '{}'", written));
+    fail(fmt::format("the value of this key must be an integer from 0 to 2^64-1; it is '{}'", written));
   return value;
 }
 
 std::vector<YamlNode> YamlNode::items() const {
-  if (!node_.IsSequence()) fail(fmt::format("the value must be a list; it is {}", kind_of(node_)));
+  if (!node_.IsSequence()) fail(fmt::format("the value of this key must be a list; it is {}", kind_of(node_)));
   std::vector<YamlNode> out;
   for (const YAML::Node& item : node_)
     out.push_back(YamlNode(item, file_, place_ + "[" + std::to_string(out.size()) + "]"));
@@ -189,9 +189,8 @@ std::vector<std::pair<std::string, YamlNode>> YamlNode::entries() const {
   for (const auto& entry : node_) {
     const YamlNode key(entry.first, file_, place_);
     const std::string name = key.text();
-    if (!seen.insert(name).second) key.fail(fmt::format("key '{}' is given twice", name));
+    if (!seen.insert(name).second) key.fail(fmt::format("the key '{}' is given twice; each key may occur once", name));
     YamlNode value(entry.second, file_, join(place_, name));
-    // Blocks, aliases and empty values have no usable line number; their key has one.
     value.line_ = key.line_;
     out.emplace_back(name, std::move(value));
   }

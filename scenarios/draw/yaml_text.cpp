@@ -14,7 +14,8 @@
 namespace tumble::scenarios {
 
 std::string yaml_number(double value, const std::string& place) {
-  if (std::isnan(value)) throw BadInput(fmt::format("{}: the value is not a number", place));
+  if (std::isnan(value))
+    throw BadInput(fmt::format("{}: the value is NaN, which a scenario file cannot contain", place));
   if (std::isinf(value)) return value > 0.0 ? ".inf" : "-.inf";
   std::array<char, 32> text;
   const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value);

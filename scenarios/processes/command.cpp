@@ -27,8 +27,6 @@ void limit(int resource, double value) {
   setrlimit(static_cast<__rlimit_resource>(resource), &both);
 }
 
-/// Replaces the child process by the command. Returns only if the program cannot be started; `problem` then contains
-/// the reason.
 void become(const Command& command, std::string& problem) {
   signal(SIGINT, SIG_DFL);
   signal(SIGHUP, SIG_DFL);
@@ -48,14 +46,12 @@ void become(const Command& command, std::string& problem) {
   std::vector<char*> words;
   for (const std::string& word : command.words) words.push_back(const_cast<char*>(word.c_str()));
   words.push_back(nullptr);
-  // The memory limit is set last: the child is a copy of this program and may exceed the limit already, so later
-  // allocations could fail.
+  // The memory limit is set last, because the child process is a copy of this program and may exceed the limit already.
   limit(RLIMIT_DATA, command.memory_limit_mib * kMib);
   execvp(words.front(), words.data());
   problem = command.words.front() + ": " + strerror(errno);
 }
 
-/// Returns the content of a file, but of a long file only the first and the last `most` bytes.
 std::string ends_of(const std::filesystem::path& path, std::size_t most) {
   std::ifstream file(path, std::ios::binary | std::ios::ate);
   if (!file) return {};
@@ -71,7 +67,7 @@ std::string ends_of(const std::filesystem::path& path, std::size_t most) {
   return text;
 }
 
-/// Returns the start and the end of a long program output. The start usually contains the cause of an error.
+/// The start of a long program output usually contains the cause of an error.
 std::string words_of(const std::string& transcript) {
   std::string text = transcript;
   if (text.size() > 2 * kWords) text = text.substr(0, kWords) + " ... " + text.substr(text.size() - kWords);

@@ -8,7 +8,6 @@
 
 namespace tumble::scenarios {
 
-/// Command is an external program with its arguments and limits.
 struct Command {
   std::vector<std::string> words;                  ///< the program (found in PATH) and its arguments; no shell
   std::filesystem::path folder;                    ///< working folder
@@ -19,7 +18,6 @@ struct Command {
   double memory_limit_mib = 8192.0;                ///< limit of the data of each process (RLIMIT_DATA)
 };
 
-/// CommandEnd describes how a command ended.
 struct CommandEnd {
   enum class How { done, failed, timed_out, not_started };
   How how = How::done;
@@ -29,8 +27,7 @@ struct CommandEnd {
   double cpu_s = 0.0;       ///< CPU time of the command without its children
 };
 
-/// Runs the command in a separate process group and waits for its end. The whole process group is killed at the time
-/// limit, and when this process ends. Throws std::system_error if the process cannot be started.
+/// The command runs in a separate process group, which is killed at the time limit and when this process ends.
 CommandEnd run_command(const Command& command);
 
 }  // namespace tumble::scenarios

@@ -20,15 +20,14 @@ namespace tumble::scenarios {
 
 namespace {
 
-// The child is a copy of a program that may hold locks and open files, so it does only minimal work.
+// The child process is a copy of a program that may hold locks and open files, so it does only minimal work.
 [[noreturn]] void run_child(const std::function<void(int)>& work, int fd, pid_t parent, bool own_group) {
   if (own_group) setpgid(0, 0);
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(1);
   const rlimit no_core{0, 0};
   setrlimit(RLIMIT_CORE, &no_core);
-  // The parent handles Ctrl-C and hang-up. If the reader has closed the pipe, write() must return an error and not
-  // raise a signal.
+  // If the reader has closed the pipe, write() must return an error and not raise a signal.
   signal(SIGINT, SIG_IGN);
   signal(SIGHUP, SIG_IGN);
   signal(SIGTERM, SIG_DFL);
@@ -65,7 +64,7 @@ Process::Process(const std::function<void(int)>& work, bool own_group) : own_gro
 }
 
 Process::Process(const std::function<void(int, int)>& work, bool own_group) : own_group_(own_group) {
-  // A socket, because sending to a closed socket can avoid a signal.
+  // A socket pair serves as pipe, because sending to a closed socket can avoid a signal.
   int ends[2];
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
     throw std::system_error(errno, std::generic_category(), "socketpair");
@@ -98,7 +97,6 @@ void Process::start(const std::function<void(int)>& work) {
     close(ends[0]);
     run_child(work, ends[1], parent, own_group_);
   }
-  // Parent and child both set the process group, because either can run first.
   if (own_group_) setpgid(pid_, pid_);
   close(ends[1]);
   fd_ = ends[0];
@@ -173,7 +171,6 @@ Process::End Process::wait() {
   pid_t collected;
   do collected = wait4(pid_, &status, 0, &usage);
   while (collected < 0 && errno == EINTR);
-  // The signal also kills the descendants of the child process.
   if (own_group_) ::kill(-pid_, SIGKILL);
   pid_ = -1;
   end.cpu_s = static_cast<double>(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +

@@ -7,12 +7,10 @@
 
 namespace tumble::scenarios {
 
-/// SharedMemory is anonymous shared memory, which a program inherits as a file descriptor (Command::descriptors). The
-/// memory is freed when its last user ends. SharedMemory works on Linux only. The constructor throws std::system_error
-/// if there is not enough memory.
+/// SharedMemory is anonymous shared memory, which a program inherits as a file descriptor and which is freed when its
+/// last user ends. SharedMemory works on Linux only.
 class SharedMemory {
  public:
-  /// Creates empty shared memory; its `name` is visible in /proc.
   explicit SharedMemory(const char* name);
   ~SharedMemory();
   SharedMemory(const SharedMemory&) = delete;
@@ -20,10 +18,8 @@ class SharedMemory {
 
   int descriptor() const { return descriptor_; }
   void append(std::span<const std::byte> bytes);
-  /// Makes the memory immutable for all processes.
   void seal();
   std::size_t size() const;
-  /// Returns the whole content of the shared memory.
   std::string contents() const;
 
  private:

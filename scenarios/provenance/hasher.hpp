@@ -12,10 +12,8 @@
 
 namespace tumble::scenarios {
 
-// The hash covers the bytes of numbers in memory order.
 static_assert(std::endian::native == std::endian::little);
 
-/// Hasher computes the XXH3 hash (128 bit) of data that arrive in parts.
 class Hasher {
  public:
   Hasher() : state_(XXH3_createState(), &XXH3_freeState) {
@@ -26,13 +24,11 @@ class Hasher {
     if (size > 0) XXH3_128bits_update(state_.get(), data, size);
   }
   void count(std::uint64_t number) { bytes(&number, sizeof(number)); }
-  /// Adds the length of the text, then its bytes, to the hash.
   void text(const std::string& text) {
     count(text.size());
     bytes(text.data(), text.size());
   }
 
-  /// Returns the hash as 32 hexadecimal digits.
   std::string hex() const {
     const XXH128_hash_t hash = XXH3_128bits_digest(state_.get());
     char text[33];

@@ -6,7 +6,6 @@
 
 namespace tumble::scenarios {
 
-/// Returns a digest of a list of texts in order.
 std::string digest_of_texts(std::span<const std::string> texts);
 
 }  // namespace tumble::scenarios

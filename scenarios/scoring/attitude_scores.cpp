@@ -9,8 +9,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-// AttitudeError contains the parts of the attitude error e = q_est (x) q_true*, in W, as in BROAD (Laidig et al., Data
-// 2021). The heading of the estimate is aligned with the truth at the first sample.
+// AttitudeError contains the parts of the attitude error e = q_est (x) q_true*, in world axes, as in BROAD (Laidig et
+// al., Data 2021). The heading of the estimate is aligned with the truth at the first sample.
 struct AttitudeError {
   double inclination_rad;
   double heading_rad;
@@ -30,7 +30,6 @@ std::vector<AttitudeError> attitude_errors(const ScoredEstimate& scored) {
       q_align = Eigen::AngleAxisd(heading, Eigen::Vector3d::UnitZ());
     }
     const Eigen::Quaterniond e = q_align * attitude.q_WA * q_true.conjugate();
-    // The tilt error is 2 acos(sqrt(w^2 + z^2)) and the heading error is 2 atan|z / w|, here without cancellation.
     errors.push_back({2.0 * std::atan2(std::hypot(e.x(), e.y()), std::hypot(e.w(), e.z())),
                       2.0 * std::atan2(std::abs(e.z()), std::abs(e.w())), rotation_angle_rad(e),
                       truth.at_rest(attitude.time_ns)});
@@ -49,7 +48,6 @@ bool rmse(const ScoredEstimate& scored, double& value) {
   return true;
 }
 
-/// Returns squared tilt errors divided by their reported variances, at samples during motion.
 std::vector<double> normalised_tilt_errors(const ScoredEstimate& scored) {
   const TruthTrack& truth = truth_track(scored);
   std::vector<double> normalised;

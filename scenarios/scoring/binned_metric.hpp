@@ -7,8 +7,7 @@
 namespace tumble::scenarios {
 
 /// BinnedMetric is a metric over the samples whose quantity `axis` is in [low, high), for example
-/// "rate_error_median_rad_s@clip_depth_rad_s:1:2". `high` may be infinite. Reports plot binned metrics as a curve over
-/// the quantity; tables omit them.
+/// "rate_error_median_rad_s@clip_depth_rad_s:1:2". `high` may be infinite.
 struct BinnedMetric {
   std::string base;  ///< "rate_error_median_rad_s"
   std::string axis;  ///< "clip_depth_rad_s"; the name ends in the unit
@@ -16,7 +15,6 @@ struct BinnedMetric {
   std::string name() const;
 };
 
-/// Parses the name of a binned metric, such as "rate_error_median_rad_s@clip_depth_rad_s:1:2"; empty for another text.
 std::optional<BinnedMetric> parse_binned(const std::string& metric);
 
 }  // namespace tumble::scenarios

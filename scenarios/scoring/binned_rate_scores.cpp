@@ -14,7 +14,7 @@
 #include "scenarios/scoring/families.hpp"
 #include "scenarios/statistics/statistics.hpp"
 
-/// The binned metrics are rate errors over clipped samples with similar clipping depth, clipping duration or number of
+/// Binned metrics are rate errors over clipped samples with similar clipping depth, clipping duration or number of
 /// clipped axes.
 namespace tumble::scenarios {
 
@@ -34,7 +34,6 @@ constexpr const auto& edges() {
   if constexpr (kAxis == BinAxis::count) return kCountEdges;
 }
 
-/// Returns for each sample the duration of the clipping interval that contains it, or 0 for an unclipped sample.
 std::vector<double> segment_lengths_s(const ScoredEstimate& scored) {
   const ClippingTruth& truth = clipping_truth(scored);
   const double period_s = 1e-9 * static_cast<double>(scored.sensors().imus.front().period_ns);
@@ -50,7 +49,6 @@ std::vector<double> segment_lengths_s(const ScoredEstimate& scored) {
   return lengths;
 }
 
-/// Returns the quantity by which a clipped sample is assigned to a bin.
 template <BinAxis kAxis>
 double measure(const ScoredEstimate& scored, const PairedRate& pair) {
   if constexpr (kAxis == BinAxis::depth) return clipping_truth(scored).depth_rad_s(pair.sample);
@@ -93,10 +91,10 @@ void add_bins(const char* axis, const std::string& words, std::vector<Metric>& a
 
 std::vector<MetricInfo> binned_rate_quantities() {
   return {
-      {"rate_error_median_rad_s", Unit::rad_s, "median rate error (norm) over clipped samples of one bin",
-       Sense::lower},
-      {"rate_error_p99_rad_s", Unit::rad_s, "99th percentile of the rate error (norm) over clipped samples of one bin",
-       Sense::lower},
+      {"rate_error_median_rad_s", Unit::rad_s,
+       "median rate error (norm) over the clipped samples of one interval of the x axis", Sense::lower},
+      {"rate_error_p99_rad_s", Unit::rad_s,
+       "99th percentile of the rate error (norm) over the clipped samples of one interval of the x axis", Sense::lower},
       {"clip_depth_rad_s", Unit::rad_s, "largest saturation deficit of an axis"},
       {"clip_length_s", Unit::s, "length of a segment of clipped samples"},
       {"clipped_axes", Unit::number, "number of clipped axes"},
@@ -105,7 +103,7 @@ std::vector<MetricInfo> binned_rate_quantities() {
 
 std::vector<Metric> binned_rate_metrics() {
   std::vector<Metric> all;
-  add_bins<BinAxis::depth>("clip_depth_rad_s", "whose largest saturation deficit is in this bin", all,
+  add_bins<BinAxis::depth>("clip_depth_rad_s", "whose largest saturation deficit is in this interval", all,
                            std::make_index_sequence<kDepthEdges.size() - 1>());
   add_bins<BinAxis::length>("clip_length_s", "in segments of this length", all,
                             std::make_index_sequence<kLengthEdges.size() - 1>());

@@ -59,7 +59,6 @@ Eigen::Vector3d ClippingTruth::lost_rad_s(std::size_t index) const {
 std::uint8_t ClippingTruth::beyond_tolerance(const Eigen::Vector3d& lost_rad_s) const {
   std::uint8_t axes = 0;
   for (int j = 0; j < 3; ++j) {
-    // The negated comparison makes NaN count as clipped.
     if (!(std::abs(lost_rad_s[j]) <= tolerance_rad_s_)) axes = static_cast<std::uint8_t>(axes | (1u << j));
   }
   return axes;

@@ -3,20 +3,17 @@
 
 #include <vector>
 
-/// consistency.hpp compares estimation errors with reported covariances. A normalised error is a squared scalar error
-/// divided by its reported variance.
 namespace tumble::scenarios {
 
-/// Returns the squared error divided by its reported variance. For the variance 0, returns 0 if the error is 0, and
-/// otherwise infinity. For a NaN error, returns NaN.
+/// Returns the squared error divided by its reported variance. The variance 0 gives 0 for the error 0, and otherwise
+/// infinity.
 double squared_over(double error, double variance);
 
-/// Computes from the normalised errors `squares` the fraction of errors within three standard deviations. NaN counts as
-/// outside. Returns false if there are no errors.
+/// NaN counts as an error outside three standard deviations.
 bool share_within_3sigma(const std::vector<double>& squares, double& value);
 
-/// Computes the median of the normalised errors `squares`, divided by the median for a normal variable. The axis with
-/// the smallest variance would dominate a mean. Returns false if there are no errors.
+/// Computes the median of the normalised squared errors, divided by the median for a normal variable; in a mean, the
+/// axis with the smallest variance would dominate.
 bool normalised_median(const std::vector<double>& squares, double& value);
 
 }  // namespace tumble::scenarios

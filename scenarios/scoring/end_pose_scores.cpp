@@ -14,13 +14,12 @@ namespace tumble::scenarios {
 
 namespace {
 
-// Returns the latest sweep end that the scores use: a quarter of a period after the end of the last sweep that the
-// primary IMU covers completely. Some methods drop a partly covered sweep, and others shorten it.
+// Some methods drop a sweep that the primary IMU covers partly, and others shorten it, so the scores end earlier.
 std::int64_t last_sweep_before_ns(const sim::Sensors& sensors) {
   constexpr std::int64_t kAll = std::numeric_limits<std::int64_t>::max();
   if (sensors.lidars.empty() || sensors.imus.empty() || sensors.imus.front().time_ns.empty()) return kAll;
   const sim::LidarRecord& lidar = sensors.lidars.front();
-  // If the points have no individual times, the sweep has zero length.
+  // If the lidar points have no individual times, the sweep has zero length.
   const std::int64_t length_ns = lidar.point_times == sim::PointTimes::measured ? lidar.sweep_period_ns : 0;
   const std::int64_t covered_ns = sensors.imus.front().time_ns.back() - length_ns;
   const auto after = std::upper_bound(lidar.sweep_start_ns.begin(), lidar.sweep_start_ns.end(), covered_ns);
@@ -28,8 +27,7 @@ std::int64_t last_sweep_before_ns(const sim::Sensors& sensors) {
   return *(after - 1) + length_ns + lidar.sweep_period_ns / 4;
 }
 
-// Returns the last sweep that the IMU covers and for which the truth is known; scores of all methods end at this sweep.
-// If a clock is delayed, the last sweeps of a recording can be later than the truth.
+// The scores of all methods end at the last sweep that the IMU covers and for which the truth is known.
 const LidarInertialOdometry::SweepReport* last_covered(const ScoredEstimate& scored) {
   const Estimate& estimate = scored.estimate();
   const TruthTrack& truth = truth_track(scored);
@@ -41,8 +39,6 @@ const LidarInertialOdometry::SweepReport* last_covered(const ScoredEstimate& sco
   return last == estimate.sweeps.rend() ? nullptr : &*last;
 }
 
-// Returns the two poses between which the end error is measured. Returns false if the estimate lacks one of the two
-// poses.
 bool ends_of(const ScoredEstimate& scored, PoseState& first, PoseState& last) {
   const Estimate& estimate = scored.estimate();
   if (estimate.sweeps.empty()) {  // trajectory of an external program
@@ -70,7 +66,6 @@ struct EndError {
   Eigen::Quaterniond rotation;
 };
 
-// Compares the estimated with the true motion, from the sixth registered sweep to the last sweep.
 std::optional<EndError> end_pose_error(const ScoredEstimate& scored) {
   const TruthTrack& truth = truth_track(scored);
   PoseState first, last;
@@ -98,8 +93,8 @@ bool rotation_error_end(const ScoredEstimate& scored, double& value) {
   return true;
 }
 
-// Computes the normalised squared error of the pose at the last sweep, after alignment at the first pose. The mean of
-// the normalised error is 1 if the covariance is consistent.
+// Computes the normalised squared error of the pose at the last sweep, after alignment at the first pose; its mean is 1
+// if the covariance is consistent.
 bool pose_nees(const ScoredEstimate& scored, double& value) {
   if (scored.estimate().sweeps.empty() || scored.estimate().poses.empty()) return false;
   const auto* last_sweep = last_covered(scored);
@@ -111,7 +106,7 @@ bool pose_nees(const ScoredEstimate& scored, double& value) {
   const PoseState true_pose = truth_track(scored).pose(last.time_ns);
   Eigen::Matrix<double, 6, 1> error;
   error << true_pose.p_WA_m - aligned.p_WA_m, so3::log((true_pose.q_WA * aligned.q_WA.conjugate()).normalized());
-  // The covariance is in axes of the estimate's world, so the error is rotated to these axes.
+  // The covariance is in axes of the estimate's world, so the pose error is rotated to these axes.
   const Eigen::Matrix3d back = alignment.transform().linear().transpose();
   error << Eigen::Vector3d(back * error.head<3>()), Eigen::Vector3d(back * error.tail<3>());
   const Eigen::LLT<Eigen::Matrix<double, 6, 6>> factor(last.covariance);

@@ -42,13 +42,11 @@ Eigen::Isometry3d mounting_of(const Estimate& estimate, const sim::Sensors& sens
   return T_BA;
 }
 
-/// Computes the alignment of an estimate with the truth, as for the scores.
 Alignment alignment_of(const Estimate& estimate, const StoredTruth* truth) {
   if (truth == nullptr) return {};
   for (const PoseState& pose : estimate.poses) {
     const std::size_t before = static_cast<std::size_t>(std::max<std::int64_t>(pose.time_ns, 0) / truth->period_ns);
     if (pose.time_ns < 0 || before >= truth->size()) continue;
-    // The two states next to the requested time are sufficient for interpolation.
     const sim::Truth around = truth->states(before, std::min(before + 2, truth->size()));
     const TruthTrack track(around, estimate.frame);
     const std::int64_t after_ns = pose.time_ns % truth->period_ns;
@@ -65,7 +63,6 @@ Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
   return out;
 }
 
-/// Transforms a pose and its covariance by the alignment with the truth.
 PoseState moved_by(const Alignment& alignment, const PoseState& pose) {
   PoseState out = alignment.apply(pose);
   Eigen::Matrix<double, 6, 6> turn = Eigen::Matrix<double, 6, 6>::Zero();
@@ -74,8 +71,7 @@ PoseState moved_by(const Alignment& alignment, const PoseState& pose) {
   return out;
 }
 
-/// Converts a pose of frame A to a pose of the body B. An attitude error phi displaces the body's position by phi x
-/// (lever arm in W).
+/// An attitude error phi displaces the body's position by phi x (lever arm in world axes).
 BagTrack::Pose body_pose(const PoseState& moved, const Eigen::Isometry3d& T_AB) {
   const Eigen::Quaterniond q_WA = moved.q_WA.normalized();
   BagTrack::Pose out;
@@ -88,11 +84,10 @@ BagTrack::Pose body_pose(const PoseState& moved, const Eigen::Isometry3d& T_AB) 
   return out;
 }
 
-/// BodyAt interpolates the body's pose at a given time.
 class BodyAt {
  public:
   explicit BodyAt(const std::vector<BagTrack::Pose>& poses) : poses_(poses) {}
-  /// Interpolates the pose; returns false unless there are poses both before and after `time_ns`.
+  /// Returns false unless there are poses both before and after `time_ns`.
   bool operator()(std::int64_t time_ns, Eigen::Isometry3d& T_WB) const {
     const auto after = std::lower_bound(poses_.begin(), poses_.end(), time_ns,
                                         [](const BagTrack::Pose& pose, std::int64_t t) { return pose.time_ns < t; });
@@ -112,8 +107,6 @@ class BodyAt {
   const std::vector<BagTrack::Pose>& poses_;
 };
 
-/// Transforms the points of one sweep to W with the interpolated poses of the track. The list `hit_W_m` contains the
-/// true hit of each point, or is empty.
 BagCloud cloud_of(const BagTrack& track, const sim::LidarRecord& sweep, const std::vector<Eigen::Vector3f>& hit_W_m) {
   const BodyAt body_at(track.poses);
   BagCloud cloud;
@@ -128,8 +121,6 @@ BagCloud cloud_of(const BagTrack& track, const sim::LidarRecord& sweep, const st
   return cloud;
 }
 
-/// Adds the point clouds of the first lidar, one per sweep. Each cloud is computed on demand from `sensors`, `points`
-/// and `truth`.
 void add_clouds(const sim::Sensors& sensors, const std::vector<PointStore>* points, const StoredTruth* truth,
                 BagTrack& track) {
   if (sensors.lidars.empty()) return;
@@ -147,7 +138,6 @@ void add_clouds(const sim::Sensors& sensors, const std::vector<PointStore>* poin
   };
 }
 
-/// Throws BadInput unless the estimate in `path` was computed from sensor data with the digest `own`.
 void require_own(const std::filesystem::path& path, const std::string& own) {
   const std::string made_from = estimated_sensors(path);
   if (made_from.empty() || made_from == own) return;
@@ -157,7 +147,6 @@ void require_own(const std::filesystem::path& path, const std::string& own) {
                   made_from, own));
 }
 
-/// Converts a method name such as "slam/tumble" to a name that ROS accepts for topics and frames.
 std::string plain_name(const std::string& method) {
   std::string stem;
   for (const char c : method) stem += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';

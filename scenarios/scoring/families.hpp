@@ -5,8 +5,6 @@
 
 #include "scenarios/scoring/score.hpp"
 
-/// families.hpp declares all groups of metrics. Each group has one source file, with one function and one list entry
-/// per metric. A new group needs a declaration here and a call in score.cpp.
 namespace tumble::scenarios {
 
 std::vector<Metric> rate_metrics();
@@ -22,15 +20,12 @@ std::vector<Metric> sweep_border_metrics();
 std::vector<Metric> time_offset_metrics();  ///< for all kinds
 std::vector<Metric> health_metrics();       ///< for all kinds: does the health detect wrong estimates?
 
-/// Quantities other than metrics: costs, motion values, quantities for binned metrics.
 std::vector<MetricInfo> cost_quantities();
 std::vector<MetricInfo> motion_quantities();
 std::vector<MetricInfo> binned_rate_quantities();
 
-/// Probability that a normal variable is within three standard deviations.
 inline constexpr double kNormal3Sigma = 0.9973;
 
-/// Returns the root mean square of the values, or NaN for an empty list.
 double rms(std::span<const double> values);
 
 }  // namespace tumble::scenarios

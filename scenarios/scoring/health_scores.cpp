@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The health metrics measure whether an estimate is wrong, and whether its health reports the error.
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
@@ -18,12 +17,11 @@ namespace {
 
 constexpr double kWrongDeviations = 5.0;
 // Independent of its covariance, an estimate is wrong if more than half of the samples during motion exceed an error
-// limit. The limits are a rate error of kWrongRateShare times the true rate, and a tilt error of kWrongTilt_rad.
+// limit.
 constexpr double kWrongRateShare = 0.2, kWrongTilt_rad = 0.5;
 constexpr double kMoves_rad_s = 1.0;  // samples with a smaller true rate do not count
 
-/// Errors contains the errors during motion: `deviations` in standard deviations; `gross` as relative rate error or
-/// tilt error.
+/// `deviations` are errors in standard deviations; `gross` are relative rate errors or tilt errors [rad].
 struct Errors {
   std::vector<double> deviations, gross;
 };
@@ -32,14 +30,13 @@ double deviations_of(const Eigen::VectorXd& error, const Eigen::MatrixXd& covari
   return std::sqrt(error.dot(covariance.ldlt().solve(error)));
 }
 
-/// Returns true if the quantile of the values exceeds the limit. NaN counts as the largest value.
 bool quantile_exceeds(double limit, std::vector<double> values, double share) {
   for (double& value : values) value = std::isnan(value) ? HUGE_VAL : value;
   return quantile(values, share) > limit;
 }
 
-/// Findings (suspected faults) increase the covariances. The increase is subtracted here, because with it a reported
-/// error would not count as wrong.
+/// Suspected faults increase the covariances; the increase is subtracted here, because with it a reported error would
+/// not count as wrong.
 Errors rate_errors(const ScoredEstimate& scored) {
   const std::vector<Eigen::Matrix3d>& suspect = scored.estimate().suspect_rad2_s2;
   const std::vector<PairedRate>& pairs = paired_rates(scored);
@@ -67,13 +64,13 @@ Errors attitude_errors(const ScoredEstimate& scored) {
   return out;
 }
 
-/// Returns true if a tenth of the errors exceed five standard deviations, or half of the errors exceed `gross_limit`.
+/// An estimate is wrong if a tenth of the errors exceed five standard deviations, or half of the errors exceed
+/// `gross_limit`.
 bool are_wrong(const Errors& errors, double gross_limit) {
   return quantile_exceeds(kWrongDeviations, errors.deviations, 0.9) || quantile_exceeds(gross_limit, errors.gross, 0.5);
 }
 
-/// Returns true if the error of the last pose exceeds five standard deviations. The error is that of the metric
-/// `pose_nees`, or the position error if this metric does not apply. Returns nothing for an estimate without
+/// Returns whether the error of the last pose exceeds five standard deviations; empty for an estimate without
 /// covariances.
 std::optional<bool> pose_is_wrong(const ScoredEstimate& scored, Kind kind) {
   double nees = 0.0;

@@ -20,9 +20,9 @@ constexpr float kSamePointM = 1e-3f;     // points in one cell of this size are 
 constexpr double kSeenRangeM = 100.0;    // surface points farther from the start need not be in the map
 
 static_assert(kErrorLimitM > kToleranceM && kErrorLimitM > kFineToleranceM,
-              "an error at the limit must exceed both tolerances");
+              "the limit of map errors must exceed both tolerances of map points");
 
-// Returns the map points in W. The estimate's position and yaw are aligned with the truth at the start.
+// The map's position and yaw are aligned with the true pose at the start.
 std::vector<Eigen::Vector3f> map_in_world(const ScoredEstimate& scored) {
   const Estimate& estimate = scored.estimate();
   const Eigen::Isometry3d to_world = paired_track(scored).alignment.transform();
@@ -34,8 +34,6 @@ std::vector<Eigen::Vector3f> map_in_world(const ScoredEstimate& scored) {
   return points;
 }
 
-// Returns the true points at which rays of all sweeps hit the static world. Hits on the robot's cage have no surface id
-// and are omitted.
 std::vector<Eigen::Vector3f> seen_surface(const sim::Truth& truth) {
   std::vector<Eigen::Vector3f> hits;
   const sim::LidarTruth& lidar = truth.lidars.front();
@@ -46,7 +44,6 @@ std::vector<Eigen::Vector3f> seen_surface(const sim::Truth& truth) {
   return one_per_cell(hits, kSurfaceCellM);
 }
 
-// Returns the distance of each finite map point from the true surface, limited to kErrorLimitM.
 std::vector<float> map_distances_m(const ScoredEstimate& scored) {
   std::vector<Eigen::Vector3f> finite;
   for (const Eigen::Vector3f& point : scored.once(map_in_world)) {
@@ -107,8 +104,7 @@ bool map_coverage(const ScoredEstimate& scored, double& value) {
   return share.has_value();
 }
 
-// The metric is 1 for a failed map, and otherwise 0. A method without a map fails, except for a trajectory without
-// sweeps, which comes from an external program.
+// A method without a map fails, except for a trajectory without sweeps, which comes from an external program.
 bool failed(const ScoredEstimate& scored, double& value) {
   const Estimate& estimate = scored.estimate();
   if (scored.surface() == nullptr || (estimate.sweeps.empty() && estimate.map.empty())) return false;

@@ -31,8 +31,7 @@ std::vector<std::string> metrics_from(Kind kind, Place least) {
   return names;
 }
 
-/// Returns the distance from a target. If value and target are positive, half and twice the target have equal
-/// distances.
+/// Half and twice a positive target have equal distances from the target.
 double distance(double value, double target) {
   return value > 0.0 && target > 0.0 ? std::abs(std::log(value / target)) : std::abs(value - target);
 }

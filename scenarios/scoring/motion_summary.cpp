@@ -18,8 +18,6 @@ constexpr double kMovingRate_rad_s = 0.3;
 constexpr double kImpact_m_s2 = 20.0;
 constexpr std::int64_t kQuiet_ns = 20'000'000;
 
-/// MovingSpan contains the indices of the first and the last physics sample at which the body moves. If the body never
-/// moves, `first` exceeds `last`.
 struct MovingSpan {
   std::size_t first = 1, last = 0;
 };
@@ -64,7 +62,7 @@ MotionSummary summarise_motion(const sim::Sensors& sensors, const sim::Truth& tr
   const ClippingTruth clipping(sensors, truth);
   if (truth.period_ns <= 0 || truth.label.size() != truth.p_WB_m.size() ||
       truth.f_B_m_s2.size() != truth.p_WB_m.size()) {
-    throw BadInput("the truth is damaged: its physics samples have different lengths");
+    throw BadInput("the truth of the recording is damaged: its physics quantities have different numbers of samples");
   }
   MotionSummary out;
   for (std::size_t k = 1; k < truth.p_WB_m.size(); ++k) out.path_m += (truth.p_WB_m[k] - truth.p_WB_m[k - 1]).norm();

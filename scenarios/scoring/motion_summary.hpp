@@ -8,8 +8,7 @@
 
 namespace tumble::scenarios {
 
-/// MotionSummary contains statistics of a simulated motion, to compare a scenario with a published experiment. All
-/// statistics come from the truth.
+/// MotionSummary contains statistics of a simulated motion, to compare a scenario with a published experiment.
 struct MotionSummary {
   double moving_s = 0.0;            ///< from the first to the last time with more than 0.1 m/s or 0.3 rad/s
   double rest_at_end_s = 0.0;       ///< from the last time of motion to the end of the recording
@@ -28,8 +27,7 @@ struct MotionSummary {
   std::size_t accel_clipped_samples = 0;  ///< samples with a clipped accelerometer axis
 };
 
-/// Computes the statistics of a motion in O(N). Throws BadInput if sensors and truth belong to different recordings, or
-/// if there is no IMU.
+/// Throws BadInput if sensors and truth belong to different recordings, or if there is no IMU.
 MotionSummary summarise_motion(const sim::Sensors& sensors, const sim::Truth& truth);
 
 }  // namespace tumble::scenarios

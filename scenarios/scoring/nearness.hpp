@@ -11,8 +11,7 @@
 
 namespace tumble::scenarios {
 
-/// Nearness tests exactly whether a point of a set is within a fixed distance of a query point. Cells as wide as the
-/// distance contain the points, so each query checks 27 cells. Non-finite points are ignored.
+/// The points are in cells as wide as the distance, so each query checks 27 cells.
 class Nearness {
  public:
   Nearness(std::span<const Eigen::Vector3f> points_m, float distance_m);
@@ -25,7 +24,6 @@ class Nearness {
   SpatialHash cells_;                                            ///< key -> index in ranges_
 };
 
-/// Returns the first point in each cell of size `cell_m`, in the original order, without non-finite points.
 std::vector<Eigen::Vector3f> one_per_cell(std::span<const Eigen::Vector3f> points_m, float cell_m);
 
 }  // namespace tumble::scenarios

@@ -7,13 +7,12 @@
 
 namespace tumble::scenarios {
 
-/// OutcomeStatus describes how a method's run on a recording ended. The method causes `ok`, `diverged` (score.hpp,
-/// `verdict`), `failed` (it returned an error), `crashed` and `timeout`. The machine causes `killed`: a signal from
-/// outside, no memory, or no process. `rejected` means that the scenario cannot be simulated with this seed.
+/// The method causes `ok`, `diverged` (score.hpp, `verdict`), `failed` (it returned an error), `crashed` and `timeout`.
+/// The machine causes `killed`: a signal from outside, no memory, or no process. `rejected` means that the scenario
+/// cannot be simulated with this seed.
 enum class OutcomeStatus { ok, diverged, failed, crashed, timeout, killed, rejected };
 
 std::span<const OutcomeStatus> outcome_statuses();
-/// Returns the name of the status in the results database.
 const char* to_string(OutcomeStatus status);
 std::optional<OutcomeStatus> outcome_status_named(std::string_view name);
 

@@ -10,7 +10,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-// Shortest path for which a relative error is computed.
+// Shortest path for which a relative position error is computed
 constexpr double kPathMinM = 0.05;
 constexpr double kUnmovedM = 0.02;  // errors before the first motion of this size are not scored
 
@@ -66,8 +66,7 @@ bool rest_drift(const ScoredEstimate& scored, double& value) {
   return any;
 }
 
-/// Returns squared position errors divided by their reported variances, from the start of the motion. The errors are in
-/// the axes of the covariance: those of the estimate's world.
+/// Returns squared position errors divided by their reported variances, in the axes of the estimate's world.
 std::vector<double> normalised_position_errors(const ScoredEstimate& scored) {
   const Estimate& estimate = scored.estimate();
   const PairedTrack& track = paired_track(scored);

@@ -4,7 +4,6 @@
 #include "scenarios/scoring/cost.hpp"
 #include "scenarios/scoring/families.hpp"
 
-/// The quantities in quantities.cpp are stored and displayed like metrics.
 namespace tumble::scenarios {
 
 std::vector<MetricInfo> cost_quantities() {

@@ -13,7 +13,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-// ErrorNorms contains the norms of the rate errors, separately for samples with and without a clipped axis.
 struct ErrorNorms {
   std::vector<double> clipped_rad_s, free_rad_s;
 };
@@ -43,8 +42,7 @@ bool clipped_max(const ScoredEstimate& scored, double& value) {
   return quantile_of(scored.once(error_norms).clipped_rad_s, 1.0, value);
 }
 
-// Computes the largest error over all intervals of consecutive samples with a clipped axis. The error of an interval is
-// the norm of its mean error vector, in which random errors cancel.
+// The error of an interval with a clipped axis is the norm of its mean error vector, in which random errors cancel.
 bool segment_max(const ScoredEstimate& scored, double& value) {
   std::vector<double> offsets;
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -66,7 +64,6 @@ bool segment_max(const ScoredEstimate& scored, double& value) {
   return quantile_of(offsets, 1.0, value);
 }
 
-// Returns true if the robot was in contact during the sample that ends at time_ns.
 bool in_contact(const ScoredEstimate& scored, std::int64_t time_ns) {
   const sim::Truth& truth = scored.truth();
   if (truth.period_ns <= 0 || truth.label.empty()) return false;
@@ -80,9 +77,8 @@ bool in_contact(const ScoredEstimate& scored, std::int64_t time_ns) {
   return false;
 }
 
-// NormalisedErrors contains squared rate errors divided by their reported variances. The errors of clipped axes are at
-// all samples (`all`), in flight (`flight`) and in contact (`impact`). `cross_axis` contains the errors of unclipped
-// axes that a clipped element disturbs. Rates without a covariance are left out.
+// Squared rate errors divided by their reported variances: clipped axes at all samples (`all`), in flight (`flight`)
+// and in contact (`impact`); and unclipped axes that a clipped element disturbs (`cross_axis`).
 struct NormalisedErrors {
   std::vector<double> all, flight, impact, cross_axis;
 };

@@ -16,7 +16,6 @@ constexpr double kBeyondShare = 0.02, kBeyondErrors = 4.0;
 constexpr std::size_t kLeastSamples = 5;
 constexpr double kSlopePrior = 0.03, kSpread_rad_s = 0.02;
 
-/// Side is one axis and one sign of the gyro's readings, with the two other axes.
 struct Side {
   int axis, first, second;
   double sign;
@@ -31,8 +30,6 @@ double plane_at(const ReferenceRail& rail, const Side& side, const Eigen::Vector
   return rail.rail_rad_s + rail.slopes[0] * y[side.first] + rail.slopes[1] * y[side.second];
 }
 
-/// Fits the saturation plane s y_j = r + c . y to the readings y. The cross-axis sensitivities c have a prior with mean
-/// zero.
 ReferenceRail fit(const Side& side, std::span<const Eigen::Vector3d> readings) {
   Eigen::Matrix3d N = Eigen::Matrix3d::Zero();
   Eigen::Vector3d b = Eigen::Vector3d::Zero();
@@ -91,7 +88,6 @@ std::vector<std::uint8_t> clipped_by_reference(std::span<const Eigen::Vector3d> 
     const Side side = side_of(i);
     for (std::size_t k = 0; k < reading.size(); ++k) {
       const double least = (1.0 - kAtPlane) * plane_at(rails[i], side, reading[k]);
-      // Comparisons with NaN are false, so a sample without a reference does not count as clipped.
       const bool at = side.sign * reading[k][side.axis] >= least && side.sign * reference[k][side.axis] >= least;
       if (at && reference[k].allFinite()) clipped[k] = static_cast<std::uint8_t>(clipped[k] | (1u << side.axis));
     }

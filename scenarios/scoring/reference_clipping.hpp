@@ -7,8 +7,6 @@
 #include <span>
 #include <vector>
 
-/// reference_clipping.hpp detects the clipped readings of a real gyro by a reference of the rate, independently of the
-/// estimator.
 namespace tumble::scenarios {
 
 /// ReferenceRail is the saturation limit of axis j with sign s, a tilted plane of readings: s y_j = rail + slopes *
@@ -20,23 +18,19 @@ struct ReferenceRail {
   Eigen::Vector2d slopes = Eigen::Vector2d::Zero();
 };
 
-/// Estimates the saturation planes of the three axes for both signs.
+/// Estimates the saturation planes of the three axes for both signs from a reference of the rate, independently of the
+/// estimator.
 ///
-/// A candidate is a sample with a known reference rate, within 5 % of the extreme reading of the axis and sign. A
-/// candidate is confirmed if the reference exceeds the reading by more than 2 %. The difference must also exceed four
-/// times the median difference between reading and reference on this axis. A saturation limit exists if at least five
-/// candidates, and at least half of the candidates, are confirmed.
+/// A candidate is a sample within 5 % of the extreme reading of the axis and sign. A candidate is confirmed if the
+/// reference exceeds the reading by more than 2 %, and by four times the median difference between reading and
+/// reference. A saturation limit exists if at least five candidates, and at least half of the candidates, are
+/// confirmed.
 ///
 /// The plane is the least-squares fit to the confirmed samples, with a prior of 0 +- 0.03 for the cross-axis
 /// sensitivities and a residual deviation of 0.02 rad/s. A second fit uses only samples within 2 % of the first plane.
-/// Axis j of a sample is clipped if reading and reference both reach 0.98 of the plane. If the reference is NaN, no
-/// axis of the sample counts as clipped.
-///
-/// `reading` and `reference` are parallel, in IMU axes [rad/s]. The cost is O(N).
 std::array<ReferenceRail, 6> reference_rails(std::span<const Eigen::Vector3d> reading,
                                              std::span<const Eigen::Vector3d> reference);
 
-/// Returns the clipped axes of each sample; bit j marks axis j.
 std::vector<std::uint8_t> clipped_by_reference(std::span<const Eigen::Vector3d> reading,
                                                std::span<const Eigen::Vector3d> reference);
 

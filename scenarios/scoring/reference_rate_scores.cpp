@@ -12,15 +12,13 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// A sample is certainly unclipped if every axis is below kFarShare times its extreme reading. The body rotates if the
-/// rate exceeds kRotating_rad_s.
+/// A sample is certainly unclipped if every axis is below kFarShare times its extreme reading.
 constexpr double kFarShare = 0.9, kRotating_rad_s = 0.5;
 
 double error_norm(const Eigen::Vector3d& estimate, const Eigen::Vector3d& reference) {
   return (estimate - reference).norm();
 }
 
-/// Returns the error of the norm of the rate, which does not depend on the axes.
 double error_speed(const Eigen::Vector3d& estimate, const Eigen::Vector3d& reference) {
   return std::abs(estimate.norm() - reference.norm());
 }
@@ -32,8 +30,6 @@ double error_axis(const Eigen::Vector3d& estimate, const Eigen::Vector3d& refere
 
 using ErrorOf = double (*)(const Eigen::Vector3d&, const Eigen::Vector3d&);
 
-/// Computes a percentile of the rate error at clipped samples. The metric of a single axis uses the samples in which
-/// this axis is clipped.
 template <ErrorOf kError, int kPercent, unsigned kAxes>
 bool clipped_error(const ScoredEstimate& scored, double& value) {
   if (!clipping_truth(scored).is_reference()) return false;
@@ -45,7 +41,6 @@ bool clipped_error(const ScoredEstimate& scored, double& value) {
   return quantile_of(errors, 0.01 * kPercent, value);
 }
 
-/// Computes a percentile of the difference between reference and gyro, at unclipped samples during rotation.
 template <ErrorOf kError, int kPercent>
 bool reference_error(const ScoredEstimate& scored, double& value) {
   const ClippingTruth& truth = clipping_truth(scored);
@@ -62,8 +57,8 @@ bool reference_error(const ScoredEstimate& scored, double& value) {
   return quantile_of(errors, 0.01 * kPercent, value);
 }
 
-/// Returns the variance of the reference rate per axis. The standard deviation is 1.4826 times the median absolute
-/// difference between reference and unclipped gyro, which is assumed to be normally distributed.
+/// The standard deviation of the reference rate is 1.4826 times the median absolute difference between reference and
+/// unclipped gyro, which is assumed to be normally distributed.
 Eigen::Vector3d reference_variance(const ScoredEstimate& scored, const ClippingTruth& truth) {
   const auto& reading = scored.sensors().imus.front().gyro_rad_s;
   Eigen::Vector3d variance = Eigen::Vector3d::Zero();
@@ -79,7 +74,7 @@ Eigen::Vector3d reference_variance(const ScoredEstimate& scored, const ClippingT
   return variance;
 }
 
-/// Computes the coverage like rate_coverage_3sigma, but adds the variance of the reference to the covariance.
+/// The variance of the reference instrument is added to the reported covariance.
 bool reference_coverage(const ScoredEstimate& scored, double& value) {
   const ClippingTruth& truth = clipping_truth(scored);
   if (!truth.is_reference()) return false;
@@ -140,7 +135,7 @@ void add_pair(const std::string& name, const std::string& doc, std::vector<Metri
                  clipped_error<kError, 90, kAxes>});
 }
 
-/// Metrics that describe the reference and not the method are not ranked.
+/// Metrics that describe the reference instrument and not the method are not ranked.
 template <ErrorOf kError>
 void add_reference(const std::string& name, const std::string& doc, std::vector<Metric>& all) {
   all.push_back({{"rate_" + name + "_median_rad_s", Unit::rad_s, "median " + doc, Sense::none},

@@ -8,11 +8,10 @@
 
 namespace tumble::scenarios {
 
-/// The end error starts at this registered sweep, counted from 1 (Deschenes et al.). The first sweep, which starts the
-/// map, counts.
+/// The end error starts at this registered sweep (Deschenes et al.); the count starts at 1 with the sweep that starts
+/// the map.
 inline constexpr std::size_t kStartSweep = 6;
 
-/// Returns the indices of the sweeps that were not rejected.
 std::vector<std::size_t> registered_sweeps(const Estimate& estimate);
 
 }  // namespace tumble::scenarios

@@ -26,11 +26,10 @@ double value_of(std::span<const Score> scores, const std::string& metric) {
 
 namespace {
 
-// Longest accepted gap of an estimate, as a fraction of the recording.
+// Longest accepted gap of an estimate, as a fraction of the recording
 constexpr double kHoleMaxShare = 0.2;
-// Smallest accepted fraction of gyro samples with an estimated rate.
+// Smallest accepted fraction of gyro samples with an estimated rate
 constexpr double kAnsweredMin = 0.9;
-// A smaller end error is never a divergence, even for a short path.
 constexpr double kEndErrorFloorM = 1.0;
 
 std::vector<Metric> all_metrics() {
@@ -44,7 +43,6 @@ std::vector<Metric> all_metrics() {
   return all;
 }
 
-// Returns the start of the primary IMU; for a map, the start of the lidar if it is later.
 std::int64_t sensors_start_ns(const sim::Sensors& sensors, Kind kind) {
   std::int64_t start_ns = 0;
   if (!sensors.imus.empty() && !sensors.imus.front().time_ns.empty())
@@ -54,7 +52,6 @@ std::int64_t sensors_start_ns(const sim::Sensors& sensors, Kind kind) {
   return start_ns;
 }
 
-// Returns true if the states cover the recording from `start_ns` without a long gap.
 template <typename State>
 bool reaches(const std::vector<State>& states, std::int64_t start_ns, std::int64_t end_ns) {
   const double hole_max = kHoleMaxShare * static_cast<double>(end_ns);
@@ -84,7 +81,6 @@ bool attitudes_hold(const ScoredEstimate& scored) {
   return reaches(scored.estimate().attitudes, sensors_start_ns(scored.sensors(), Kind::attitude), truth.last_ns());
 }
 
-/// Largest plausible distance from the origin: no rolling or tumbling robot travels this far.
 constexpr double kFarthest_m = 1e7;
 
 bool poses_hold(const ScoredEstimate& scored) {
@@ -104,8 +100,7 @@ bool poses_reach_and_hold(Kind kind, const ScoredEstimate& scored) {
          poses_hold(scored);
 }
 
-// Returns false if too few sweeps are registered in a run that is long enough for the end error. For an external
-// trajectory without sweeps, returns true.
+// The end error needs six registered sweeps; an external trajectory without sweeps is accepted.
 bool sweeps_hold(const ScoredEstimate& scored) {
   const Estimate& estimate = scored.estimate();
   for (const auto& sweep : estimate.sweeps) {

@@ -12,30 +12,23 @@
 
 namespace tumble::scenarios {
 
-/// Score is the value of one metric for one outcome. The metric's name ends in its unit (docs/design.md, "Methods and
-/// scores").
 struct Score {
   std::string metric;
   double value;
 };
 
-/// Returns the score of `metric`, or null.
 const Score* find_score(std::span<const Score> scores, const std::string& metric);
-/// Returns the value of `metric`, or NaN.
 double value_of(std::span<const Score> scores, const std::string& metric);
 
-/// Metric is a registered metric: its description, and the function that computes it.
 struct Metric {
   MetricInfo info;
   Kind kind;
-  /// Computes `value`. Returns false if the metric does not apply, for example without a clipped sample or a map.
+  /// Returns false if the metric does not apply, for example without a clipped sample or a map.
   bool (*compute)(const ScoredEstimate& scored, double& value);
 };
 
 std::span<const Metric> metrics();
 
-/// Computes the scores of all metrics that apply to a kind of method, in order of registration. The same ScoredEstimate
-/// for `score` and `verdict` saves time.
 std::vector<Score> score(Kind kind, const ScoredEstimate& scored);
 std::vector<Score> score(Kind kind, const Estimate& estimate, const ScoringInput& input);
 
@@ -47,7 +40,7 @@ std::vector<Score> score(Kind kind, const Estimate& estimate, const ScoringInput
 OutcomeStatus verdict(Kind kind, const ScoredEstimate& scored);
 OutcomeStatus verdict(Kind kind, const Estimate& estimate, const ScoringInput& input);
 
-/// Returns true if a trajectory is finite and its end error is below its path length. Unlike `verdict`, gaps are not
+/// Returns true if a trajectory is finite and its end error is below its path length; unlike `verdict`, gaps are not
 /// tested.
 bool trajectory_holds(const ScoredEstimate& scored);
 

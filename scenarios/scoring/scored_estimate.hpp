@@ -10,18 +10,17 @@
 
 namespace tumble::scenarios {
 
-/// ScoringInput contains the parts of a recording that scoring needs. If `surface` is null, map scores are omitted.
+/// If `surface` is null, map scores are omitted.
 struct ScoringInput {
   const sim::Sensors* sensors = nullptr;
   const sim::Truth* truth = nullptr;
   const sim::Surface* surface = nullptr;
 };
 
-/// ScoredEstimate refers to an estimate and its recording, and caches results that several metrics share, such as
-/// paired poses and map distances. ScoredEstimate is not thread-safe.
+/// ScoredEstimate refers to an estimate and its recording, and caches results that several metrics share.
+/// ScoredEstimate is not thread-safe.
 class ScoredEstimate {
  public:
-  /// Throws BadInput if the sensors or the truth are missing.
   ScoredEstimate(const Estimate& estimate, const ScoringInput& input);
 
   const Estimate& estimate() const { return *estimate_; }
@@ -29,8 +28,6 @@ class ScoredEstimate {
   const sim::Truth& truth() const { return *input_.truth; }
   const sim::Surface* surface() const { return input_.surface; }
 
-  /// Returns `make(*this)`, which is computed at the first call and then cached. `make` must depend only on this
-  /// ScoredEstimate and may call once(). If `make` throws, nothing is cached.
   template <typename Made>
   const Made& once(Made (*make)(const ScoredEstimate&)) const {
     const auto key = reinterpret_cast<void (*)()>(make);  // used as a key, never called

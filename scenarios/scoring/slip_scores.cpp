@@ -14,16 +14,14 @@
 ///
 /// A slip event is a time interval with the contact labels slip and slide. A slip event may contain up to kBridge_ns of
 /// grip, and up to kHop_ns of air in total, because an unbalanced spinning sphere hops. A true event is scored if it
-/// lasts at least kShortest_ns and the contact speed reaches kLeastSpeed_m_s. Other true events cannot be distinguished
-/// from grip and cause no position error. The scores do not distinguish slip and slide.
+/// lasts at least kShortest_ns and the contact speed reaches kLeastSpeed_m_s. Weaker events cannot be distinguished
+/// from grip and cause no position error.
 ///
-/// An estimated event is correct if true events cover at least half of it. For this test, weak and short true events
-/// also count, and each true event is widened by kMargin_ns. A true event is detected if correct estimated events cover
-/// at least half of it.
+/// An estimated event is correct if true events, widened by kMargin_ns, cover at least half of it. A true event is
+/// detected if correct estimated events cover at least half of it.
 ///
 /// The position is lost in a true event if the horizontal error grows by more than kLost_m during the event. The
-/// estimate reports the loss if its horizontal standard deviation grows by more than kFlagged_m. For both tests, the
-/// event is widened by kMargin_ns on either side.
+/// estimate reports the loss if its horizontal standard deviation grows by more than kFlagged_m.
 namespace tumble::scenarios {
 
 namespace {
@@ -44,7 +42,6 @@ bool moves(sim::ContactLabel label) {
   return label == sim::ContactLabel::slip || label == sim::ContactLabel::slide;
 }
 
-/// Events joins intervals of slip or slide to slip events. The contact labels must be in order of time.
 class Events {
  public:
   void add(sim::ContactLabel label, std::int64_t begin_ns, std::int64_t end_ns) {
@@ -64,8 +61,8 @@ class Events {
 
 std::vector<SlipSpan> true_spans(const sim::Truth& truth) {
   if (truth.label.size() != truth.q_WB.size()) {
-    throw BadInput(fmt::format("truth.label has {} entries; it must have {}, one per physics step", truth.label.size(),
-                               truth.q_WB.size()));
+    throw BadInput(fmt::format("the truth has {} contact labels; it must have {}, one per physics step",
+                               truth.label.size(), truth.q_WB.size()));
   }
   Events events;
   for (std::size_t k = 0; k < truth.label.size(); ++k) {
@@ -85,10 +82,10 @@ bool counts(const SlipSpan& span, const sim::Truth& truth) {
   return false;
 }
 
-/// Returns the intervals in which the estimate detects slip. A contact label applies until the time of the next label.
+/// A contact label of the estimate applies until the time of the next label.
 std::vector<SlipSpan> claimed_spans(const Estimate& estimate) {
   if (estimate.contacts.size() != estimate.poses.size()) {
-    throw BadInput(fmt::format("the estimate has {} contacts for {} poses; their numbers must be equal",
+    throw BadInput(fmt::format("the estimate has {} contact labels for {} poses; the two numbers must be equal",
                                estimate.contacts.size(), estimate.poses.size()));
   }
   Events events;
@@ -123,7 +120,6 @@ struct MatchedEvents {
 
 std::optional<MatchedEvents> match_events(const ScoredEstimate& scored) {
   const sim::Truth& truth = scored.truth();
-  // A reference instrument measures poses, but no contact labels.
   if (scored.estimate().contacts.empty() || truth.label.empty()) return std::nullopt;
   const std::vector<SlipSpan> all = true_spans(truth);
   MatchedEvents out;
@@ -170,12 +166,10 @@ bool delay(const ScoredEstimate& scored, double& value) {
   return true;
 }
 
-/// Passed states for one true slip event: was the position lost, and did the estimate report the loss?
 struct Passed {
   bool lost = false, flagged = false;
 };
 
-/// Returns the scored true slip events during which the estimate has poses; none if it has no covariance.
 std::vector<Passed> passed_events(const ScoredEstimate& scored) {
   const sim::Truth& truth = scored.truth();
   std::vector<Passed> out;

@@ -16,8 +16,6 @@ struct Jumps {
   std::vector<double> rate_rad_s;
 };
 
-// Computes the error of the velocity change at each boundary between two sweeps. The velocity at a boundary is that of
-// the nearest step inside each sweep.
 Jumps border_jumps(const ScoredEstimate& scored) {
   const Estimate& estimate = scored.estimate();
   Jumps jumps;
@@ -26,7 +24,7 @@ Jumps border_jumps(const ScoredEstimate& scored) {
   for (std::size_t k = 1; k < estimate.sweeps.size(); ++k) {
     const auto& before = estimate.sweeps[k - 1].trajectory;
     const auto& after = estimate.sweeps[k].trajectory;
-    // If a sweep is missing between two listed sweeps, they have no common boundary.
+    // If a sweep is missing between two listed sweeps, the sweeps have no common boundary.
     if (before.size() < 2 || after.size() < 2) continue;
     if (after.front().time_ns - before.back().time_ns > after[1].time_ns - after[0].time_ns) continue;
     const PoseState poses[4] = {before[before.size() - 2], before.back(), after[0], after[1]};

@@ -13,14 +13,12 @@ namespace {
 /// and `change` is the rate of change of the truth.
 class OffsetFit {
  public:
-  /// Adds a pair of values to the fit if both are known.
   void add(const Eigen::Vector3d& behind, const Eigen::Vector3d& change_per_s) {
     if (!change_per_s.allFinite()) return;
     product_ += change_per_s.dot(behind);
     square_ += change_per_s.squaredNorm();
   }
 
-  /// Computes the time offset; returns false if the truth did not change.
   bool offset_s(double& value) const {
     if (!(square_ > std::numeric_limits<double>::min())) return false;
     value = product_ / square_;
@@ -47,7 +45,6 @@ bool rate_offset(const ScoredEstimate& scored, double& value) {
   return fit.offset_s(value);
 }
 
-/// Returns the rotation vector from the estimated to the true attitude, in the estimated axes.
 Eigen::Vector3d lacking_rad(const Eigen::Quaterniond& q_estimate, const Eigen::Quaterniond& q_true) {
   return so3::log(q_estimate.conjugate() * q_true);
 }

@@ -9,8 +9,8 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr double kSegmentM = 1.0;
-// Path length between the starts of two segments. Steps along the path do not count the poses of a stationary robot
-// many times.
+// Segments of the path start at this distance from each other, so the poses of a stationary robot do not count many
+// times.
 constexpr double kSegmentStepM = 0.05;
 
 bool ate(const ScoredEstimate& scored, double& value) {
@@ -37,7 +37,6 @@ struct SegmentErrors {
   std::vector<double> rotation_rad;
 };
 
-// Returns the motion from pose a to pose b, in the axes of a.
 Eigen::Isometry3d relative(const PoseState& a, const PoseState& b) {
   const Eigen::Quaterniond q_Wa_inverse = a.q_WA.conjugate();
   return Eigen::Translation3d(q_Wa_inverse * (b.p_WA_m - a.p_WA_m)) * (q_Wa_inverse * b.q_WA);

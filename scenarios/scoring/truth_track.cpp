@@ -30,7 +30,6 @@ Eigen::Isometry3d mounting(const sim::Truth& truth, Frame frame) {
   return Eigen::Isometry3d::Identity();
 }
 
-// Returns true for each sample at rest: the body is slow during the whole time window around the sample.
 std::vector<bool> rest_mask(const sim::Truth& truth) {
   const std::size_t count = truth.p_WB_m.size();
   const bool no_position =
@@ -97,7 +96,7 @@ Eigen::Vector3d TruthTrack::position(std::size_t index) const {
 TruthTrack::Between TruthTrack::between(std::int64_t time_ns) const {
   const auto index = static_cast<std::size_t>(time_ns / truth_->period_ns);
   const double share = static_cast<double>(time_ns % truth_->period_ns) / static_cast<double>(truth_->period_ns);
-  // At the exact time of a sample, the next sample is not used, because it may be unknown.
+  // At the exact time of a truth sample, the next sample is not used, because it may be unknown.
   return {index, share > 0.0 ? std::min(index + 1, truth_->p_WB_m.size() - 1) : index, share};
 }
 

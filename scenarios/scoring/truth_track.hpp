@@ -10,42 +10,33 @@
 
 namespace tumble::scenarios {
 
-/// TruthTrack is the true motion of one frame of the robot at any time of the recording.
-///
-/// Between physics samples (0.5 ms apart), position is interpolated linearly and attitude by slerp. At 400 m/s^2 and 25
-/// rad/s, the interpolation error is below 13 um and 1 urad. The frame has its true mounting, so a calibration error is
-/// an error of the estimate.
+/// TruthTrack is the true motion of one frame of the robot at any time of the recording. Between physics samples (0.5
+/// ms apart), position is interpolated linearly and attitude by slerp. At 400 m/s^2 and 25 rad/s, the interpolation
+/// error is below 13 um and 1 urad.
 class TruthTrack {
  public:
-  /// The body is at rest if its speed and rate are below these limits at all times within kRestWindowS. If no position
-  /// is known, only the rate counts.
+  /// The body is at rest if its speed and rate are below these limits at all times within kRestWindowS.
   static constexpr double kRestWindowS = 0.1;
   static constexpr double kRestSpeedMS = 0.03;
   static constexpr double kRestRateRadS = 0.05;
 
   /// Throws BadInput if the arrays of the truth are empty or differ in length, or if the truth lacks the sensor of the
-  /// frame. The cost is proportional to the number of physics samples.
+  /// frame.
   TruthTrack(const sim::Truth& truth, Frame frame);
 
   std::int64_t last_ns() const { return last_ns_; }
-  /// Returns true if the pose is known at this time. A reference may have gaps.
   bool covers(std::int64_t time_ns) const;
-  /// Returns true if the attitude is known at this time; the position may be unknown.
   bool covers_attitude(std::int64_t time_ns) const;
 
-  /// Returns the pose of the frame in W and the velocity of its origin; NaN where the position is unknown. The attitude
-  /// must be known at `time_ns`. The cost is O(1).
+  /// Returns the pose of the frame in W and the velocity of its origin; NaN where the position is unknown.
   PoseState pose(std::int64_t time_ns) const;
-  /// Returns the angular rate of the frame, in its axes [rad/s]; NaN where the rate is unknown. The attitude must be
-  /// known at `time_ns`. The cost is O(1).
+  /// Returns the angular rate of the frame, in its axes [rad/s]; NaN where the rate is unknown.
   Eigen::Vector3d rate_rad_s(std::int64_t time_ns) const;
-  /// Returns the path length of the frame's origin since time 0 [m]. The pose must be known at `time_ns`.
+  /// Returns the path length of the frame's origin since time 0 [m]; the pose must be known at `time_ns`.
   double path_m(std::int64_t time_ns) const;
-  /// Returns true if the body is at rest around `time_ns`. The pose must be known at `time_ns`.
   bool at_rest(std::int64_t time_ns) const;
 
  private:
-  /// Between contains the samples before and after a given time, with the interpolation fraction.
   struct Between {
     std::size_t index = 0, next = 0;
     double share = 0.0;
@@ -63,7 +54,6 @@ class TruthTrack {
   std::vector<bool> rest_;
 };
 
-/// PairedPose contains the estimated and the true pose at one time, in W. The estimate is aligned with the truth.
 struct PairedPose {
   std::int64_t time_ns = 0;
   PoseState estimate;
@@ -78,24 +68,21 @@ struct Alignment {
   double yaw_rad = 0;
   Eigen::Vector3d translation_m = Eigen::Vector3d::Zero();
 
-  /// Returns the alignment that moves the pose `estimate` to the position and heading of `truth`.
   static Alignment at(const PoseState& estimate, const PoseState& truth);
   Eigen::Isometry3d transform() const;
   PoseState apply(const PoseState& pose) const;
 };
 
-/// Returns the heading of a rotation: its twist angle about z, in (-pi, pi].
+/// Returns the twist angle of a rotation about z, in (-pi, pi].
 double twist_about_z_rad(const Eigen::Quaterniond& q);
 
-/// Returns the angle of a rotation in [0, pi], accurate for small angles and near pi.
+/// Returns the angle of a rotation, in [0, pi], accurately for small angles and near pi.
 double rotation_angle_rad(const Eigen::Quaterniond& q);
 
 /// Returns the horizontal part of the attitude error phi with q_true = Exp(phi) q, after alignment of the heading, in
 /// the estimate's world.
 Eigen::Vector2d tilt_error_rad(const Eigen::Quaterniond& q_estimate, const Eigen::Quaterniond& q_true);
 
-/// PairedTrack contains the poses of an estimate with the true poses, aligned at the first pose with a known truth. The
-/// list is empty if no pose has a known truth.
 struct PairedTrack {
   Alignment alignment;
   std::vector<PairedPose> poses;

@@ -22,26 +22,22 @@ namespace {
 
 constexpr std::size_t kValuesMin = 6;  // smallest number of values for a 95 % interval of the median: 2 / 2^5 > 5 %
 
-// Double precision suffices for ranks, and is three times as fast as long double.
 using Quick = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
 
 double middle_of(double below, double above) {
   return below == above ? below : 0.5 * (below + above);
 }
 
-/// Returns the median of a sorted list of values.
 double sorted_median(std::span<const double> sorted) {
   const std::size_t n = sorted.size();
   return middle_of(sorted[(n - 1) / 2], sorted[n / 2]);
 }
 
-/// Computes the acceleration of the BCa interval by the jackknife, equation (S3) of statistics.md. For an even number
-/// of values it is zero: removing one value gives each of two medians equally often.
+/// For an even number of values, the acceleration of the BCa interval, equation (S3) of statistics.md, is zero:
+/// removing one value gives each of two medians equally often.
 double acceleration(std::span<const double> sorted) {
   const std::size_t n = sorted.size(), m = n / 2;
   if (n % 2 == 0) return 0.0;
-  // Medians after removing one value, each with its count. The removed value is above the median, below it, or the
-  // median.
   const std::array<std::pair<double, double>, 3> left = {{{middle_of(sorted[m - 1], sorted[m]), static_cast<double>(m)},
                                                           {middle_of(sorted[m], sorted[m + 1]), static_cast<double>(m)},
                                                           {middle_of(sorted[m - 1], sorted[m + 1]), 1.0}}};
@@ -59,10 +55,10 @@ double acceleration(std::span<const double> sorted) {
 }  // namespace
 
 MedianBootstrap::MedianBootstrap(std::size_t size, std::size_t resamples) : size_(size) {
-  if (size == 0) throw BadInput("bootstrap: there are no values; at least one value is needed");
-  if (resamples < 100) throw BadInput(fmt::format("bootstrap: resamples is {}; it must be at least 100", resamples));
-  // Equation (S1) of statistics.md gives the lower middle value of n uniform random numbers, and then the next larger
-  // value.
+  if (size == 0) throw BadInput("bootstrap of the median: there are no values; at least one value is needed");
+  if (resamples < 100)
+    throw BadInput(
+        fmt::format("bootstrap of the median: the number of resamples is {}; it must be at least 100", resamples));
   sim::Stream stream(size, "statistics.bootstrap");
   const auto n = static_cast<double>(size);
   const std::size_t rank = (size + 1) / 2;
@@ -79,14 +75,15 @@ MedianBootstrap::MedianBootstrap(std::size_t size, std::size_t resamples) : size
 
 Interval MedianBootstrap::interval(std::span<const double> values, double risk) const {
   if (values.size() != size_)
-    throw BadInput(
-        fmt::format("bootstrap: there are {} values, but the bootstrap was created for {}; the numbers must be equal",
-                    values.size(), size_));
+    throw BadInput(fmt::format(
+        "bootstrap of the median: there are {} values, but the bootstrap was created for {}; the numbers must be equal",
+        values.size(), size_));
   if (!(risk > 0.0 && risk < 1.0))
-    throw BadInput(fmt::format("bootstrap: risk is {}; it must be within (0, 1)", std::to_string(risk)));
+    throw BadInput(
+        fmt::format("bootstrap of the median: the risk is {}; it must be within (0, 1)", std::to_string(risk)));
   std::vector<double> sorted(values.begin(), values.end());
   if (std::any_of(sorted.begin(), sorted.end(), [](double v) { return std::isnan(v); }))
-    throw BadInput("bootstrap: a value is NaN; all values must be numbers");
+    throw BadInput("bootstrap of the median: a value is NaN; all values must be numbers");
   std::sort(sorted.begin(), sorted.end());
   const double median = sorted_median(sorted);
   if (size_ < kValuesMin) return {median, -kInfinity, kInfinity};
@@ -98,7 +95,6 @@ Interval MedianBootstrap::interval(std::span<const double> values, double risk) 
   const auto [first, last] = std::equal_range(medians.begin(), medians.end(), median);
   const auto count = static_cast<double>(medians.size());
   const double below = static_cast<double>(first - medians.begin()) + 0.5 * static_cast<double>(last - first);
-  // Equations (S2) and (S4) of statistics.md give the bias correction and the ends of the interval.
   const boost::math::normal normal;
   const double z0 = quantile(normal, std::clamp(below / count, 0.5 / count, 1.0 - 0.5 / count));
   const double a = acceleration(sorted);

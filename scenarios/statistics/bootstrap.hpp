@@ -11,17 +11,15 @@ namespace tumble::scenarios {
 
 /// MedianBootstrap computes bootstrap confidence intervals of the median for samples of one size, by equations (S1) to
 /// (S4) of statistics.md. The intervals are bias-corrected and accelerated (BCa; Efron, JASA 82:171, 1987). The ranks
-/// of the middle values of a resample do not depend on the values, so the constructor draws these ranks once. For a
-/// given sample size, the ranks are equal on every machine. The constructor evaluates `resamples` inverse beta
-/// functions; each interval costs O(resamples log resamples).
+/// of the middle values of a resample do not depend on the values, so the constructor draws the ranks once. For a given
+/// sample size, the ranks are equal on every machine.
 class MedianBootstrap {
  public:
-  /// Throws BadInput if `size` is 0 or `resamples` is below 100.
   explicit MedianBootstrap(std::size_t size, std::size_t resamples = 4000);
 
   /// Returns the median of `values` with its confidence interval of level 1 - `risk`. Infinite values rank like finite
-  /// values, so an end of the interval can be infinite. With fewer than six values, both ends are infinite, as in
-  /// `median_interval`. Throws BadInput for NaN, a wrong number of values, or a risk outside (0, 1).
+  /// values, so an end of the interval can be infinite. With fewer than six values, both ends are infinite. Throws
+  /// BadInput for NaN, a wrong number of values, or a risk outside (0, 1).
   Interval interval(std::span<const double> values, double risk = 0.05) const;
 
  private:

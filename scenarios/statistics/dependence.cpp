@@ -25,9 +25,10 @@ using CompletePairs = std::vector<std::pair<double, double>>;
 
 CompletePairs complete_pairs(std::span<const double> x, std::span<const double> y) {
   if (x.size() != y.size())
-    throw BadInput(fmt::format(
-        "dependence: the first set has {} numbers, but the second set has {}; both must have the same length", x.size(),
-        y.size()));
+    throw BadInput(
+        fmt::format("dependence of two numbers: the first list has {} values, but the second list has {}; both must "
+                    "have the same length",
+                    x.size(), y.size()));
   CompletePairs pairs;
   for (std::size_t i = 0; i < x.size(); ++i) {
     if (!std::isnan(x[i]) && !std::isnan(y[i])) pairs.emplace_back(x[i], y[i]);
@@ -46,7 +47,6 @@ double mean(std::span<const double> values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-/// Returns the ends of at most `wanted` classes of the sorted pairs. Pairs with equal values of x are in one class.
 std::vector<std::size_t> class_ends(const CompletePairs& sorted, std::size_t wanted) {
   const std::size_t n = sorted.size();
   std::vector<std::size_t> distinct;
@@ -62,7 +62,6 @@ std::vector<std::size_t> class_ends(const CompletePairs& sorted, std::size_t wan
   return ends;
 }
 
-/// Returns the mean with its confidence interval, equation (S23) of statistics.md.
 Interval mean_interval(std::span<const double> values) {
   const auto n = static_cast<double>(values.size());
   const double middle = mean(values);
@@ -121,12 +120,10 @@ Correlation rank_correlation(std::span<const double> x, std::span<const double> 
   if (aa == 0.0 || bb == 0.0) return out;
   const auto n = static_cast<double>(a.size());
   out.rho = std::clamp(ab / std::sqrt(aa * bb), -1.0, 1.0);
-  // Equation (S16) of statistics.md gives the interval of the rank correlation.
   const double half = kTwoSided95 * std::sqrt((1.0 + 0.5 * out.rho * out.rho) / (n - 3.0));
   out.low = std::tanh(std::atanh(out.rho) - half);
   out.high = std::tanh(std::atanh(out.rho) + half);
   if (a.size() < kStudentMin) return out;
-  // Equation (S17) of statistics.md gives the p-value of the rank correlation.
   const double t = std::abs(out.rho) * std::sqrt((n - 2.0) / (1.0 - out.rho * out.rho));
   out.chance = std::isinf(t) ? 0.0 : 2.0 * cdf(complement(boost::math::students_t(n - 2.0), t));
   return out;
@@ -145,7 +142,6 @@ FirstOrder first_order_index(std::span<const double> x, std::span<const double> 
   const auto wanted = static_cast<std::size_t>(1.5 * std::cbrt(static_cast<double>(pairs.size())));
   const std::vector<std::size_t> ends = class_ends(pairs, wanted);
   if (!(whole > 0.0) || ends.size() < 2) return out;
-  // Equation (S18) of statistics.md gives the variance of the class means.
   double between = 0.0;
   std::size_t begin = 0;
   for (const std::size_t end : ends) {
@@ -157,7 +153,6 @@ FirstOrder first_order_index(std::span<const double> x, std::span<const double> 
   const auto n = static_cast<double>(sorted.size()), classes = static_cast<double>(ends.size());
   out.classes = ends.size();
   if (n <= classes) return {};
-  // Equations (S19) and (S20) of statistics.md give the first-order index and its p-value.
   out.index = std::clamp(1.0 - (1.0 - explained) * (n - 1.0) / (n - classes), 0.0, 1.0);
   out.chance = cdf(complement(boost::math::chi_squared(classes - 1.0), (n - 1.0) * explained));
   return out;

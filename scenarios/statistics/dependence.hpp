@@ -7,11 +7,10 @@
 
 #include "scenarios/statistics/statistics.hpp"
 
-/// dependence.hpp computes how one number depends on another over a set of simulated runs.
 namespace tumble::scenarios {
 
-/// Returns the ranks of the values, starting from 1. Equal values get the mean of their ranks. Infinite values rank
-/// like finite values. The rank of NaN is NaN.
+/// Returns the ranks of the values, starting from 1; equal values get the mean of their ranks, and NaN has the rank
+/// NaN.
 std::vector<double> mean_ranks(std::span<const double> values);
 
 struct Correlation {
@@ -21,9 +20,7 @@ struct Correlation {
 };
 
 /// Computes Spearman's rank correlation with its confidence interval (Bonett and Wright, Psychometrika 65:23, 2000;
-/// equation (S16) of statistics.md). The p-value comes from Student's distribution, equation (S17). Pairs with NaN are
-/// ignored. For fewer than four pairs or a constant variable, the interval is [-1, 1]. Throws BadInput if the lengths
-/// differ.
+/// equation (S16) of statistics.md). For fewer than four pairs or a constant variable, the interval is [-1, 1].
 Correlation rank_correlation(std::span<const double> x, std::span<const double> y);
 
 struct FirstOrder {
@@ -32,22 +29,15 @@ struct FirstOrder {
   std::size_t classes = 0;  ///< number of classes of x; 0 if there are too few pairs
 };
 
-/// Estimates the first-order (Sobol') index of y with respect to x from existing data; y may depend on further
-/// variables. The estimator is that of Plischke, Borgonovo, Smith, EJOR 226:536, 2013. The estimator divides x into
-/// equally large classes, and computes the variance of the class means of y, equation (S18) of statistics.md. The
-/// variance that is expected without dependence, equation (S19), is subtracted. If x takes few values, each value is a
-/// class. If y contains ranks, the p-value of equation (S20) is that of the Kruskal-Wallis test.
-///
-/// Values of y must be finite or NaN; pairs with NaN are ignored. The estimate needs at least 24 pairs. Throws BadInput
-/// if the lengths differ.
+/// Estimates the first-order (Sobol') index of y with respect to x from existing data (Plischke, Borgonovo, Smith, EJOR
+/// 226:536, 2013). The estimator divides x into equally large classes, and computes the variance of the class means of
+/// y, equation (S18) of statistics.md. The variance that is expected without dependence, equation (S19), is subtracted.
 FirstOrder first_order_index(std::span<const double> x, std::span<const double> y);
 
-/// Centre selects the statistic of a class, with its 95 % confidence interval. The mean of finite values has Student's
-/// interval. The median has an interval from order statistics, which also rank infinite values. The fraction of ones
-/// has the interval of Clopper and Pearson.
+/// The 95 % interval is Student's for the mean, from order statistics for the median, and Clopper and Pearson's for the
+/// fraction of ones.
 enum class Centre { mean, median, share };
 
-/// DependenceClass summarises the simulated runs with `low` <= x <= `high`.
 struct DependenceClass {
   double low = 0.0, high = 0.0;
   std::size_t draws = 0;
@@ -58,11 +48,7 @@ inline constexpr std::size_t kDependenceClassesMax = 8, kDependenceDrawsMin = 12
 
 /// Computes the partial dependence of y on x: a statistic of y per class of x, equations (S22) and (S23) of
 /// statistics.md. The data must come from simulated runs with independent random numbers. There are at most
-/// `kDependenceClassesMax` equally large classes, with at least `kDependenceDrawsMin` runs each. Runs with equal x are
-/// in one class. If x takes few values, each value is a class.
-///
-/// Pairs with NaN are ignored. With fewer than `kDependenceDrawsMin` pairs, the list is empty. Throws BadInput if the
-/// lengths differ, or if Centre::share is requested and a value of y is neither 0 nor 1.
+/// `kDependenceClassesMax` equally large classes, with at least `kDependenceDrawsMin` runs each.
 std::vector<DependenceClass> partial_dependence(std::span<const double> x, std::span<const double> y, Centre centre);
 
 }  // namespace tumble::scenarios

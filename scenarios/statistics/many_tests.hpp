@@ -6,10 +6,9 @@
 
 namespace tumble::scenarios {
 
-/// Corrects the p-values `chances` for multiple tests, in their order (Holm, Scandinavian Journal of Statistics 6:65,
-/// 1979; equation (S8) of statistics.md). Rejecting all hypotheses with a corrected p-value below a risk gives a
-/// probability of at most this risk for any false rejection. The bound holds for any dependence between the tests. A
-/// NaN means that there is no test; it is returned unchanged and not counted.
+/// Corrects the p-values `chances` for multiple tests, for any dependence between the tests (Holm, Scandinavian Journal
+/// of Statistics 6:65, 1979; equation (S8) of statistics.md). Rejecting all hypotheses with a corrected p-value below a
+/// risk gives a probability of at most this risk for any false rejection.
 std::vector<double> holm(std::span<const double> chances);
 
 }  // namespace tumble::scenarios

@@ -16,8 +16,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// SignedRanks contains the ranks of the non-zero differences, sorted by absolute value. Ranks are doubled, because
-/// twice the mean of several ranks is an integer.
+/// Ranks are doubled, because twice the mean of several ranks is an integer.
 struct SignedRanks {
   std::vector<std::size_t> doubled;
   std::size_t total = 0, positive = 0;  ///< sums of the doubled ranks
@@ -46,7 +45,6 @@ SignedRanks signed_ranks(std::span<const double> differences) {
   return out;
 }
 
-/// Returns the exact probability that the rank sum is at least `sum` if all signs are random.
 double exact_chance(const SignedRanks& ranks, std::size_t sum) {
   std::vector<double> chance(ranks.total + 1, 0.0);  // probability of each sum of the positive ranks
   chance[0] = 1.0;
@@ -62,8 +60,6 @@ double exact_chance(const SignedRanks& ranks, std::size_t sum) {
   return std::min(1.0, tail);
 }
 
-/// Returns the normal approximation of the probability that the rank sum is at least `sum`, equation (S6) of
-/// statistics.md.
 double normal_chance(const SignedRanks& ranks, std::size_t sum) {
   const auto n = static_cast<double>(ranks.doubled.size());
   const double middle = n * (n + 1.0) / 4.0;
@@ -85,7 +81,6 @@ double signed_rank_chance(std::span<const double> differences) {
 
 double signed_rank_test(std::span<const double> differences) {
   const SignedRanks ranks = signed_ranks(differences);
-  // The distribution of the rank sum is symmetric.
   const std::size_t farther = std::max(ranks.positive, ranks.total - ranks.positive);
   return std::min(1.0, 2.0 * chance_of(ranks, farther));
 }
@@ -98,7 +93,7 @@ double sign_test(std::span<const double> differences) {
 
 double paired_failures_test(std::int64_t only_first, std::int64_t only_second) {
   if (only_first < 0 || only_second < 0)
-    throw BadInput(fmt::format("paired failures: the number of draws is {}; it must be at least 0",
+    throw BadInput(fmt::format("test of paired failures: the number of failed runs is {}; it must be at least 0",
                                std::min(only_first, only_second)));
   const auto n = static_cast<double>(only_first + only_second);
   if (n == 0.0) return 1.0;

@@ -20,8 +20,8 @@ namespace {
 void require(const Plan& plan) {
   for (const auto& [name, value] : {std::pair{"risk", plan.risk}, std::pair{"power", plan.power}}) {
     if (!(value > 0.0 && value < 1.0))
-      throw BadInput(
-          fmt::format("sample size: {} is {}; it must be greater than 0 and less than 1", name, std::to_string(value)));
+      throw BadInput(fmt::format("sample size of a test: the {} is {}; it must be greater than 0 and less than 1", name,
+                                 std::to_string(value)));
   }
 }
 
@@ -29,18 +29,14 @@ double normal_quantile(double share) {
   return quantile(boost::math::normal(), share);
 }
 
-/// Returns the smallest number of differences that are significant if all have the same sign: 2 / 2^n <= risk.
 double fewest(double risk) {
   return std::ceil(1.0 - std::log2(risk));
 }
 
-/// Returns the fraction of pairs of differences whose sum is positive, equation (S10) of statistics.md. A pair with a
-/// sum of zero counts half.
 double positive_sums(std::vector<double> differences) {
   std::sort(differences.begin(), differences.end());
   double count = 0.0;
   for (auto i = differences.begin(); i != differences.end(); ++i) {
-    // Each difference is paired with later differences only, so each pair counts once.
     const auto [first, last] = std::equal_range(i + 1, differences.end(), -*i);
     count += static_cast<double>(differences.end() - last) + 0.5 * static_cast<double>(last - first);
   }
@@ -62,7 +58,6 @@ double pairs_for_signed_rank(std::span<const double> differences, const Plan& pl
   const double share = static_cast<double>(counted.size()) / static_cast<double>(pairs);
   const double effect = positive_sums(std::move(counted)) - 0.5;
   if (effect == 0.0) return kInfinity;
-  // Equation (S11) of statistics.md gives the number of pairs for the signed-rank test.
   const double z = normal_quantile(1.0 - 0.5 * plan.risk) + normal_quantile(plan.power);
   return std::ceil(std::max(z * z / (3.0 * effect * effect), fewest(plan.risk)) / share);
 }
@@ -71,14 +66,13 @@ double pairs_for_failures(std::int64_t only_first, std::int64_t only_second, std
   require(plan);
   if (only_first < 0 || only_second < 0 || only_first + only_second > pairs)
     throw BadInput(
-        fmt::format("plan: the numbers of pairs in which only one method fails are {} and {}; their sum must be at "
-                    "most the number of pairs, {}",
+        fmt::format("sample size of a test: the numbers of pairs in which only one method fails are {} and {}; their "
+                    "sum must be at most the number of pairs, {}",
                     only_first, only_second, pairs));
   if (only_first == only_second) return kInfinity;
   const auto n = static_cast<double>(pairs);
   const double either = static_cast<double>(only_first + only_second) / n;
   const double difference = static_cast<double>(only_first - only_second) / n;
-  // Equation (S12) of statistics.md gives the number of pairs for the test of failures.
   const double root = normal_quantile(1.0 - 0.5 * plan.risk) * std::sqrt(either) +
                       normal_quantile(plan.power) * std::sqrt(either - difference * difference);
   return std::ceil(std::max(root * root / (difference * difference), fewest(plan.risk) / either));

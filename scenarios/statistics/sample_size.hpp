@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <span>
 
-/// sample_size.hpp computes how many pairs a test needs to detect an effect as large as the observed one. The observed
-/// effect is uncertain; if it is due to chance, the computed number is too small.
+/// The functions compute how many pairs a test needs to detect an effect as large as the observed one. If the observed
+/// effect is due to chance, the computed number is too small.
 namespace tumble::scenarios {
 
 struct Plan {
@@ -14,9 +14,7 @@ struct Plan {
 };
 
 /// Returns the number of pairs for the two-sided signed-rank test (Noether, JASA 82:645, 1987), equations (S10) and
-/// (S11) of statistics.md. The fraction of zero differences is assumed constant. The number is at least the smallest
-/// number that can be significant, and infinite if positive and negative differences are balanced. The cost is O(n log
-/// n). Throws BadInput for an invalid plan.
+/// (S11) of statistics.md.
 double pairs_for_signed_rank(std::span<const double> differences, const Plan& plan);
 
 /// Returns the number of pairs for the paired test of failures (Connor, Biometrics 43:207, 1987), equation (S12) of

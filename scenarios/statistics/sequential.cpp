@@ -14,23 +14,26 @@ namespace tumble::scenarios {
 double spent_by(double risk, double share) {
   if (!(share > 0.0)) return 0.0;
   const boost::math::normal normal;
-  // Equation (S13) of statistics.md: the risk that one side may have used so far.
   return 2.0 * cdf(complement(normal, quantile(complement(normal, 0.25 * risk)) / std::sqrt(share)));
 }
 
 SequentialSignTest::SequentialSignTest(double risk) : risk_(risk) {
   if (!(risk > 0.0 && risk < 1.0))
-    throw BadInput(fmt::format("the risk is {}; it must be within (0, 1)", std::to_string(risk)));
+    throw BadInput(fmt::format("sequential test: the risk of a wrong answer is {}; it must be within (0, 1)",
+                               std::to_string(risk)));
 }
 
 SequentialSignTest::Verdict SequentialSignTest::look(double share, std::int64_t negative, std::int64_t positive) {
   if (!(share > 0.0 && share <= 1.0 && share >= share_))
-    throw BadInput(fmt::format("the share of the draws seen is {}; it must be within (0, 1] and must not decrease",
-                               std::to_string(share)));
+    throw BadInput(
+        fmt::format("sequential test: the share of the completed simulated runs is {}; it must be within (0, 1] and "
+                    "must not decrease",
+                    std::to_string(share)));
   if (negative < 0 || positive < 0 || negative + positive < pairs_)
-    throw BadInput(fmt::format(
-        "the numbers of pairs are {} and {}, but the previous look had {} pairs in total; the total must not decrease",
-        negative, positive, pairs_));
+    throw BadInput(
+        fmt::format("sequential test: the numbers of negative and positive pairs are {} and {}, but the previous "
+                    "analysis had {} pairs in total; the total must not decrease",
+                    negative, positive, pairs_));
   if (verdict_ != Verdict::open) return verdict_;
   share_ = share;
   toss(negative + positive - pairs_);
@@ -40,8 +43,6 @@ SequentialSignTest::Verdict SequentialSignTest::look(double share, std::int64_t 
   return verdict_;
 }
 
-/// Updates the distribution of the number of positive signs after further pairs, equation (S14) of statistics.md. Each
-/// pair adds one positive or one negative sign.
 void SequentialSignTest::toss(std::int64_t pairs) {
   for (std::int64_t k = 0; k < pairs; ++k) {
     going_on_.push_back(0.0);
@@ -51,11 +52,8 @@ void SequentialSignTest::toss(std::int64_t pairs) {
   pairs_ += pairs;
 }
 
-/// Removes the outcomes at which the test stops, equation (S15) of statistics.md. The distribution is symmetric, so the
-/// thresholds for both signs are equal.
 void SequentialSignTest::stop_beyond(double allowed) {
   std::size_t stopped = 0;
-  // At least one count remains between the two thresholds.
   while (2 * stopped + 1 < going_on_.size()) {
     const double more = going_on_[going_on_.size() - 1 - stopped];
     if (spent_a_side_ + more > allowed) break;

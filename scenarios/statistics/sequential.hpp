@@ -7,34 +7,26 @@
 namespace tumble::scenarios {
 
 /// Returns the probability of a false verdict that one side of a two-sided test may have used when the fraction `share`
-/// of the simulated runs is complete. The probability is almost zero at first and `risk` / 2 at the end. The function
-/// is that of Lan and DeMets (Biometrika 70:659, 1983) with O'Brien and Fleming's bounds, equation (S13) of
-/// statistics.md.
+/// of the simulated runs is complete. The function is that of Lan and DeMets (Biometrika 70:659, 1983) with O'Brien and
+/// Fleming's bounds, equation (S13) of statistics.md.
 double spent_by(double risk, double share);
 
 /// SequentialSignTest is a sign test with interim analyses (Armitage, McPherson, Rowe, JRSS A 132:235, 1969), equations
 /// (S13) to (S15) of statistics.md. Each analysis sets a threshold for the number of positive and of negative signs. If
 /// the methods do not differ, the probability of having reached a threshold is at most the risk that may be spent so
-/// far. The probability of reaching a threshold is exact, because outcomes that reached an earlier threshold are
-/// excluded. Zero differences are ignored. The number and times of the analyses are free, but must not depend on the
-/// results. The cost is O(pairs * sqrt(all pairs)).
+/// far. The number and times of the analyses are free, but must not depend on the results.
 class SequentialSignTest {
  public:
   enum class Verdict { open, negative, positive };  ///< sign that occurs significantly more often
 
-  /// Throws BadInput for a risk outside (0, 1).
   explicit SequentialSignTest(double risk);
 
-  /// Analyses all signs so far, and returns the verdict. `share` is the fraction of simulated runs that are complete: 1
-  /// at the last analysis. A verdict other than `open` is final. Throws BadInput for a share outside (0, 1], or if the
-  /// share or the number of pairs decreases.
+  /// `share` is the fraction of simulated runs that are complete: 1 at the last analysis. A verdict other than `open`
+  /// is final.
   Verdict look(double share, std::int64_t negative, std::int64_t positive);
 
   Verdict verdict() const { return verdict_; }
-  /// Returns the number of pairs of one sign that the last analysis required for a verdict. If this number exceeds the
-  /// number of available pairs, no outcome could have been significant.
   std::int64_t needed() const { return needed_; }
-  /// Returns the probability of a false verdict so far, which never exceeds the risk.
   double spent() const { return 2.0 * spent_a_side_; }
 
  private:
@@ -44,7 +36,6 @@ class SequentialSignTest {
   double risk_;
   double share_ = 0.0, spent_a_side_ = 0.0;
   std::int64_t pairs_ = 0, needed_ = 0;
-  // Probability of each number of positive signs without an earlier stop; the first entry is that of `lowest_`.
   std::int64_t lowest_ = 0;
   std::vector<double> going_on_ = {1.0};
   Verdict verdict_ = Verdict::open;

@@ -25,7 +25,6 @@ std::vector<double> numbers_of(std::span<const double> values) {
   return numbers;
 }
 
-/// RankPlace is the position of a quantile in a sorted list: at one value, or between two neighbours.
 struct RankPlace {
   RankPlace(double share, std::size_t count) {
     const double place = share * static_cast<double>(count - 1);
@@ -34,7 +33,6 @@ struct RankPlace {
     part = place - static_cast<double>(below);
   }
   double between(double low, double high) const {
-    // No interpolation at an infinite value.
     return part == 0.0 || std::isinf(low) ? low : low + part * (high - low);
   }
   std::size_t below, above;
@@ -45,10 +43,9 @@ struct RankPlace {
 
 double quantile(std::span<const double> values, double share) {
   if (!(share >= 0.0 && share <= 1.0))
-    throw BadInput(fmt::format("quantile: share is {}; it must be within [0, 1]", std::to_string(share)));
+    throw BadInput(fmt::format("quantile: the probability is {}; it must be within [0, 1]", std::to_string(share)));
   std::vector<double> numbers = numbers_of(values);
   if (numbers.empty()) return kNaN;
-  // A partial sort, because reports compute quantiles of millions of values.
   const RankPlace place(share, numbers.size());
   const auto below = numbers.begin() + static_cast<std::ptrdiff_t>(place.below);
   std::nth_element(numbers.begin(), below, numbers.end());
@@ -70,15 +67,13 @@ bool quantile_of(std::span<const double> values, double share, double& value) {
 
 namespace {
 
-/// Returns the largest rank r, counted from 1, with P(fewer than r of n values are below the median) <= kTail, or 0 if
-/// no rank fulfils the condition.
 std::size_t tail_rank(std::size_t values) {
   const auto n = static_cast<double>(values);
   const auto exponent = [&](std::size_t k) {
     const auto count = static_cast<double>(k);
     return std::lgamma(n + 1) - std::lgamma(count + 1) - std::lgamma(n - count + 1) - n * std::log(2.0);
   };
-  // The terms of the binomial sum increase up to n / 2. For large n, most terms underflow to 0 and are skipped.
+  // The terms of the binomial sum increase up to n / 2; for large n, most terms underflow to 0 and are skipped.
   constexpr double kNothing = -750.0;
   std::size_t first = 0;
   for (std::size_t above = values / 2; first < above;) {
@@ -104,7 +99,6 @@ Interval median_interval(std::span<const double> values) {
   std::vector<double> numbers = numbers_of(values);
   Interval interval{kNaN, -kInfinity, kInfinity};
   if (numbers.empty()) return interval;
-  // A partial sort of four ranks is faster than a full sort.
   const RankPlace middle(0.5, numbers.size());
   const auto begin = numbers.begin(), below = begin + static_cast<std::ptrdiff_t>(middle.below);
   std::nth_element(begin, below, numbers.end());
@@ -129,7 +123,8 @@ std::vector<double> with_failures(std::vector<double> values, std::size_t failed
 Interval share_interval(std::int64_t count, std::int64_t total) {
   if (total <= 0) return {kNaN, 0.0, 1.0};
   if (count < 0 || count > total) {
-    throw BadInput(fmt::format("share_interval: count is {}; it must be within [0, {}]", count, total));
+    throw BadInput(
+        fmt::format("confidence interval of a fraction: the count is {}; it must be within [0, {}]", count, total));
   }
   const auto k = static_cast<double>(count);
   const auto n = static_cast<double>(total);

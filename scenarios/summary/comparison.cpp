@@ -21,29 +21,27 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// ValuePair contains the values of two methods on one simulated run.
 struct ValuePair {
   double own, other;
 };
 
 void require_share(const char* name, double value) {
   if (!(value > 0.0 && value < 1.0))
-    throw BadInput(fmt::format("{} is {}; it must be within (0, 1)", name, std::to_string(value)));
+    throw BadInput(
+        fmt::format("the {} of the comparison is {}; it must be within (0, 1)", name, std::to_string(value)));
 }
 
 void require_sound(const Summary& summary, const ComparisonOptions& options) {
   require_share("risk", options.risk);
   require_share("power", options.power);
   if (options.margin && !(options.margin->value >= 0.0 && std::isfinite(options.margin->value)))
-    throw BadInput(
-        fmt::format("the margin is {}; it must be finite and at least 0", std::to_string(options.margin->value)));
+    throw BadInput(fmt::format("the margin of the comparison is {}; it must be finite and at least 0",
+                               std::to_string(options.margin->value)));
   std::vector<std::string> methods = options.methods;
   if (!options.against.empty()) methods.push_back(options.against);
   require_held(summary, methods, options.metrics);
 }
 
-/// Returns the pairs of values on the simulated runs on which each method has a value or failed. If `worst` is NaN,
-/// failed runs are omitted.
 std::vector<ValuePair> pairs_of(const MetricSummary& own, const MetricSummary& other, double worst) {
   const std::vector<RankedValue> first = ranked_values(own, worst), second = ranked_values(other, worst);
   std::vector<ValuePair> pairs;
@@ -55,12 +53,10 @@ std::vector<ValuePair> pairs_of(const MetricSummary& own, const MetricSummary& o
   return pairs;
 }
 
-/// Returns the difference `own` minus `other`, or 0 if both runs failed.
 double less(double own, double other) {
   return own == other ? 0.0 : own - other;
 }
 
-/// Returns how much worse the method is than the reference on each pair, minus the margin.
 std::vector<double> beyond(const Margin& margin, const MetricInfo& info, const std::vector<ValuePair>& pairs) {
   std::vector<double> out;
   for (const ValuePair& pair : pairs) out.push_back(worse_by(info, pair.own, pair.other, margin));
@@ -133,14 +129,12 @@ class Comparing {
       row.not_inferior_chance = signed_rank_chance(relieved);
     }
     // 1 if the method tends to be worse by the signed-rank test, -1 if it tends to be better, 0 if the metric is not
-    // ranked.
+    // ranked
     tends_.push_back(!contested ? 0.0 : signed_rank_chance(worse_by) < 0.5 ? 1.0 : -1.0);
     differences_.push_back(std::move(contested ? worse_by : raw));
     out_.metrics.push_back(std::move(row));
   }
 
-  /// Compares the failures of two methods on their common simulated runs. `seeds` contains all seeds and `failed` the
-  /// seeds of failed runs; both are ascending.
   void add_failures(const Contest& contest, const std::string& what, const std::vector<std::uint64_t>& seeds,
                     const std::vector<std::uint64_t>& failed, const std::vector<std::uint64_t>& other_seeds,
                     const std::vector<std::uint64_t>& other_failed) {
@@ -186,8 +180,7 @@ class Comparing {
     return found->second;
   }
 
-  /// Returns risk and power for the sample size of one test in a table. The risk is divided by the number of tests
-  /// (Holm's bound for the smallest p-value).
+  /// For the sample size, the risk is divided by the number of tests (Holm's bound for the smallest p-value).
   Plan plan(std::size_t tests) const {
     return {options_.risk / static_cast<double>(std::max<std::size_t>(tests, 1)), options_.power};
   }

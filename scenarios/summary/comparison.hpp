@@ -9,20 +9,17 @@
 #include "scenarios/statistics/statistics.hpp"
 #include "scenarios/summary/summary.hpp"
 
-/// comparison.hpp compares two methods on the same simulated runs: size and significance of the difference
-/// (docs/maths/statistics.md).
 namespace tumble::scenarios {
 
-/// Margin is the largest accepted deficit of a method (non-inferiority margin). The margin is in the unit of the
-/// metric, or a fraction of the reference method's value on the same run.
+/// Margin is the largest accepted deficit of a method (non-inferiority margin), in the metric's unit or as a fraction
+/// of the reference method's value.
 struct Margin {
   double value = 0.0;
   bool relative = false;
 };
 
-/// Returns how much worse `own` is than `other` on a simulated run, minus the margin. The result is negative if `own`
-/// is better, or worse by less than the margin. A negative margin requires an improvement. The result is infinite if
-/// only `own` is a failed run, and 0 if both runs failed.
+/// Returns how much worse `own` is than `other` on a simulated run, minus the margin. The result is infinite if only
+/// `own` is a failed run, and 0 if both runs failed.
 double worse_by(const MetricInfo& info, double own, double other, const Margin& allowed);
 
 struct ComparisonOptions {
@@ -37,27 +34,25 @@ struct ComparisonOptions {
 enum class Finding { undecided, better, worse };
 const char* to_string(Finding finding);
 
-/// Contest names the scenario, the kind and the two methods of a comparison.
 struct Contest {
   std::string scenario;
   Kind kind = Kind::rate;
   std::string method, against;
 };
 
-/// Returns true if two comparisons have the same scenario, kind and reference method.
 inline bool one_section(const Contest& a, const Contest& b) {
   return a.scenario == b.scenario && a.kind == b.kind && a.against == b.against;
 }
 
 /// MetricComparison compares one metric over the simulated runs on which both methods have a value. A failed run has
-/// the worst value (`worst_value`). If both runs failed or have equal values, neither method is better.
+/// the worst value; if both runs failed or have equal values, neither method is better.
 struct MetricComparison {
   Contest contest;
   std::string metric;
   std::int64_t pairs = 0, better = 0, worse = 0;
   double median = 0.0, against_median = 0.0;
   /// Median of the paired differences, method minus reference, with its BCa interval. For a metric with a target, the
-  /// differences are those of the distances from the target (`how_bad`).
+  /// differences are those of the distances from the target.
   Interval difference{};
   double sign_chance = 1.0, rank_chance = 1.0;  ///< two-sided p-values of the sign test and the signed-rank test
   double corrected = 1.0;                       ///< `rank_chance` corrected by Holm over all metrics of the comparison
@@ -85,9 +80,8 @@ struct Comparison {
   std::vector<FailureComparison> failures;
 };
 
-/// Compares the methods of a summary with their reference methods, in the order of the sections. Costs and other
-/// unranked metrics are compared only if the caller names them; they give no finding. Throws BadInput for a method or
-/// metric that the results lack (the message suggests the nearest name), and for a risk, power or margin out of range.
+/// Costs and other unranked metrics are compared only if the caller names them; they give no finding. Throws BadInput
+/// for a method or metric that the results lack, and for a risk, power or margin out of range.
 Comparison compare(const Summary& summary, const ComparisonOptions& options);
 
 }  // namespace tumble::scenarios

@@ -21,11 +21,9 @@ namespace {
 
 constexpr std::size_t kDrawsPerBin = 8;
 constexpr std::size_t kBinsMax = 6, kBinsMin = 3;
-/// Quantities by which whole simulated runs are sorted into bins (scenarios/sweep/motion_values.hpp).
 constexpr std::array kDrawMeasures = {"motion_clipped_share", "motion_clip_depth_max_rad_s",
                                       "motion_clip_length_max_s"};
 
-/// Run is the outcome of one simulated run: the scores for curves, and whether it failed.
 struct Run {
   std::uint64_t seed = 0;
   bool ok = false, failed = false;
@@ -35,8 +33,6 @@ struct Run {
     std::size_t place = 0;
     return find(metric, place);
   }
-  /// Finds the score of a metric. Tries the index `place` first, where the previous run of the method had this score,
-  /// and updates `place`.
   const double* find(const std::string* metric, std::size_t& place) const {
     if (place < scores.size() && scores[place].metric == metric) return &scores[place].value;
     const auto found = std::find_if(scores.begin(), scores.end(), [&](const auto& s) { return s.metric == metric; });
@@ -46,13 +42,10 @@ struct Run {
   }
 };
 
-/// Runs contains the outcomes of one kind and scenario at one setting, by method, sorted by seed.
 using Runs = std::map<std::string, std::vector<Run>, std::less<>>;
 using RunsBySetting = std::map<std::tuple<std::string, std::string, Kind>, std::map<double, Runs>>;
-/// PickedRuns is a selection of outcomes, by method.
 using PickedRuns = std::map<std::string, std::vector<const Run*>>;
 
-/// Use contains cached properties of a metric.
 struct Use {
   bool shown, verdict;
 };
@@ -111,8 +104,7 @@ PickedRuns all_of(const Runs& runs) {
   return all;
 }
 
-/// Returns true if any method has a value of the metric on the simulated run `seed`. If no method has a value, failures
-/// on this run do not count.
+/// If no method has a value of the metric on a simulated run, failures on this run do not count.
 bool is_scored(const PickedRuns& runs, const std::string* metric, std::uint64_t seed) {
   return std::any_of(runs.begin(), runs.end(), [&](const auto& entry) {
     const auto& own = entry.second;
@@ -122,7 +114,6 @@ bool is_scored(const PickedRuns& runs, const std::string* metric, std::uint64_t 
   });
 }
 
-/// Computes one point of a curve. Returns false if no run has a value of the metric.
 bool point_of(const std::vector<const Run*>& own, const PickedRuns& runs, const std::string* metric,
               CurvePoint& point) {
   const MetricInfo& info = metric_info(*metric);
@@ -146,7 +137,6 @@ bool point_of(const std::vector<const Run*>& own, const PickedRuns& runs, const 
   return !ranked.empty() || point.failed > 0;
 }
 
-/// Adds one point per method to the lines of a curve.
 void add_place(const PickedRuns& runs, const std::string* metric, const CurvePoint& place, Curve& curve) {
   for (const auto& [method, own] : runs) {
     CurvePoint point = place;
@@ -165,7 +155,6 @@ void keep(Curve curve, std::vector<Curve>& all) {
   if (!curve.lines.empty()) all.push_back(std::move(curve));
 }
 
-/// Returns the stored copy of a metric's name, which is added if missing.
 const std::string* name_of(const std::string& metric, Names& names) {
   return &*names.insert(metric).first;
 }
@@ -193,12 +182,10 @@ std::string bin_label(const BinnedMetric& bin, double factor) {
   return fmt::format("{:g} – {:g}", bin.low * factor, bin.high * factor);
 }
 
-/// Bins by quantity and metric, in ascending order. Each bin has the full name of its metric.
 using Bins =
     std::map<std::pair<std::string, std::string>, std::map<double, std::pair<BinnedMetric, const std::string*>>>;
 
-/// Returns the bins of all quantities for which any run has a value. Empty bins are included, so that a curve shows
-/// where samples are missing.
+/// Empty bins are included, so that a curve shows where samples are missing.
 Bins bins_of(const Runs& runs, Names& names) {
   std::set<const std::string*> metrics;
   for (const auto& [method, own] : runs) {
@@ -237,8 +224,7 @@ void add_sample_curves(const RunsBySetting& plain, Names& names, std::vector<Cur
   }
 }
 
-/// Sorts the simulated runs of a scenario by the quantity `measure` into bins of equal counts. Each bin has the median
-/// of the quantity, and its seeds in ascending order.
+/// Each bin of simulated runs has the median of the quantity `measure`, and its ascending seeds.
 std::vector<std::pair<double, std::vector<std::uint64_t>>> bins_of_draws(std::span<const DrawValues> draws,
                                                                          const std::string& scenario,
                                                                          const std::string& measure) {
@@ -246,7 +232,6 @@ std::vector<std::pair<double, std::vector<std::uint64_t>>> bins_of_draws(std::sp
   for (const DrawValues& draw : draws) {
     if (draw.scenario != scenario) continue;
     for (const Score& score : draw.values) {
-      // A run without clipping has no position on an axis of clipping.
       if (score.metric == measure && score.value > 0.0) ranked.emplace_back(score.value, draw.seed);
     }
   }

@@ -10,11 +10,10 @@
 #include "scenarios/summary/summary.hpp"
 #include "scenarios/sweep/results.hpp"
 
-/// curves.hpp computes curves: a metric over a varied parameter, or over a quantity of the simulated runs.
 namespace tumble::scenarios {
 
 /// CurvePoint summarises one method at one x value of a curve, over all simulated runs. Failed runs rank worst, so a
-/// quantile can be infinite. Quantiles are NaN if no run has a value.
+/// quantile can be infinite.
 struct CurvePoint {
   double x = 0.0;
   std::string label;  ///< label of a bin: "0.5 – 1"; empty for a varied parameter
@@ -30,8 +29,8 @@ struct CurveLine {
 };
 
 struct Curve {
-  /// Source is the meaning of x: a parameter that the suite varies, a quantity of binned samples, or a quantity of
-  /// whole simulated runs.
+  /// The x axis of a curve is a parameter that the suite varies, a quantity of binned samples, or a quantity of whole
+  /// simulated runs.
   enum class Source { set, samples, draws };
   Source source = Source::set;
   std::string axis;  ///< varied parameter or binned quantity; the name ends in the unit
@@ -39,18 +38,12 @@ struct Curve {
   Kind kind = Kind::rate;
   std::string metric;
   std::vector<CurveLine> lines;  ///< in the order of the registry
-  /// Labels of all bins of samples, including empty bins. The point with the number x belongs to bins[x - 1].
   std::vector<std::string> bins = {};
 };
 
-/// Computes every curve for which the results contain data, by scenario and headline metric (first in the report).
-/// There is one curve per varied parameter, and one per quantity with binned metrics
-/// (scenarios/scoring/binned_metric.hpp). Each clipping quantity of whole runs has a curve if it has at least three
-/// bins of equal counts. A run counts as failed if its status is not `ok` or its map failed. The cost is O(number of
-/// scores * log).
+/// There is one curve per varied parameter, one per quantity with binned metrics, and one per clipping quantity of
+/// whole runs with at least three bins. A run counts as failed if its status is not `ok` or its map failed.
 std::vector<Curve> find_curves(const Results& results);
-/// Computes every curve from the results and the motion values `draws`, and `summary` in the same pass over the
-/// results.
 std::vector<Curve> find_curves(const Results& results, std::span<const DrawValues> draws, Summary& summary);
 
 }  // namespace tumble::scenarios

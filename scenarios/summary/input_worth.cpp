@@ -23,7 +23,6 @@ double badness(const MetricInfo& info, const Outcome& outcome) {
   return score != nullptr ? how_bad(info, score->value) : kNaN;
 }
 
-/// Returns the decrease of the badness (`how_bad`); 0 if both values are the worst value.
 double improvement(double before, double now) {
   return before == now ? 0.0 : before - now;
 }
@@ -68,7 +67,6 @@ bool matters_more(const InputWorth& a, const InputWorth& b) {
   return a.chance < b.chance;
 }
 
-/// Evaluates the effect of each true input over the simulated runs of `scenario`; empty: of all scenarios.
 std::vector<InputWorth> worth_within(std::span<const DrawTriage> draws, const MetricInfo& info,
                                      const std::string& scenario) {
   std::map<std::string, InputPairs> inputs;

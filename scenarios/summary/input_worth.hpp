@@ -9,12 +9,10 @@
 #include "scenarios/statistics/statistics.hpp"
 #include "scenarios/sweep/suite_triage.hpp"
 
-/// input_worth.hpp determines which input of a method, replaced by its true value, improves the method most
+/// The functions determine which input of a method, replaced by its true value, improves the method most
 /// (docs/maths/statistics.md).
 namespace tumble::scenarios {
 
-/// InputWorth is the effect of replacing one input of a method by its true value, over the simulated runs on which the
-/// replacement changed the input.
 struct InputWorth {
   std::string scenario;  ///< empty: all scenarios
   std::string input, doc;
@@ -24,15 +22,13 @@ struct InputWorth {
   std::int64_t broken = 0;             ///< runs that fail only with the true input
   Interval cured_share{};              ///< `cured` / `failed` (Clopper and Pearson, 95 %); NaN if `failed` is 0
   std::int64_t better = 0, worse = 0;  ///< runs with a better or worse metric
-  /// Median decrease of the metric's badness (`how_bad`), with its BCa interval. Runs that are not ok rank worst. The
-  /// interval is NaN if no run has the metric.
+  /// Median decrease of the metric's badness (`how_bad`), with its BCa interval; runs that are not ok rank worst.
   Interval improvement{};
   double chance = 1.0;     ///< p-value of the two-sided signed-rank test
   double corrected = 1.0;  ///< `chance` corrected by Holm over all rows
 };
 
-/// Evaluates the effect of each true input per scenario, and over all scenarios if there are several. The list is
-/// sorted by the fraction of prevented failures, then by p-value. Simulated runs without triage results are omitted.
+/// The list is sorted by the fraction of prevented failures, then by p-value.
 std::vector<InputWorth> worth_of_inputs(std::span<const DrawTriage> draws, const std::string& metric);
 
 }  // namespace tumble::scenarios

@@ -11,14 +11,12 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr std::size_t kCells = MotionMap::kCells;
-/// The grid extends beyond the points by this number of decades.
 constexpr double kMargin = 0.25;
 
 struct Decades {
   double rate, force;
 };
 
-/// GridAxis is one axis of the grid, in decades.
 struct GridAxis {
   double low = 0.0, step = 1.0;
   double width = 0.0;  ///< width of the kernel in cells
@@ -46,8 +44,6 @@ GridAxis axis_over(const std::vector<Decades>& points, double Decades::*member) 
   return axis;
 }
 
-/// Returns the weights that distribute the runs of cell `from` over its grid row. Weight beyond the ends of the row is
-/// distributed over the row.
 std::vector<double> kernel(std::size_t from, double width) {
   std::vector<double> weights(kCells);
   double sum = 0.0;
@@ -78,7 +74,6 @@ std::vector<double> smoothed(const std::vector<double>& counts, const GridAxis& 
   return out;
 }
 
-/// Returns every n-th point; n is the smallest number that leaves at most `kPointsMax` points.
 std::vector<MotionPoint> thinned(const std::vector<MotionPoint>& points) {
   const std::size_t stride = (points.size() + MotionMap::kPointsMax - 1) / MotionMap::kPointsMax;
   std::vector<MotionPoint> out;
@@ -86,8 +81,8 @@ std::vector<MotionPoint> thinned(const std::vector<MotionPoint>& points) {
   return out;
 }
 
-/// Returns the maxima in two publications by Deschênes et al. on the rig. The ICRA 2024 paper reports rates and forces.
-/// The CRV 2021 paper reports an angular acceleration, and forces (in its abstract).
+/// The ICRA 2024 paper by Deschênes et al. reports rates and forces of the rig; the CRV 2021 paper reports an angular
+/// acceleration, and forces (in its abstract).
 std::vector<PublishedExtreme> published() {
   return {{"rig, 32 tumbles down a hill",
            "Deschênes and others, ICRA 2024: up to 18.6 rad/s and 157.8 m/s² (the accelerometer has a range of 16 g)",

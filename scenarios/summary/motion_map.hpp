@@ -8,29 +8,25 @@
 
 #include "scenarios/sweep/outcome.hpp"
 
-/// motion_map computes the distribution of simulated runs over their maximum rate and maximum specific force.
 namespace tumble::scenarios {
 
-/// MotionPoint contains two maxima of one simulated run: the true rate of the body, and the unclipped specific force of
-/// the primary IMU.
 struct MotionPoint {
   double rate_rad_s = 0.0, force_m_s2 = 0.0;
 };
 
-/// MotionCloud contains the points of one scenario's simulated runs.
 struct MotionCloud {
   std::string scenario;
   std::size_t draws = 0;            ///< number of runs with both maxima above 0
   std::vector<MotionPoint> points;  ///< at most `kPointsMax` points, evenly spaced over the runs
 };
 
-/// PublishedExtreme contains the maxima in a publication; NaN if a maximum is not reported.
 struct PublishedExtreme {
   std::string campaign, source;
   double rate_rad_s, force_m_s2;
 };
 
-/// MotionMap is the density of all simulated runs on a grid with logarithmic axes, by a kernel density estimate.
+/// MotionMap is the density of all simulated runs over their maximum rate and maximum specific force, on a grid with
+/// logarithmic axes.
 struct MotionMap {
   static constexpr std::size_t kCells = 48;  ///< number of cells per axis
   static constexpr std::size_t kPointsMax = 500;
@@ -43,8 +39,7 @@ struct MotionMap {
 
 /// Computes the density of the runs: counts in cells, smoothed along both logarithmic axes by a Gaussian. The width of
 /// the Gaussian is Scott's sigma n^(-1/6) (Multivariate Density Estimation, 1992, section 6.3), but at least half a
-/// cell. The part of a kernel beyond the grid is distributed over the grid. The two maxima of a run may occur at
-/// different times. The cost is O(draws + cells^(3/2)).
+/// cell. The two maxima of a run may occur at different times.
 MotionMap motion_map(std::span<const DrawValues> draws);
 
 }  // namespace tumble::scenarios

@@ -14,13 +14,10 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Over states what the values of a quantity are: one value per run, the fraction of runs with a property, or the
-/// fraction of all clipped samples of all runs.
 enum class Over { draws, share_of_draws, clipped_samples };
 
-/// Quantity is a quantity of the motion with a published value from the tumbling rig (32 tumbles down a hill, ICRA
-/// 2024), and the target of this project. The plot shades the range from `low` to `high`, or shows a line if both are
-/// equal.
+/// The figures of motions show published values of the tumbling rig (32 tumbles down a hill, ICRA 2024), and the target
+/// of this project.
 struct Quantity {
   const char* metric;
   const char* name;
@@ -37,23 +34,24 @@ constexpr std::array kQuantities = {
              8.0, 25.0},
     Quantity{"motion_clipped_share", "share of the samples in motion with a clipped gyro axis", "%", 100.0, "", kNone,
              kNone},
-    Quantity{"motion_several_axes_share", "share of the clipped samples with at least two clipped axes, per draw", "%",
-             100.0, "", kNone, kNone},
-    Quantity{"motion_several_axes_share", "share of the clipped samples with at least two clipped axes, over all draws",
-             "%", 100.0, "target: 10 to 40", kNone, kNone, Over::clipped_samples},
+    Quantity{"motion_several_axes_share",
+             "share of the clipped samples with at least two clipped axes, per simulated run", "%", 100.0, "", kNone,
+             kNone},
+    Quantity{"motion_several_axes_share",
+             "share of the clipped samples with at least two clipped axes, over all simulated runs", "%", 100.0,
+             "target: 10 to 40", kNone, kNone, Over::clipped_samples},
     Quantity{"motion_cross_axis_share",
-             "share of the clipped samples with a cross-axis error on an unclipped axis, over all draws", "%", 100.0,
-             "", kNone, kNone, Over::clipped_samples},
+             "share of the clipped samples with a cross-axis error on an unclipped axis, over all simulated runs", "%",
+             100.0, "", kNone, kNone, Over::clipped_samples},
     Quantity{"motion_path_m", "path", "m", 1.0, "5 to 10", 5.0, 10.0},
     Quantity{"motion_peak_accel_m_s2", "largest specific force", "m/s²", 1.0,
-             "up to 157.8; a 16 g device saturates at 156.9", 157.8, 157.8},
-    Quantity{"motion_clips", "share of the draws in which the gyro clips", "%", 100.0, "target: 90", kNone, kNone,
-             Over::share_of_draws},
+             "up to 157.8; a 16 g accelerometer saturates at 156.9", 157.8, 157.8},
+    Quantity{"motion_clips", "share of the simulated runs in which the gyro clips", "%", 100.0, "target: 90", kNone,
+             kNone, Over::share_of_draws},
 };
 
-/// Returns the mean of a metric over the runs, weighted by their numbers of clipped samples, with its 95 % interval.
-/// Samples within a run are correlated, so the method is the ratio estimator of a cluster sample (Cochran, Sampling
-/// Techniques, 1977, section 9A.2).
+/// Samples within a run are correlated, so the weighted mean has the interval of the ratio estimator of a cluster
+/// sample (Cochran, Sampling Techniques, 1977, section 9A.2).
 Interval pooled(std::span<const DrawValues* const> draws, const std::string& metric) {
   std::vector<std::pair<double, double>> weighted;  // clipped samples of a run, and fraction with the property
   double samples = 0.0, hits = 0.0, square = 0.0;

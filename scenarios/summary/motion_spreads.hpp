@@ -8,18 +8,15 @@
 
 #include "scenarios/sweep/outcome.hpp"
 
-/// motion_spreads.hpp compares simulated motions with the published experiment with the tumbling rig.
 namespace tumble::scenarios {
 
-/// Spread contains the values of one quantity over the simulated runs of one scenario. Runs without a value are
-/// omitted.
 struct Spread {
   std::string scenario;
   std::string metric;    ///< "motion_peak_rate_rad_s"
   std::string quantity;  ///< "largest rate"
   std::string unit;
   std::string published;  ///< text about the published value; empty if none
-  /// Published range in `unit`: equal limits mean one number, NaN means no published value.
+  /// Published range in `unit`: equal limits mean one number, NaN means no published value
   double published_low = std::numeric_limits<double>::quiet_NaN();
   double published_high = std::numeric_limits<double>::quiet_NaN();
   double factor = 1.0;         ///< conversion from SI to `unit`
@@ -28,14 +25,10 @@ struct Spread {
   double median = 0, quantile_05 = 0, quantile_95 = 0;
 };
 
-/// Source of the `published` values, which the report displays after the words "compared with".
 inline constexpr const char* kPublishedMotion =
     "the published campaign of the rig (32 tumbles down a hill) and the target of the scenario 'hill'";
 
-/// Computes one Spread per quantity and scenario, with the scenarios in the order of the simulated runs. For a fraction
-/// of runs ("draws that clip the gyro"), each run has the value 0 or 1. The `median` is then the fraction, and the
-/// quantiles are the limits of its 95 % interval. For a fraction of all clipped samples, each run is weighted by its
-/// number of clipped samples.
+/// For a fraction of all clipped samples, each run is weighted by its number of clipped samples.
 std::vector<Spread> motion_spreads(std::span<const DrawValues> draws);
 
 }  // namespace tumble::scenarios

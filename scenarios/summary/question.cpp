@@ -19,13 +19,11 @@ namespace {
 
 constexpr int kLooksMax = 1000;
 
-/// Returns the kind in a method's name, for example "rate" for "rate/tumble"; empty if the name has no kind.
 std::string kind_of(const std::string& name) {
   const std::size_t slash = name.find('/');
   return slash == std::string::npos ? std::string() : name.substr(0, slash);
 }
 
-/// Throws BadInput if the metric cannot rank two methods of this kind.
 void require_contest(const std::string& metric, const std::string& kind) {
   const MetricInfo& info = metric_info(metric);
   const auto all = metrics();
@@ -40,11 +38,9 @@ void require_contest(const std::string& metric, const std::string& kind) {
                                to_string(own->kind), kind));
 }
 
-/// AnswerPair contains the values of the two methods on one simulated run. A failed run has the worst value.
 struct AnswerPair {
   std::optional<double> own, other;
 };
-/// AnswerPairs contains the pairs of values by scenario, then by seed.
 using AnswerPairs = std::map<std::string, std::map<std::uint64_t, AnswerPair>, std::less<>>;
 
 std::optional<double> value_of(const OutcomeView& row, const Question& question) {
@@ -69,7 +65,6 @@ AnswerPairs pairs_of(const Results& results, const Question& question, std::uint
   return pairs;
 }
 
-/// Evaluates the interim analyses of one scenario in order, until an analysis gives an answer.
 Answer answer_of(const std::string& scenario, const std::map<std::uint64_t, AnswerPair>& pairs,
                  const Question& question, std::uint64_t last_seed) {
   SequentialSignTest test(question.risk / static_cast<double>(question.scenarios.size()));
@@ -121,8 +116,8 @@ void require_sound(const Question& question) {
   const std::string kind = kind_of(question.method);
   for (const std::string& name : {question.method, question.against}) {
     if (kind_of(name).empty())
-      throw BadInput(
-          fmt::format("method '{}' of a question must be written with its kind, for example 'rate/tumble'", name));
+      throw BadInput(fmt::format(
+          "method '{}' of the question (--until) must be written with its kind, for example 'rate/tumble'", name));
     if (kind_of(name) != kind)
       throw BadInput(fmt::format(
           "methods '{}' and '{}' have different kinds, so no metric can compare them; choose methods of one kind",
@@ -132,14 +127,16 @@ void require_sound(const Question& question) {
     throw BadInput(fmt::format("method '{}' is compared with itself; name two different methods", question.method));
   require_contest(question.metric, kind);
   if (!(question.margin.value >= 0.0 && std::isfinite(question.margin.value)))
-    throw BadInput(
-        fmt::format("the margin is {}; it must be finite and at least 0", std::to_string(question.margin.value)));
+    throw BadInput(fmt::format("the margin of the question (--until) is {}; it must be finite and at least 0",
+                               std::to_string(question.margin.value)));
   if (!(question.risk > 0.0 && question.risk < 1.0))
-    throw BadInput(fmt::format("the risk is {}; it must be within (0, 1)", std::to_string(question.risk)));
+    throw BadInput(
+        fmt::format("the risk of a wrong answer is {}; it must be within (0, 1)", std::to_string(question.risk)));
   if (question.looks < 1 || question.looks > kLooksMax)
-    throw BadInput(fmt::format("the number of looks is {}; it must be within [1, {}]", question.looks, kLooksMax));
-  if (question.scenarios.empty()) throw BadInput("a question needs at least one scenario");
-  if (question.last_seed < question.first_seed) throw BadInput("a question needs at least one seed");
+    throw BadInput(
+        fmt::format("the number of interim analyses is {}; it must be within [1, {}]", question.looks, kLooksMax));
+  if (question.scenarios.empty()) throw BadInput("a question about two methods needs at least one scenario");
+  if (question.last_seed < question.first_seed) throw BadInput("a question about two methods needs at least one seed");
 }
 
 void claim(Results& results, const Question& question, const std::filesystem::path& database) {
@@ -152,7 +149,8 @@ void claim(Results& results, const Question& question, const std::filesystem::pa
                     database.string(), known, asked));
   if (!results.outcomes().empty())
     throw BadInput(
-        fmt::format("{}: this file contains draws of a run without --until; choose another file", database.string()));
+        fmt::format("{}: this database contains simulated runs of a sweep without --until; choose another file",
+                    database.string()));
   results.set_note(kQuestionNote, asked);
 }
 

@@ -9,14 +9,12 @@
 #include "scenarios/summary/comparison.hpp"
 #include "scenarios/sweep/results.hpp"
 
-/// With question.hpp, a sweep (many simulated runs of several scenarios) can stop early: interim analyses test whether
-/// one method is better than another (docs/maths/statistics.md, "Sequential test").
+/// A sweep (many simulated runs of several scenarios) can stop early: interim analyses test whether one method is
+/// better than another (docs/maths/statistics.md, "Sequential test").
 namespace tumble::scenarios {
 
-/// Key under which the results database stores the question, as text from `describe`.
 inline constexpr const char* kQuestionNote = "until";
 
-/// Question asks whether `method` is better than `against` in `metric` by more than the margin.
 struct Question {
   std::string method, against;  ///< "rate/tumble"; both methods are of one kind
   std::string metric;
@@ -26,13 +24,11 @@ struct Question {
   std::uint64_t first_seed = 1, last_seed = 1;
   std::vector<std::string> scenarios;
 
-  /// Returns the seeds after which the results are analysed, ascending. The last analysis is after the last seed.
+  /// Returns the ascending seeds after which the results are analysed.
   std::vector<std::uint64_t> look_seeds() const;
-  /// Returns the question as one line of text. Equal questions give the same line.
   std::string describe() const;
 };
 
-/// Answer is the answer to the question for one scenario.
 struct Answer {
   std::string scenario;
   Finding finding = Finding::undecided;  ///< with a margin, `worse` means "not better by more than the margin"
@@ -41,19 +37,16 @@ struct Answer {
   std::int64_t needed = 0;               ///< pairs of one sign that the analysis required for an answer
 };
 
-/// Throws BadInput for equal methods, methods of two kinds, methods without a full name, or an unranked metric. Also
-/// throws BadInput for a margin or risk out of range, or if there is no interim analysis.
+/// Throws BadInput for equal methods, methods of two kinds, an unranked metric, or a margin or risk out of range.
 void require_sound(const Question& question);
 
 /// Stores the question in the results database before the first simulated run. Throws BadInput if the database contains
 /// another question or any run, because the risk is only valid if the question precedes the results.
 void claim(Results& results, const Question& question, const std::filesystem::path& database);
 
-/// Computes the answers of the interim analyses up to `last_seed`, in the order of the question's scenarios. All runs
-/// up to `last_seed` must be complete; later runs have no effect. Failed runs rank worst.
+/// All runs up to `last_seed` must be complete; later runs have no effect.
 std::vector<Answer> answers(const Results& results, const Question& question, std::uint64_t last_seed);
 
-/// Describes the finding in words; "not by the margin" means that the method is not better by more than the margin.
 const char* finding_text(const Answer& answer, const Question& question);
 
 bool all_answered(const std::vector<Answer>& answers);

@@ -36,7 +36,6 @@ Seeds every_nth(const Seeds& seeds, std::size_t most) {
   return out;
 }
 
-/// Calls `visit` with the index of each seed that is also in `kept`.
 template <typename Visit>
 void for_kept(const Seeds& kept, const Seeds& seeds, Visit visit) {
   auto at = kept.begin();
@@ -53,7 +52,6 @@ Seeds of_kept(const Seeds& kept, const Seeds& seeds) {
   return out;
 }
 
-/// Copies only the values and failures of the seeds in `kept`, usually a small part of all seeds.
 MethodSummary of_kept(const Seeds& kept, const MethodSummary& method) {
   MethodSummary out{method.method,
                     method.needs_truth,

@@ -12,7 +12,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Scored contains the values of one metric over the simulated runs, and their badness (`how_bad`).
 struct Scored {
   std::vector<std::uint64_t> seeds;
   std::vector<double> values, badness;
@@ -24,7 +23,6 @@ Scored scored(const MetricSummary& metric, const MetricInfo& info) {
   if (info.unit == Unit::verdict) out.centre = Centre::share;
   for (const RankedValue& each : ranked_values(metric, worst_value(info))) {
     out.seeds.push_back(each.seed);
-    // In a pass-fail metric, a failed run has the value 1.
     out.values.push_back(info.unit == Unit::verdict && each.value != 0.0 ? 1.0 : each.value);
     // For unranked metrics such as costs, larger values count as worse.
     const bool contested = info.sense != Sense::none;
@@ -43,8 +41,6 @@ Scored failures(const MethodSummary& method) {
   return out;
 }
 
-/// Computes the median of `values` over the quarter of the runs with the lowest `numbers`, and over the quarter with
-/// the highest.
 void add_quarters(const std::vector<double>& numbers, const std::vector<double>& values, Influence& out) {
   const double low = quantile(numbers, 0.25), high = quantile(numbers, 0.75);
   std::vector<double> lowest, highest;
@@ -56,7 +52,6 @@ void add_quarters(const std::vector<double>& numbers, const std::vector<double>&
   out.median_high = quantile(highest, 0.5);
 }
 
-/// Returns the values of a random parameter for the given seeds. A missing seed gives NaN.
 std::vector<double> at_seeds(const std::vector<RankedValue>& numbers, const std::vector<std::uint64_t>& seeds) {
   std::vector<double> column;
   column.reserve(seeds.size());

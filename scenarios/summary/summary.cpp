@@ -17,7 +17,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Returns the index of a metric in the list of registered metrics. Unknown metrics come last.
 std::size_t metric_rank(const std::string& name) {
   const auto all = metrics();
   return static_cast<std::size_t>(
@@ -29,7 +28,8 @@ const MethodInfo* registered(Kind kind, const std::string& name) {
   return rank < methods().size() ? &methods()[rank].info : nullptr;
 }
 
-/// Returns the registered baseline if the results contain it, and otherwise the first registered method without truth.
+/// The baseline is the registered baseline if the results contain it, and otherwise the first registered method without
+/// access to the truth.
 std::string choose_baseline(Kind kind, const std::vector<MethodSummary>& methods) {
   for (const MethodSummary& method : methods) {
     const MethodInfo* info = registered(kind, method.method);
@@ -41,8 +41,6 @@ std::string choose_baseline(Kind kind, const std::vector<MethodSummary>& methods
   return methods.front().method;
 }
 
-/// Counts the simulated runs on which `own` is better than the baseline. If both methods failed on a run, neither is
-/// better.
 Wins paired_wins(const MetricSummary& own, const MetricSummary& base, const MetricInfo& info) {
   Wins wins;
   if (info.sense == Sense::none) return wins;
@@ -69,7 +67,6 @@ void finish(const std::string& name, MetricSummary& metric) {
   metric.quantile_95 = quantile(ranked, info.sense == Sense::higher ? 0.05 : 0.95);
 }
 
-/// Adds each failed run to every metric for which another method has a value on this run.
 void place_failures(Section& section) {
   std::set<std::string> names;
   for (const MethodSummary& method : section.methods) {
@@ -93,7 +90,6 @@ void place_failures(Section& section) {
   }
 }
 
-/// Sorts the values of a metric by seed.
 void sort_by_seed(MetricSummary& metric) {
   if (std::is_sorted(metric.seeds.begin(), metric.seeds.end())) return;
   std::vector<RankedValue> sorted = ranked_values(metric, std::nan(""));
@@ -104,7 +100,6 @@ void sort_by_seed(MetricSummary& metric) {
   }
 }
 
-/// Gathered contains the results of one method on one scenario. `places` finds a metric by the pointer to its name.
 struct Gathered {
   MethodSummary summary;
   std::unordered_map<const std::string*, MetricSummary*> places;
@@ -128,7 +123,6 @@ struct Gathered {
 
   MethodSummary sorted() {
     for (std::vector<std::uint64_t>* seeds : {&summary.seeds, &summary.not_ok_seeds}) {
-      // Seeds are usually sorted already; the check is much cheaper than sorting.
       if (!std::is_sorted(seeds->begin(), seeds->end())) std::sort(seeds->begin(), seeds->end());
     }
     for (auto& [name, metric] : summary.metrics) sort_by_seed(metric);
@@ -136,7 +130,6 @@ struct Gathered {
   }
 };
 
-/// GatheredSections contains the results by scenario and kind, then by method.
 using GatheredSections = std::map<std::pair<std::string, Kind>, std::map<std::string, Gathered, std::less<>>>;
 
 GatheredSections gather(const Results& results, Names& names, const std::function<void(const OutcomeView&)>& beside) {

@@ -14,22 +14,17 @@
 
 namespace tumble::scenarios {
 
-/// Returns the display style of a metric.
 inline MetricStyle metric_style(const std::string& metric) {
   return style_of(metric_info(metric).unit);
 }
 
-/// Returns the index of a method in the list of registered methods. Unknown methods come last.
 std::size_t method_rank(Kind kind, const std::string& name);
 
-/// Wins counts the simulated runs on which a method was better than the baseline, among the runs with values of both.
 struct Wins {
   std::int64_t count = 0, pairs = 0;
 };
 
-/// MetricSummary summarises one metric of one method over all simulated runs of a scenario. Only outcomes with the
-/// status `ok` have values. Failed outcomes rank worst in all statistics, so the median is infinite if half of the runs
-/// fail. Runs for which no method has a value do not count.
+/// Failed outcomes rank worst in all statistics, so the median is infinite if half of the runs fail.
 struct MetricSummary {
   Interval centre{};  ///< median, or fraction of failures of a pass-fail metric, with 95 % interval
   double quantile_95 = 0.0;
@@ -50,7 +45,6 @@ struct MethodSummary {
   const MetricSummary* find(const std::string& metric) const;
 };
 
-/// Section contains all methods of one kind on one scenario.
 struct Section {
   std::string scenario;
   Kind kind = Kind::rate;
@@ -66,18 +60,14 @@ struct Summary {
   std::map<std::string, std::int64_t> draws, rejected;  ///< numbers of runs per scenario
 };
 
-/// RankedValue is the value of a metric on one simulated run; a failed run has the worst value.
 struct RankedValue {
   std::uint64_t seed;
   double value;
 };
 
-/// Returns the values and failures of a metric by ascending seed. If `worst` is NaN, failures are omitted.
 std::vector<RankedValue> ranked_values(const MetricSummary& metric, double worst);
 
-/// Computes statistics of all metrics in the results, in O(number of scores * log).
 Summary summarize(const Results& results);
-/// Computes statistics of all metrics in the results, and calls `beside` with each outcome in the same pass.
 Summary summarize(const Results& results, Names& names, const std::function<void(const OutcomeView&)>& beside);
 
 }  // namespace tumble::scenarios

@@ -26,8 +26,7 @@ namespace fs = std::filesystem;
   throw BadInput(path.string() + ": cannot be locked: " + std::generic_category().message(error));
 }
 
-/// Returns the path of the lock file of a database. Symbolic links are followed, so each database has exactly one lock
-/// file.
+/// Symbolic links to the database are followed, so each database has exactly one lock file.
 fs::path lock_of(const fs::path& database) {
   std::error_code error;
   fs::path place = fs::weakly_canonical(database, error);
@@ -54,8 +53,7 @@ std::string who_holds(int fd) {
   return line.empty() ? "another process" : line;
 }
 
-/// Returns true if the path still refers to the open lock file. The previous owner may have removed the file after this
-/// process opened it.
+/// The previous owner may have removed the lock file after this process opened it.
 bool is_at(const fs::path& path, int fd) {
   struct stat open {
   }, named{};
@@ -88,7 +86,7 @@ DatabaseOwner::DatabaseOwner(const fs::path& database) : database_(database), lo
   if (fd_ < 0) fail_to_lock(lock_, EAGAIN);
   on_signal_.emplace(lock_, Unfinished::Kind::file);
   const std::string text = who_we_are() + "\n";
-  // The lock is valid even if its text cannot be written.
+  // The lock on the database is valid even if the text of the lock file cannot be written.
   if (ftruncate(fd_, 0) == 0 && pwrite(fd_, text.data(), text.size(), 0) < 0) return;
 }
 

@@ -24,7 +24,6 @@ std::filesystem::path DrawFiles::estimate(const MethodInfo& method) {
   return place;
 }
 
-/// Moves the estimates of other methods from the old folder to the new folder, which then replaces the old folder.
 void DrawFiles::take_over(const sim::Sensors& sensors) const {
   const std::filesystem::path theirs = keeping_.folder / "estimates", own = folder_->path() / "estimates";
   if (!std::filesystem::exists(theirs)) return;
@@ -43,7 +42,6 @@ void DrawFiles::finish(const SimulatedDraw& draw, bool failed) {
     trouble_.clear();
     return folder_.reset();
   }
-  // If an estimate could not be written, for example because the disk is full, no file of the run is kept.
   if (!trouble_.empty()) return folder_.reset();
   try {
     RecordingInfo info = keeping_.versions;

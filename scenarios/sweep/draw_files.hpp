@@ -11,13 +11,10 @@
 #include "scenarios/sweep/keep.hpp"
 #include "scenarios/sweep/unfinished_folder.hpp"
 
-/// DrawFiles writes the files of a simulated run that a sweep keeps.
 namespace tumble::scenarios {
 
-/// Name of the file with the command that reproduces a kept run.
 inline constexpr const char* kDrawCommand = "command";
 
-/// Keeping states whether and where the files of a simulated run are kept.
 struct Keeping {
   enum class When { never, if_failed, always };
   When when = When::never;
@@ -27,20 +24,14 @@ struct Keeping {
   bool lidars = false;           ///< a method of the run reads lidars, in this or in another task
 };
 
-/// DrawFiles writes the recording and the estimates of a kept simulated run. A write error does not change the outcomes
-/// of the run.
+/// A write error in the kept files of a simulated run does not change the outcomes of the run.
 class DrawFiles {
  public:
   explicit DrawFiles(const Keeping& keeping);
 
-  /// Returns the folder in which a method must write its estimate; empty if the estimate is not kept.
   std::filesystem::path estimate(const MethodInfo& method);
-  /// Writes the recording and moves all files to their final folder. After `miss` or a write error, all files are
-  /// removed instead. Stored estimates of other methods remain if their sensor data were equal.
   void finish(const SimulatedDraw& draw, bool failed);
-  /// Records that an estimate could not be written.
   void miss(const std::string& why) { trouble_ = why; }
-  /// Describes the error in one line; empty if there is no error.
   const std::string& error_code() const { return trouble_; }
 
  private:

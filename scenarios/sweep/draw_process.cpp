@@ -30,7 +30,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-// Returns the resident memory of this process.
 double resident_mib() {
   std::ifstream file("/proc/self/statm");
   double pages = 0.0;
@@ -45,8 +44,6 @@ double peak_mib() {
   return static_cast<double>(usage.ru_maxrss) / 1024.0;
 }
 
-/// Writes the estimate of a method to the folder of a simulated run. A write error does not change the outcome;
-/// KeptDraws::holds detects the missing file. Returns the error in one line, or an empty text.
 std::string leave_estimate(const Method& method, const SimulatedDraw& draw, const Estimate& estimate,
                            const std::filesystem::path& folder) {
   if (folder.empty()) return {};
@@ -66,8 +63,8 @@ void run_method_child(const Method& method, const SimulatedDraw& draw, const Sim
   const double before_mib = resident_mib();
   Outcome outcome;
   const Estimate estimate = run_method(method, draw, outcome);
-  // Peak memory is recorded only for built-in methods: for an external command, the operating system also counts the
-  // memory of the forked process.
+  // For an external command, the operating system also counts the memory of the forked process, so peak memory is
+  // recorded only for built-in methods.
   const bool own = method.info.version.empty();
   if (own) outcome.scores.push_back({"estimate_peak_mib", std::max(0.0, peak_mib() - before_mib)});
   assess(method, scored, surface, estimate, outcome);
@@ -76,7 +73,6 @@ void run_method_child(const Method& method, const SimulatedDraw& draw, const Sim
   write_all(fd, to_line({outcome, {}}));
 }
 
-// Reads until the process closes its pipe. Returns false at the deadline.
 bool read_until(Process& process, double deadline_s, std::string& buffer) {
   while (true) {
     const double left_s = deadline_s - now_s();
@@ -87,14 +83,12 @@ bool read_until(Process& process, double deadline_s, std::string& buffer) {
   }
 }
 
-/// Returns true if the method reads lidars: a built-in slam method, or an external method of a kind other than rate,
-/// which receives all sensor data.
+/// An external method of a kind other than rate receives all sensor data, so it counts as a reader of lidars.
 bool reads_lidars(const MethodInfo& info) {
   return info.kind == Kind::slam || (info.kind != Kind::rate && !info.version.empty());
 }
 
-/// Returns whether the simulation of a task needs its lidars. Methods of kind `rate` never read a lidar. A kept
-/// recording contains lidars if a method of the run reads them.
+/// A kept recording contains lidar sweeps if a method of the simulated run reads them.
 Lidars lidars_for(const DrawTask& task, bool recordings_unseen) {
   const bool kept = task.keeping.when != Keeping::When::never && task.keeping.lidars;
   const bool read =
@@ -105,7 +99,6 @@ Lidars lidars_for(const DrawTask& task, bool recordings_unseen) {
   return read ? Lidars::simulated : Lidars::left_out;
 }
 
-/// Given is a simulated run whose sensor data a setting has changed; empty if there is no setting.
 struct Given {
   Setting setting;
   std::optional<SimulatedDraw> draw, scored;
@@ -131,18 +124,14 @@ Outcome unanswered(const DrawTask& task, const DrawTask::Run& run, OutcomeStatus
   return outcome;
 }
 
-/// Reports that the scenario cannot be simulated with this seed on any machine.
 void reject(const DrawTask& task, const std::exception& error, int fd) {
   write_all(fd, to_line({{}, RejectedDraw{task.name, task.seed, one_line(error.what()), task.setting}}));
 }
 
-/// Reports the outcome `status` for each method of a run that could not be simulated or read.
 void give_up(const DrawTask& task, OutcomeStatus status, const std::string& message, int fd) {
   for (const Outcome& outcome : without_answer(task, status, message)) write_all(fd, to_line({outcome, {}}));
 }
 
-/// MadeDraw is a run that was simulated or read from a recording. If a method builds maps, it also contains the true
-/// surface for map scores.
 struct MadeDraw {
   SimulatedDraw draw;
   std::optional<sim::Surface> surface;
@@ -167,8 +156,6 @@ DrawValues motion_of(const DrawTask& task, const sim::Recording& recording) {
   return values;
 }
 
-/// Simulates the run, or reads it from a recording, and reports its motion values. On failure, reports the reason and
-/// returns null.
 std::unique_ptr<MadeDraw> made_draw(const DataRoot& data, const DrawTask& task, int fd, bool recordings_unseen) {
   try {
     std::unique_ptr<MadeDraw> made = make(data, task, recordings_unseen);
@@ -181,15 +168,16 @@ std::unique_ptr<MadeDraw> made_draw(const DataRoot& data, const DrawTask& task, 
   } catch (const sim::SimulationFailure& error) {
     reject(task, error, fd);
   } catch (const std::bad_alloc&) {
-    give_up(task, OutcomeStatus::killed, "not enough memory to simulate the draw", fd);
+    give_up(task, OutcomeStatus::killed,
+            "there is not enough memory to simulate the run; free memory or increase the memory limit of a process",
+            fd);
   } catch (const std::exception& error) {
     give_up(task, OutcomeStatus::crashed, std::string("simulation error: ") + error.what(), fd);
   }
   return nullptr;
 }
 
-/// Runs one method on the sensor data of a run. `given` contains the changed sensor data of the previous method, which
-/// are reused if the settings are equal.
+/// The changed sensor data of the previous method are reused if the settings are equal.
 Outcome run_one(const DrawTask& task, const DrawTask::Run& run, const MadeDraw& made, double timeout_s, Given& given,
                 DrawFiles& files) {
   Outcome outcome;
@@ -202,7 +190,9 @@ Outcome run_one(const DrawTask& task, const DrawTask::Run& run, const MadeDraw& 
                      run.setting.is_plain() ? files.estimate(run.method->info) : std::filesystem::path(), &not_kept);
     if (!not_kept.empty()) files.miss(not_kept);
   } catch (const std::bad_alloc&) {
-    outcome = unanswered(task, run, OutcomeStatus::killed, "not enough memory for the method");
+    outcome =
+        unanswered(task, run, OutcomeStatus::killed,
+                   "there is not enough memory for the method; free memory or increase the memory limit of a process");
   } catch (const std::system_error& error) {
     outcome = unanswered(task, run, OutcomeStatus::killed, error.what());
   }
@@ -220,7 +210,7 @@ Outcome run_isolated(const Method& method, const SimulatedDraw& draw, const Simu
                      const sim::Surface* surface, double timeout_s, const std::filesystem::path& folder,
                      std::string* not_kept) {
   const double before_mib = resident_mib();
-  // A killed child cannot remove its temporary files, so the parent removes them.
+  // A killed child process cannot remove its temporary files, so the parent removes them.
   const ScratchFolder temporary("run");
   Process process(
       [&](int fd) {
@@ -262,7 +252,7 @@ std::vector<Outcome> without_answer(const DrawTask& task, OutcomeStatus status, 
 void run_draw(const DataRoot& data, const DrawTask& task, double timeout_s, int fd, bool recordings_unseen) {
   const std::unique_ptr<const MadeDraw> made = made_draw(data, task, fd, recordings_unseen);
   if (!made) return;
-  // Returns the memory that the simulation freed to the operating system; otherwise it would hide the memory use of the
+  // Memory that the simulation freed is returned to the operating system, because it would hide the memory use of the
   // method.
   malloc_trim(0);
   DrawFiles files(task.keeping);

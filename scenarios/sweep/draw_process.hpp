@@ -12,7 +12,6 @@
 
 namespace tumble::scenarios {
 
-/// DrawTask is one run, simulated or recorded, with the methods to run on it.
 struct DrawTask {
   std::string name;                         ///< name of the scenario or recording
   const Scenario* scenario = nullptr;       ///< scenario of a simulation, else null
@@ -27,29 +26,21 @@ struct DrawTask {
   Keeping keeping;  ///< only for unmodified scenarios and methods
 };
 
-/// Longest wait for messages from workers before the deadlines are checked [ms].
+/// Longest wait for messages from workers before the deadlines are checked [ms]
 inline constexpr int kPollMs = 200;
-/// Time limit of a simulation, in multiples of the time limit of one method.
+/// Time limit of a simulation, in multiples of the time limit of one method
 inline constexpr double kSimulateTimeouts = 2.0;
 
-/// Returns the status of a method whose process ended without a result.
 OutcomeStatus ended_as(const Process::End& end);
 
-/// Returns one outcome with `status` per method of the task, for a run without result.
 std::vector<Outcome> without_answer(const DrawTask& task, OutcomeStatus status, const std::string& message);
 
-/// Simulates one scenario with one seed, without lidars if no method reads them, and runs the methods of the task. Runs
-/// in a worker process. Writes one message per line to `fd`: the outcome of a method, or a rejection if the simulation
-/// is impossible. The caller writes the final empty message. `recordings_unseen` is that of SweepOptions.
+/// Writes one message per line to `fd`: the outcome of a method, or a rejection if the simulation is impossible.
 void run_draw(const DataRoot& data, const DrawTask& task, double timeout_s, int fd, bool recordings_unseen = false);
 
-/// Runs one method in a separate process for at most `timeout_s` of wall time. A crash, a time-out or an exception
-/// becomes an outcome. The cost is the CPU time and the peak memory of the method, without the memory of the calling
-/// process.
-///
-/// The estimate is compared with the truth in `scored`, which equals `draw` unless the sensor data were changed
-/// (triage). The estimate is written to `folder` (estimate_file.hpp), unless `folder` is empty. If writing fails,
-/// `not_kept` contains the reason.
+/// Runs one method in a separate process for at most `timeout_s` of wall time; a crash, a time-out or an exception
+/// becomes an outcome. The estimate is compared with the truth in `scored`, which equals `draw` unless the sensor data
+/// were changed.
 Outcome run_isolated(const Method& method, const SimulatedDraw& draw, const SimulatedDraw& scored,
                      const sim::Surface* surface, double timeout_s, const std::filesystem::path& folder = {},
                      std::string* not_kept = nullptr);

@@ -12,7 +12,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Returns the next line from the pipe without its newline; empty if the other end is closed.
 std::optional<std::string> next_line(int fd, std::string& buffer) {
   char chunk[8192];
   std::size_t newline;
@@ -27,7 +26,6 @@ std::optional<std::string> next_line(int fd, std::string& buffer) {
   return line;
 }
 
-/// Main loop of the worker process: reads one task per line until an empty line.
 void serve(const WorkerTerms& terms, int tasks, int fd) {
   limit_memory(terms.memory_mib);
   if (!terms.temporary.empty()) setenv("TMPDIR", terms.temporary.c_str(), 1);
@@ -36,7 +34,8 @@ void serve(const WorkerTerms& terms, int tasks, int fd) {
     if (line->empty()) return;
     run_draw(terms.data, terms.plan.from_line(*line), terms.timeout_s, fd, terms.recordings_unseen);
     malloc_trim(0);  // an idle worker must not hold the memory of its last run
-    // The last message of a run follows all destructors. If the worker dies before it, the current task fails.
+    // The final message of a worker's task follows all destructors; if the worker dies before this message, the task
+    // fails.
     write_all(fd, to_line({}));
   }
 }

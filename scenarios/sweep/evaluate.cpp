@@ -55,7 +55,8 @@ std::vector<MethodPointer> applicable(std::span<const MethodPointer> methods, co
 void require_applies(const Method& method, const Scenario& scenario) {
   const std::string why = method.info.why_not(subject_of(scenario));
   if (!why.empty())
-    throw BadInput(fmt::format("method '{}' on {}: the method {}", method.info.name, scenario.name, why));
+    throw BadInput(
+        fmt::format("method '{}' cannot run on scenario {}: the method {}", method.info.name, scenario.name, why));
 }
 
 namespace {
@@ -72,7 +73,6 @@ OutcomeStatus status_of(NoAnswer::Why why) {
   return OutcomeStatus::killed;
 }
 
-/// Returns an empty estimate for a method without result, with the output of its program.
 Estimate no_estimate(const std::string& transcript = "") {
   Estimate none;
   none.transcript = transcript;
@@ -120,7 +120,8 @@ Estimate run_method(const Method& method, const SimulatedDraw& draw, Outcome& ou
   } catch (const std::bad_alloc&) {
     estimate = no_estimate();
     outcome.status = OutcomeStatus::killed;
-    outcome.message = "not enough memory for the method";
+    outcome.message =
+        "there is not enough memory for the method; free memory or increase the memory limit of a process";
   } catch (const RefusedAnswer& error) {
     estimate = no_estimate(error.transcript());
     outcome.status = OutcomeStatus::failed;
@@ -147,7 +148,8 @@ void score_estimate(const Method& method, const SimulatedDraw& draw, const sim::
     for (Score& score : score(method.info.kind, scored)) outcome.scores.push_back(std::move(score));
   } catch (const std::bad_alloc&) {
     outcome.status = OutcomeStatus::killed;
-    outcome.message = "not enough memory to score the estimate";
+    outcome.message =
+        "there is not enough memory to score the estimate; free memory or increase the memory limit of a process";
   } catch (const std::exception& error) {
     outcome.status = OutcomeStatus::failed;
     outcome.message = one_line(std::string("scoring failed: ") + error.what());

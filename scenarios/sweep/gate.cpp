@@ -29,14 +29,11 @@ bool by_difference(const MetricInfo& info) {
   return info.compared == Compared::by_difference;
 }
 
-/// Returns the largest tolerated change of a metric.
 double margin_of(const MetricInfo& info, const GatePolicy& policy) {
   if (!by_difference(info)) return std::log1p(policy.margin);
   return info.unit == Unit::time_offset ? policy.time_margin_s : policy.share_margin;
 }
 
-/// Returns the change of a metric from the accepted value `before` to the new value `now`: a log ratio or a difference,
-/// as the metric states.
 double difference(const MetricInfo& info, double before, double now) {
   if (before == now) return 0.0;
   if (by_difference(info)) return now - before;
@@ -45,8 +42,7 @@ double difference(const MetricInfo& info, double before, double now) {
   return std::log(now / before);
 }
 
-/// Converts a value to a badness, for the check of the worst run (`GatePolicy::worst`). For a fraction, it is one minus
-/// the value. For a signed value, it is the distance from the target.
+/// The badness of a fraction is one minus the fraction; that of a signed value is its distance from the target.
 double badness(const MetricInfo& info, double value) {
   if (!by_difference(info)) return value;
   return info.unit == Unit::share ? 1.0 - value : std::abs(value - info.target);
@@ -57,8 +53,7 @@ struct GatePair {
   double before = 0.0, now = 0.0;  ///< infinite (worst) if the run was not ok
 };
 
-/// GatePairs contains the accepted and the new value of a metric on the same runs. Runs without an accepted value are
-/// omitted. `lost` contains the seeds of runs that are ok in both results but have no new value.
+/// `lost` contains the seeds of simulated runs that are ok in both results but have no new value.
 struct GatePairs {
   std::vector<GatePair> pairs;
   std::vector<std::uint64_t> lost;
@@ -76,7 +71,7 @@ GatePairs pairs_of(const GateRun& all, const MethodRun& before, const MethodRun&
     GatePair pair{all.seeds[k], value_at(before, info.name, k), value_at(now, info.name, k)};
     if (was_ok && std::isnan(pair.before)) continue;
     if (was_ok && is_ok && std::isnan(pair.now)) out.lost.push_back(pair.seed);
-    // A run that is not ok ranks worst, even if it has a value.
+    // A simulated run that is not ok ranks worst, even if it has a value of the metric.
     if (!was_ok) pair.before = worst_value(info);
     if (!is_ok) pair.now = worst_value(info);
     if (!std::isnan(pair.before) && !std::isnan(pair.now)) out.pairs.push_back(pair);
@@ -84,14 +79,11 @@ GatePairs pairs_of(const GateRun& all, const MethodRun& before, const MethodRun&
   return out;
 }
 
-/// Returns the p-value of the differences under the hypothesis that their median is at most `margin`.
 double chance_beyond(std::vector<double> differences, double margin) {
   for (double& each : differences) each -= margin;
   return signed_rank_chance(differences);
 }
 
-/// Checks that no new value is worse than `GatePolicy::worst` times the worst accepted value. The fault names the
-/// failing run.
 void hold_worst_draw(const MetricInfo& info, const std::vector<GatePair>& pairs, const GatePolicy& policy,
                      GateResult& result) {
   if (pairs.empty()) return;
@@ -105,12 +97,11 @@ void hold_worst_draw(const MetricInfo& info, const std::vector<GatePair>& pairs,
   const double slack = by_difference(info) ? margin_of(info, policy) : 0.0;
   if (!(badness(info, now.now) > policy.worst * badness(info, before.before) + slack)) return;
   result.seed = now.seed;
-  result.fault = fmt::format("the worst value is {} (seed {}), but the worst value of the accepted run is {}",
+  result.fault = fmt::format("the worst value is {} (seed {}), but the worst value of the accepted results is {}",
                              three_digits(now.now), now.seed, three_digits(before.before));
 }
 
-/// Tests whether the median change of a metric exceeds the margin, and adds the change and a fault, if any, to the
-/// result. Each metric counts as one statistical test: for a two-sided metric, the p-value is twice the smaller
+/// In a gate, each metric counts as one statistical test: for a two-sided metric, the p-value is twice the smaller
 /// one-sided p-value.
 void hold_middle(const std::vector<GatePair>& pairs, const MetricInfo& info, const GatePolicy& policy,
                  std::size_t tests, GateResult& result) {
@@ -146,7 +137,7 @@ GateResult hold_metric(const GatePairs& found, const MethodRun& before, const Me
   if (!found.lost.empty()) {
     result.seed = found.lost.front();
     result.fault =
-        fmt::format("the metric has no value, but has a value in the accepted run, at seed {}", found.lost.front());
+        fmt::format("the metric has no value, but has a value in the accepted results, at seed {}", found.lost.front());
     if (found.lost.size() > 1) result.fault += " and " + std::to_string(found.lost.size() - 1) + " more";
   } else if (result.passes()) {
     hold_worst_draw(info, found.pairs, policy, result);
@@ -154,7 +145,6 @@ GateResult hold_metric(const GatePairs& found, const MethodRun& before, const Me
   return result;
 }
 
-/// Returns true if a pass-fail metric is 1 (a failure) on a run.
 bool is_condemned(const MethodRun& run, const MetricInfo& verdict, std::size_t draw) {
   return value_at(run, verdict.name, draw) > 0.0;
 }
@@ -180,7 +170,7 @@ GateResult hold_outcomes(const GateRun& all, const MethodRun& before, const Meth
       fault = condemned(now);
     was += was_good ? 0 : 1;
     is += fault.empty() ? 0 : 1;
-    // A missing run is a fault even if the run failed in the accepted results.
+    // A missing simulated run is a fault even if the run failed in the accepted results.
     if (result.fault.empty() && !fault.empty() && (was_good || !now.status[k])) {
       result.fault = fault + seed;
       result.seed = all.seeds[k];
@@ -201,7 +191,6 @@ MethodRun without_outcomes(const MethodRun& like) {
   return none;
 }
 
-/// Pooled contains the pairs of one metric of a method, over all scenarios with this metric.
 struct Pooled {
   Kind kind = Kind::rate;
   std::string method;
@@ -212,7 +201,6 @@ struct Pooled {
   }
 };
 
-/// Returns the metrics that occur in more than one scenario, in the order of the accepted results.
 std::vector<Pooled> pooled_metrics(const GateRun& accepted) {
   std::vector<Pooled> seen, out;
   const auto has = [](const std::vector<Pooled>& list, const MethodRun& run, const MetricInfo& info) {
@@ -242,10 +230,10 @@ std::vector<GateResult> hold_to_gate(const GateRun& run, const Gate& gate) {
     throw BadInput(fmt::format(
         "the gate of {} has no accepted results; run 'tumble gate SUITE --accept' to create them", gate.suite));
   if (run.seeds != gate.accepted.seeds) {
-    throw BadInput(
-        fmt::format("the accepted run of the gate {} has {} draws with other seeds than the {} draws of this run; use "
-                    "the same seeds, or run 'tumble gate {} --accept' to accept this run",
-                    gate.suite, gate.accepted.seeds.size(), run.seeds.size(), gate.suite));
+    throw BadInput(fmt::format(
+        "the accepted results of gate {} contain {} simulated runs with other seeds than the {} simulated runs of this "
+        "comparison; use the same seeds, or run 'tumble gate {} --accept' to accept the new results",
+        gate.suite, gate.accepted.seeds.size(), run.seeds.size(), gate.suite));
   }
   std::vector<Pooled> all = pooled_metrics(gate.accepted);
   std::size_t tests = all.size();

@@ -12,28 +12,21 @@
 #include "scenarios/scoring/metric.hpp"
 #include "scenarios/sweep/results.hpp"
 
-/// A gate compares new results of a suite with accepted results, separately for each simulated run.
+/// A gate compares new results of a suite with accepted results, separately for each simulated run. New and accepted
+/// results contain the same simulated runs with equal sensor data, so differences between seeds cancel in each pair.
 ///
-/// New and accepted results contain the same simulated runs with equal sensor data, so differences between seeds cancel
-/// in each pair. For each scenario and method in the accepted results, the gate makes these checks:
-///
-/// - Outcomes: a run that was ok must be ok again. A pass-fail metric (`map_failed`) must not change to 1.
+/// - Outcomes: a run that was ok must be ok again, and a pass-fail metric (`map_failed`) must not change to 1.
 /// - Presence: if the accepted outcome of a run has a metric and the new outcome is ok, the new outcome must have it
 ///   too.
-///
-/// - Median: no gate metric (metric.hpp, `held_metrics`) may become worse by more than the margin. The difference of a
-///   pair is the logarithm of the ratio, or the plain difference, as the metric states (`Compared`). The exact
-///   signed-rank test (statistics/paired.hpp) tests the differences minus the margin. A metric with a target is tested
-///   on both sides, so a covariance that becomes too small also fails.
+/// - Median: no gate metric may become worse by more than the margin, by the exact signed-rank test of the paired
+///   differences. A metric with a target is tested on both sides, so a covariance that becomes too small also fails.
 /// - Median over all scenarios of a method: detects shifts that are too small to detect in one scenario.
-///
 /// - Worst run: no value may be worse than `worst` times the worst accepted value, because tests of the median cannot
 ///   detect a single bad run.
 ///
 /// If the new results are not worse, the probability that any test of a median fails is at most `risk` (Bonferroni).
 namespace tumble::scenarios {
 
-/// MethodRun contains the results of one method, in the order of `GateRun::seeds`.
 struct MethodRun {
   std::string scenario;
   Kind kind = Kind::rate;
@@ -48,8 +41,6 @@ struct GateRun {
   const MethodRun* find(const std::string& scenario, Kind kind, const std::string& method) const;
 };
 
-/// Returns the gate metrics of outcomes without setting (unmodified scenarios and methods), for the seeds `first` to
-/// `last`.
 GateRun gate_run(std::span<const Outcome> outcomes, std::uint64_t first, std::uint64_t last);
 GateRun gate_run(const Results& results, std::uint64_t first, std::uint64_t last);
 
@@ -61,8 +52,8 @@ struct GatePolicy {
   double worst = 2.0;           ///< allowed ratio of the worst new value to the worst accepted value; at least 1
 };
 
-/// Gate contains the accepted results of a suite (scenarios/gates/SUITE.csv) and the limits for new results
-/// (SUITE.yaml). The two files of a gate are kept in git.
+/// A gate has two files in git: the accepted results of a suite (scenarios/gates/SUITE.csv) and the limits for new
+/// results (SUITE.yaml).
 struct Gate {
   std::string suite;
   GatePolicy policy;
@@ -70,19 +61,13 @@ struct Gate {
 };
 
 std::vector<std::string> gate_names(const DataRoot& data);
-/// Loads the gate of a suite by its name, or from a file if `name` ends in ".yaml". The accepted results are in a
-/// ".csv" file with the same name. `described` contains external methods (external_method.hpp) that may occur in the
-/// gate. Throws BadInput with file and line for an unknown gate (the message suggests the nearest name), another suite,
-/// or empty results. Also throws BadInput for an unknown key, kind, method, metric or status, a wrong row length, or a
-/// number out of bounds.
+/// Loads the gate of a suite by its name, or from a file if `name` ends in ".yaml". `described` contains external
+/// methods that may occur in the gate. Throws BadInput with file and line for an unknown gate or an invalid file.
 Gate load_gate(const DataRoot& data, const std::string& name, std::span<const MethodPointer> described = {});
-/// Converts the limits or the accepted results of a gate to text, from which `load_gate` restores all numbers exactly.
 std::string to_yaml(const Gate& gate);
 std::string to_csv(const GateRun& run);
 GateRun parse_gate_run(const std::string& text, const std::string& file, std::span<const MethodPointer> described = {});
 
-/// GateResult is the result of one check of the gate, for one scenario or all scenarios: of one metric, or of the
-/// outcomes of a method (empty `metric`).
 struct GateResult {
   std::string scenario;  ///< empty: all scenarios with this metric
   Kind kind = Kind::rate;
@@ -98,12 +83,10 @@ struct GateResult {
   bool passes() const { return fault.empty(); }
 };
 
-/// Compares new results with the accepted results of the gate. Throws BadInput if the seeds differ or the accepted
-/// results are empty.
+/// Throws BadInput if the seeds differ or the accepted results are empty.
 std::vector<GateResult> hold_to_gate(const GateRun& run, const Gate& gate);
 
-/// Throws BadInput if a simulated run has no outcome, or if a method has no ok outcome. Results without an ok outcome
-/// must not be accepted.
+/// Throws BadInput if a simulated run has no outcome, or if a method has no ok outcome.
 void require_acceptable(const GateRun& run);
 
 }  // namespace tumble::scenarios

@@ -38,7 +38,6 @@ std::vector<std::string> cells_of(const std::string& line) {
   return cells;
 }
 
-/// GateLine is one line in the table of a gate, with its location for error messages.
 struct GateLine {
   const std::string& file;
   int number;
@@ -56,9 +55,10 @@ std::vector<std::uint64_t> read_seeds(const GateLine& line) {
   std::vector<std::uint64_t> seeds;
   for (std::size_t i = kKeyCells; i < line.cells.size(); ++i) {
     std::uint64_t seed = 0;
-    if (!read_number(line.cells[i], seed)) line.fail(fmt::format("the header cell '{}' is not a seed", line.cells[i]));
+    if (!read_number(line.cells[i], seed))
+      line.fail(fmt::format("the header cell '{}' is not a seed, which is a whole number", line.cells[i]));
     if (!seeds.empty() && seed <= seeds.back())
-      line.fail(fmt::format("seeds must increase from column to column; found {}", line.cells[i]));
+      line.fail(fmt::format("seeds must increase from column to column; the header contains {}", line.cells[i]));
     seeds.push_back(seed);
   }
   return seeds;
@@ -73,7 +73,6 @@ Kind read_kind(const GateLine& line) {
   line.fail("unknown kind '" + line.cells[1] + "'" + suggestion(line.cells[1], known));
 }
 
-/// Throws BadInput if the method is neither built in nor in `described`.
 void require_method(const GateLine& line, const MethodRun& run, std::span<const MethodPointer> described) {
   if (std::any_of(described.begin(), described.end(), [&](const MethodPointer& method) {
         return method->info.kind == run.kind && method->info.name == run.method;
@@ -108,7 +107,7 @@ void read_values(const GateLine& line, MethodRun& run) {
     double value = std::numeric_limits<double>::quiet_NaN();
     const bool none = line.cells[i].empty();
     if (!none && (!read_number(line.cells[i], value) || !std::isfinite(value))) {
-      line.fail(fmt::format("the cell '{}' is not a finite number", line.cells[i]));
+      line.fail(fmt::format("the cell '{}' of the accepted results is not a finite number", line.cells[i]));
     }
     place->second.push_back(value);
   }
@@ -122,7 +121,8 @@ void read_row(const GateLine& line, std::span<const MethodPointer> described, Ga
   const Kind kind = read_kind(line);
   const bool opens = line.cells[3] == kStatusRow;
   const MethodRun* known = run.find(line.cells[0], kind, line.cells[2]);
-  if (opens && known != nullptr) line.fail("the status row of this method occurs twice");
+  if (opens && known != nullptr)
+    line.fail("the status row of this method occurs twice; each method may have one status row");
   if (!opens && (known == nullptr || known != &run.methods.back()))
     line.fail("this row must follow the status row of its method");
   if (opens) {
@@ -137,8 +137,8 @@ void read_row(const GateLine& line, std::span<const MethodPointer> described, Ga
 double within(const YamlNode& node, double low, double high) {
   const double value = node.number();
   if (!(value >= low && value <= high)) {
-    node.fail(fmt::format("the value is {}; it must be within [{}, {}]", number_text(value), number_text(low),
-                          number_text(high)));
+    node.fail(fmt::format("the limit of the gate is {}; it must be within [{}, {}]", number_text(value),
+                          number_text(low), number_text(high)));
   }
   return value;
 }
@@ -161,7 +161,7 @@ GateRun parse_gate_run(const std::string& text, const std::string& file, std::sp
     else
       read_row(line, described, run);
   }
-  if (run.methods.empty()) throw BadInput(fmt::format("{}: has no accepted results", file));
+  if (run.methods.empty()) throw BadInput(fmt::format("{}: this file has no accepted results", file));
   return run;
 }
 
@@ -169,8 +169,8 @@ Gate load_gate(const DataRoot& data, const std::string& name, std::span<const Me
   const bool is_file = name.ends_with(".yaml");
   const std::filesystem::path path = is_file ? std::filesystem::path(name) : data.gates() / (name + ".yaml");
   if (!std::filesystem::exists(path)) {
-    throw BadInput(fmt::format("there is no accepted run of '{}'{}; create one with 'tumble gate {} --accept'", name,
-                               suggestion(name, gate_names(data)), name));
+    throw BadInput(fmt::format("there are no accepted results of '{}'{}; create them with 'tumble gate {} --accept'",
+                               name, suggestion(name, gate_names(data)), name));
   }
   const YamlNode root = YamlNode::parse(read_text_file(path), path.string());
   const std::array<std::string, 6> required = {"suite", "risk", "margin", "share_margin", "time_margin_s", "worst"};
@@ -178,7 +178,8 @@ Gate load_gate(const DataRoot& data, const std::string& name, std::span<const Me
   Gate gate;
   gate.suite = fields.at("suite").text();
   if (!is_file && gate.suite != name)
-    fields.at("suite").fail(fmt::format("the suite is '{}'; it must be '{}'", gate.suite, name));
+    fields.at("suite").fail(
+        fmt::format("the key 'suite' is '{}'; it must be '{}', as in the name of the file", gate.suite, name));
   gate.policy.risk = within(fields.at("risk"), 1e-6, 0.5);
   gate.policy.margin = within(fields.at("margin"), 0.0, 10.0);
   gate.policy.share_margin = within(fields.at("share_margin"), 0.0, 1.0);

@@ -44,7 +44,7 @@ void add(const Outcome& outcome, GateRun& run) {
 GateRun gate_run(std::span<const Outcome> outcomes, std::uint64_t first, std::uint64_t last) {
   if (last < first || last - first >= kDrawsMax) {
     throw BadInput(
-        fmt::format("a gate must have 1 to {} seeds, but the given range is {} to {}", kDrawsMax, first, last));
+        fmt::format("a gate compares 1 to {} seeds, but the given range is {} to {}", kDrawsMax, first, last));
   }
   GateRun run;
   for (std::uint64_t seed = first; seed <= last; ++seed) run.seeds.push_back(seed);
@@ -57,7 +57,6 @@ GateRun gate_run(std::span<const Outcome> outcomes, std::uint64_t first, std::ui
 
 GateRun gate_run(const Results& results, std::uint64_t first, std::uint64_t last) {
   std::vector<Outcome> outcomes = results.outcomes();
-  // Scores and outcomes are sorted by scenario, seed, kind and method.
   std::size_t at = 0;
   for (const ScoreRow& row : results.scores()) {
     if (row.kind.empty()) continue;  // rejected run

@@ -30,8 +30,7 @@ sim::ImuRecord& primary(sim::Sensors& sensors, const sim::Truth& truth) {
   return sensors.imus.front();
 }
 
-/// Shifts the calibrated centre of mass, and thus the lever arm of every sensor. The mountings of the sensors relative
-/// to each other are unchanged. The shift replaces the random lever-arm error of the primary IMU.
+/// Shifts the calibrated centre of mass, and thus the lever arm of every sensor.
 void lever_arm(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situation& situation, double size) {
   const Eigen::Vector3d given_m = primary(sensors, truth).T_BI.translation();
   const Eigen::Vector3d shift_m =
@@ -41,7 +40,6 @@ void lever_arm(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situat
   for (sim::SeriesRecord& series : sensors.series) series.T_BX.translation() += shift_m;
 }
 
-/// Rotates the calibrated mounting between primary IMU and lidar. The rotation replaces the random mounting error.
 void extrinsic_rotation(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situation& situation, double size) {
   const Eigen::Matrix3d R_BI_given = primary(sensors, truth).T_BI.linear();
   if (sensors.lidars.empty() || truth.lidars.empty())
@@ -51,15 +49,12 @@ void extrinsic_rotation(sim::Sensors& sensors, const sim::Truth& truth, const si
   sensors.lidars.front().T_BL.linear() = R_BI_given * R_IL_true * error.toRotationMatrix();
 }
 
-/// Shifts the clock of the primary IMU; its jitter is unchanged. The shift replaces the random time offset of the
-/// clock.
 void time_offset(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situation& situation, double size) {
   const double own_s = situation.sensors.front().values.at("time_offset_s");
   const auto shift_ns = static_cast<std::int64_t>(std::llround((size - own_s) * 1e9));
   for (std::int64_t& time_ns : primary(sensors, truth).time_ns) time_ns += shift_ns;
 }
 
-/// Adds the size of the error to the calibrated radius of the sphere.
 void radius(sim::Sensors& sensors, const sim::Truth&, const sim::Situation&, double size) {
   if (!(sensors.sphere_radius_m > 0.0))
     throw BadInput("the recording states no sphere radius, but this error needs a recording of a sphere");
@@ -68,7 +63,7 @@ void radius(sim::Sensors& sensors, const sim::Truth&, const sim::Situation&, dou
   sensors.sphere_radius_m += size;
 }
 
-/// Sets the measurement range of the IMU above every reading, so that no reading counts as clipped.
+/// The stated range of the IMU exceeds every reading, so no reading counts as clipped.
 void state_no_rail(sim::ImuRecord& imu) {
   double largest = 0.0;
   for (const Eigen::Vector3d& reading : imu.gyro_rad_s) largest = std::max(largest, reading.lpNorm<Eigen::Infinity>());
@@ -76,8 +71,8 @@ void state_no_rail(sim::ImuRecord& imu) {
   for (std::uint8_t& flags : imu.clip_flags) flags = static_cast<std::uint8_t>(flags & ~kGyroClipFlags);
 }
 
-/// Replaces clipped readings by unclipped readings plus an error that is constant in each clipping interval, and
-/// removes all clip flags. The changed readings simulate a rate method with a constant error.
+/// Clipped readings become unclipped readings plus an error that is constant in each clipping interval, to simulate a
+/// rate method with a constant error.
 void rate_error(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situation& situation, double size) {
   const ClippingTruth clipping(sensors, truth);
   sim::ImuRecord& imu = primary(sensors, truth);
@@ -93,15 +88,12 @@ void rate_error(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situa
   state_no_rail(imu);
 }
 
-/// Sets the measurement range of the IMU relative to the true saturation limit. Removes the clip flags of the device,
-/// which would reveal the true limit.
 void stated_rail(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situation& situation, double size) {
   sim::ImuRecord& imu = primary(sensors, truth);
   imu.stated_gyro_range_rad_s = situation.sensors.front().values.at("gyro_rail_rad_s") * (1.0 + size);
   for (std::uint8_t& flags : imu.clip_flags) flags = static_cast<std::uint8_t>(flags & ~kGyroClipFlags);
 }
 
-/// Sets the saturation limit in the parameters of methods that have such a parameter.
 void report_rail(std::span<const sim::Parameter> known, double size, sim::Values& given) {
   for (const sim::Parameter& parameter : known) {
     if (parameter.name != "saturation_point_rad_s") continue;
@@ -114,11 +106,11 @@ void report_rail(std::span<const sim::Parameter> known, double size, sim::Values
 std::span<const GivenError> given_errors() {
   static const std::array kErrors = {
       GivenError{{"lever_arm_error_m", 0.0, 0.0, 1.0, "m",
-                  "error of the stated lever arm, in a random direction for each draw; 0: exact lever arm"},
+                  "error of the stated lever arm, in a random direction for each simulated run; 0: exact lever arm"},
                  false,
                  lever_arm},
       GivenError{{"extrinsic_rotation_rad", 0.0, 0.0, 3.14, "rad",
-                  "error of the stated rotation between IMU and lidar, about a random axis for each draw"},
+                  "error of the stated rotation between IMU and lidar, about a random axis for each simulated run"},
                  true,
                  extrinsic_rotation},
       GivenError{{"time_offset_s", 0.0, -1.0, 1.0, "s", "delay added to the time stamps of the primary IMU"},

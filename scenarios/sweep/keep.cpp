@@ -24,7 +24,6 @@ namespace fs = std::filesystem;
 constexpr std::size_t kCountMax = 1000;
 constexpr std::string_view kWorst = "worst:";
 
-/// Returns the first metric of a kind that ranks runs; empty if no metric ranks runs.
 std::string ranking_metric(Kind kind) {
   for (const std::string& name : headline_metrics(kind)) {
     const MetricInfo& info = metric_info(name);
@@ -50,7 +49,6 @@ std::optional<double> badness(const OutcomeView& row, const std::string& metric)
   return std::nullopt;
 }
 
-/// Worst contains the worst runs of one scenario and method, at most a given number.
 class Worst {
  public:
   void add(double badness, std::uint64_t seed, std::size_t count) {
@@ -92,9 +90,9 @@ Keep parse_keep(const std::string& text) {
     if (read_number(std::string_view(text).substr(kWorst.size()), count) && count >= 1 && count <= kCountMax)
       return {Keep::Which::worst, count};
   }
-  throw BadInput(
-      fmt::format("the selection of kept draws is '{}'; it must be none, failed, all, or worst:N with N from 1 to {}",
-                  text, kCountMax));
+  throw BadInput(fmt::format(
+      "the rule for kept simulated runs is '{}'; it must be none, failed, all, or worst:N with N from 1 to {}", text,
+      kCountMax));
 }
 
 std::string to_string(const Keep& keep) {

@@ -15,7 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Converts a file system error to the exception BadInput with the path.
 template <typename Action>
 auto guarded(Action&& action) {
   try {
@@ -64,7 +63,7 @@ fs::path KeptDraws::folder_of(const DrawName& draw) const {
 
 bool KeptDraws::holds(const DrawName& draw, std::span<const Outcome> estimated) const {
   const fs::path folder = folder_of(draw);
-  // The file `command` is written last, so it marks a complete folder.
+  // The file `command` is written last, so it marks a complete folder of a kept run.
   return guarded([&] {
     return fs::exists(folder / kDrawCommand) &&
            std::all_of(estimated.begin(), estimated.end(), [&](const Outcome& row) {

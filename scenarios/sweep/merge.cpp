@@ -29,8 +29,6 @@ std::string text_of(const Notes& notes, const std::string& key) {
   return found == notes.end() ? std::string() : found->second;
 }
 
-/// Throws BadInput if two databases come from different programs, models or scenarios; their outcomes are not
-/// comparable.
 void require_same_origin(const Notes& first, const Notes& other, const fs::path& path) {
   const std::pair<const char*, const char*> origins[] = {{"build", "was written by build"},
                                                          {"data", "was made from models and scenarios"}};
@@ -43,7 +41,6 @@ void require_same_origin(const Notes& first, const Notes& other, const fs::path&
   }
 }
 
-/// Joins the notes with the versions of external methods. Two versions of one method are an error.
 void join_method_notes(const Notes& shard, const fs::path& path, bool mixed, Results& into) {
   for (const auto& [key, theirs] : shard) {
     if (!is_method_note(key)) continue;
@@ -56,22 +53,18 @@ void join_method_notes(const Notes& shard, const fs::path& path, bool mixed, Res
   }
 }
 
-/// Joins the notes with the paths of method descriptions and recordings. If two databases contain different paths, that
-/// of the first database is kept, even if it no longer exists.
 void join_place_notes(const Notes& shard, Results& into) {
   for (const auto& [key, place] : shard) {
     if (is_place_note(key) && into.note(key).empty()) into.set_note(key, place);
   }
 }
 
-/// Joins the notes with the commands that produced the rows.
 void join_command_notes(const std::vector<Notes>& notes, Results& into) {
   std::string commands = into.note(kCommandNote);
   for (const Notes& own : notes) commands = with_commands(commands, text_of(own, kCommandNote));
   if (!commands.empty()) into.set_note(kCommandNote, commands);
 }
 
-/// Reads and checks the notes of all input databases before rows are joined. Only one input is open at a time.
 std::vector<Notes> checked_notes(std::span<const fs::path> in, bool mixed) {
   std::vector<Notes> notes;
   for (const fs::path& path : in) {
@@ -81,14 +74,12 @@ std::vector<Notes> checked_notes(std::span<const fs::path> in, bool mixed) {
   return notes;
 }
 
-/// Returns the keep rule that all input databases share; empty if the rules differ.
 std::string common_rule(const std::vector<Notes>& notes) {
   const std::string rule = text_of(notes.front(), kKeepNote);
   const auto is_it = [&](const Notes& each) { return text_of(each, kKeepNote) == rule; };
   return std::all_of(notes.begin(), notes.end(), is_it) ? rule : std::string();
 }
 
-/// Made removes a newly created database if the merge fails.
 class Made {
  public:
   explicit Made(const fs::path& path) : path_(path), is_new_(!fs::exists(path)) {}
@@ -126,7 +117,6 @@ MergeCounts merge_results(const DatabaseOwner& owner, std::span<const fs::path> 
       }
       for (const Notes& own : notes) join_place_notes(own, results);
       join_command_notes(notes, results);
-      // The notes state the origin of the rows, and not the program that joined them.
       for (const char* key : {"suite", "build", "data"}) {
         std::string text;
         for (std::size_t i = 0; i < notes.size() && text.empty(); ++i) text = text_of(notes[i], key);

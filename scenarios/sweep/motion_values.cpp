@@ -15,7 +15,6 @@ double share(std::size_t part, std::size_t whole) {
   return whole == 0 ? std::nan("") : static_cast<double>(part) / static_cast<double>(whole);
 }
 
-/// Returns the time from the first to the last sample of the primary IMU.
 double duration_s(const sim::ImuRecord& imu) {
   return imu.time_ns.empty() ? 0.0 : 1e-9 * static_cast<double>(imu.time_ns.back() - imu.time_ns.front());
 }

@@ -10,28 +10,20 @@
 namespace tumble::scenarios {
 
 /// Computes statistics of a simulated motion (scenarios/scoring/motion_summary.hpp) as named numbers for the results
-/// database. Without an IMU, the list is empty. The names are:
+/// database.
 ///
 /// - `motion_moving_s` is the time between first and last movement, and `motion_path_m` is the path length of the
 ///   centre of mass.
 /// - `motion_peak_rate_rad_s` is the largest rate, and `motion_peak_accel_m_s2` is the largest specific force before
 ///   saturation.
-/// - `motion_flight_share` is the fraction of the moving time without contact, and `motion_impacts` is the number of
-///   impacts.
-/// - `motion_clips` is 1 if any sample of the primary gyro is clipped.
-/// - `motion_clipped_share` is the fraction of the samples during motion with a clipped gyro axis.
-/// - `motion_clipped_samples` is the number of samples during motion with a clipped gyro axis.
 /// - `motion_clip_depth_max_rad_s` is the largest saturation deficit, and `motion_clip_length_max_s` is the longest
 ///   clipping interval.
-/// - `motion_several_axes_share` is the fraction of the clipped samples with at least two clipped axes; NaN without
-///   clipped samples.
+/// - `motion_several_axes_share` is the fraction of the clipped samples with at least two clipped axes.
 /// - `motion_cross_axis_share` is the fraction of the clipped samples in which clipping also disturbs an unclipped
-///   axis; NaN without clipped samples.
-/// - `motion_accel_clipped_share` is the fraction of the samples during motion with a clipped accelerometer axis.
+///   axis.
 DrawValues motion_values(const std::string& scenario, std::uint64_t seed, const sim::Recording& recording);
 
-/// Computes the motion values that a real recording allows: the peak rate of the readings (`motion_peak_rate_rad_s`).
-/// With reference rates, also `motion_clips`, `motion_clipped_share`, `motion_clipped_samples` and
+/// With reference rates, it also allows `motion_clips`, `motion_clipped_share`, `motion_clipped_samples` and
 /// `motion_clip_depth_max_rad_s`.
 DrawValues recorded_motion_values(const std::string& scenario, std::uint64_t seed, const sim::Recording& recording);
 

@@ -9,7 +9,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// NumberHasher hashes each number of a struct separately, so that no padding enters the digest.
+/// Each number of an estimate is hashed separately, so that no padding enters the digest.
 class NumberHasher : public Hasher {
  public:
   template <typename Number>

@@ -15,7 +15,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Escapes the characters of a folder name that have a special meaning in file patterns.
 std::string escaped(const std::string& text) {
   std::string out;
   for (const char c : text) {
@@ -40,7 +39,6 @@ std::vector<std::filesystem::path> matches(const std::string& pattern, const std
   return paths;
 }
 
-/// Returns the digest stored in a recording, or computes the digest if none is stored.
 std::string digest_of(const RecordingInfo& info, const sim::Sensors& sensors, const std::filesystem::path& path) {
   if (!info.digest.empty()) return info.digest;
   if (!info.has_truth) return digest(sensors, nullptr);

@@ -18,9 +18,8 @@
 
 namespace tumble::scenarios {
 
-/// ScoreRow is one row of the database view scores(scenario, seed, kind, method, status, metric, value). An outcome
-/// without scores has one row with an empty metric and the value NaN. A run that could not be simulated has one row
-/// with empty kind and method and the status `rejected`.
+/// An outcome without scores has one row with an empty metric and the value NaN. A run that could not be simulated has
+/// one row with empty kind and method and the status `rejected`.
 struct ScoreRow {
   std::string scenario;
   std::uint64_t seed;
@@ -31,21 +30,16 @@ struct ScoreRow {
   Setting setting = {};
 };
 
-/// Rows selects rows of the results: those of unmodified scenarios and methods, those of points of curves, or all.
 enum class Rows { plain, curves, all };
 
-/// MergeCounts counts the rows in a merge: added, replacing a row with a lower-ranked status (`replaced`), existing
-/// already (`held`).
 struct MergeCounts {
   std::size_t added = 0, replaced = 0, held = 0;
   std::size_t rejected = 0;  ///< rejected runs among the added rows
 };
 
-/// Names contains names that many rows share, such as metric names; the reader of a database stores each name once.
 using Names = std::set<std::string, std::less<>>;
 
-/// OutcomeView refers to an outcome while it is read. The pointers in an OutcomeView are valid until the next outcome;
-/// pointers to names stay valid.
+/// The pointers in an OutcomeView are valid until the next outcome; pointers to names stay valid.
 struct OutcomeView {
   struct Value {
     const std::string* metric;  ///< points into the `Names` of the reader
@@ -61,59 +55,47 @@ struct OutcomeView {
   std::span<const Value> scores;  ///< sorted by name
 };
 
-/// Returns the key of the note with the version of an external method, for example "method slam/theirs".
 std::string method_note(Kind kind, const std::string& name);
 bool is_method_note(const std::string& key);
 
-/// Results is a results database (SQLite). The database has at most one row per scenario, seed, kind, method and
-/// setting. Storing a row again replaces the old row. Each call of store is one transaction, so completed results
-/// survive the end of the process.
+/// Results is a results database (SQLite) with at most one row per scenario, seed, kind, method and setting. Storing a
+/// row again replaces the old row. Each call of store is one transaction, so completed results survive the end of the
+/// process.
 class Results {
  public:
-  /// `join` equals `create_or_append`, but does not check that each score has an outcome. The mode `join` is for
-  /// callers that only use `absorb`, which ensures this.
+  /// The mode `join` does not check that each score has an outcome.
   enum class Mode { create_or_append, join, read_only };
-  /// Opens a results database. Throws BadInput for a missing file (read_only), a file that is no results database, an
-  /// incomplete schema, another build (note "build"; except read_only), or lack of space. All member functions throw
-  /// BadInput with the path, also if a stored value is not a number.
+  /// Throws BadInput for a file that is no results database, an incomplete schema, another build (except read_only), or
+  /// lack of space. All member functions throw BadInput with the path, also if a stored value is not a number.
   Results(const std::filesystem::path& path, Mode mode);
   ~Results();
   Results(Results&&) noexcept;
 
-  /// Stores an outcome, and removes a rejection of the same scenario and seed. Scores without a name are not stored,
-  /// because an empty name marks an outcome without scores.
+  /// Also removes a rejection of the same scenario and seed. Scores without a name are not stored, because an empty
+  /// name marks an outcome without scores.
   void store(const Outcome& outcome);
-  /// Stores a rejection. Returns false if the scenario and seed already have an outcome.
   bool store(const RejectedDraw& rejected);
   void store(const DrawValues& draw);
-  /// Stores a certificate (checks of the simulation), which replaces the existing certificate of its build.
   void store(const Certificate& certificate);
-  /// Stores a note: a text with a key. Common keys are "suite", "build" and "data".
   void set_note(const std::string& key, const std::string& text);
   std::string note(const std::string& key) const;
   std::map<std::string, std::string> notes() const;
   /// Copies all rows of the database `shard` (without notes), with constant memory. Of two rows with the same key, the
-  /// row with the higher-ranked status is kept (`outranks`). Throws BadInput if two scored rows differ in status,
-  /// digest or a score other than cost; with `mixed`, the first row is kept.
+  /// row with the higher-ranked status is kept. Throws BadInput if two scored rows differ in status, digest or a score
+  /// other than cost; with `mixed`, the first row is kept.
   void absorb(const Results& shard, bool mixed, MergeCounts& counts);
-  /// Calls `work` in one transaction. If `work` throws, nothing is stored, and the exception is rethrown.
+  /// If `work` throws, nothing is stored, and the exception is rethrown.
   void in_one_transaction(const std::function<void()>& work);
 
-  /// Returns true if a simulated run has an outcome or a rejection.
   bool has_rows() const;
-  /// Returns the row with the scenario, seed, kind, method and setting of `key`, without its scores.
   std::optional<Outcome> find(const Outcome& key) const;
-  /// Returns the rows of one scenario and seed, including points of curves, without scores.
   std::vector<Outcome> outcomes_of(const std::string& scenario, std::uint64_t seed) const;
   std::vector<RejectedDraw> rejected_of(const std::string& scenario, std::uint64_t seed) const;
-  /// Calls `visit` with every outcome and its scores, in the order of storing. Only metric names stay in memory.
   void each(Rows rows, Names& names, const std::function<void(const OutcomeView&)>& visit) const;
   std::vector<ScoreRow> scores(Rows rows = Rows::plain) const;
-  /// Returns every outcome without its scores.
   std::vector<Outcome> outcomes(Rows rows = Rows::plain) const;
   std::vector<RejectedDraw> rejected(Rows rows = Rows::plain) const;
   std::vector<DrawValues> draws(Rows rows = Rows::plain) const;
-  /// Returns the certificates in the database, one per build. A merged database may have several certificates.
   std::vector<Certificate> certificates() const;
 
  private:

@@ -20,7 +20,6 @@ inline constexpr int kSqliteBusy = 5;  // as in sqlite3.h
 inline constexpr const char* kBusy =
     "another program is writing to this database; try again after that program has ended";
 
-/// Converts an unsigned seed to a signed integer of SQLite with the same bits.
 inline std::int64_t stored_seed(std::uint64_t seed) {
   return std::bit_cast<std::int64_t>(seed);
 }
@@ -28,13 +27,11 @@ inline std::uint64_t read_seed(std::int64_t stored) {
   return std::bit_cast<std::uint64_t>(stored);
 }
 
-/// Impl is an open results database; results_reading.cpp reads it, and results.cpp writes it.
 struct Results::Impl {
   std::filesystem::path path;
   SQLite::Database database;
   bool in_transaction = false;  ///< the caller has an open transaction
 
-  /// Transaction opens a transaction if the caller has none.
   class Transaction {
    public:
     explicit Transaction(Impl& impl) {
@@ -50,19 +47,16 @@ struct Results::Impl {
 
   Impl(const std::filesystem::path& file, Mode mode)
       : path(file),
-        // One thread uses the connection, so SQLite needs no locks.
         database(file.string(),
                  SQLite::OPEN_NOMUTEX |
                      (mode == Mode::read_only ? SQLite::OPEN_READONLY : SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE),
                  kBusyTimeoutMs) {
-    // With a rollback journal, the database is one file and can be read in a read-only folder. Each row is on disk when
-    // the call returns.
+    // With a rollback journal, the results database is one file and can be read in a read-only folder.
     if (mode == Mode::read_only) return;
     database.exec("PRAGMA synchronous = FULL");
     database.exec(mode == Mode::join ? "PRAGMA foreign_keys = OFF" : "PRAGMA foreign_keys = ON");
   }
 
-  // Calls `action` and converts SQLite errors to a one-line BadInput with the path.
   template <typename Action>
   auto guarded(Action&& action) const {
     try {
@@ -78,7 +72,6 @@ struct Results::Impl {
 
   void create() {
     SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
-    // Another process may have created the schema while this process waited for the lock.
     if (is_empty()) {
       database.exec(kSchema);
       database.exec("PRAGMA application_id = " + std::to_string(kApplicationId));

@@ -21,17 +21,13 @@ namespace {
 
 constexpr const char* kDraw = " WHERE scenario = ? AND seed = ? AND varied = ? AND setting = ? AND kind ";
 
-/// ShardRow is a row of the table `outcomes` in the source database (the shard). The texts of a ShardRow are valid
-/// until the next row is read.
 struct ShardRow {
   std::int64_t id, seed;
   const char *scenario, *kind, *method, *status, *message, *recording_digest, *estimate_digest, *varied;
   double setting;
 };
 
-/// Joining copies the rows of a source database (the shard) to another database. Joining reads outcomes and scores in
-/// parallel, sorted by the outcome's number. New numbers have the order of the old numbers, so scores are only
-/// appended.
+/// New numbers have the order of the old numbers, so scores are only appended.
 class Joining {
  public:
   Joining(SQLite::Database& into, const SQLite::Database& shard, const std::filesystem::path& path, bool mixed,
@@ -64,7 +60,6 @@ class Joining {
     draws.flush();
   }
 
-  /// Copies the rejections whose scenario and seed have no outcome.
   void join_rejections() {
     SQLite::Statement select(shard_, std::string(kColumns) + "WHERE kind = '' ORDER BY id");
     SQLite::Statement ran(into_, std::string("SELECT 1 FROM outcomes") + kDraw + "<> '' LIMIT 1");
@@ -112,7 +107,6 @@ class Joining {
     statement.bind(4, row.setting);
   }
 
-  /// Moves to the next row of the statement. Error messages contain the path of the source database.
   bool next(SQLite::Statement& select) const {
     try {
       return select.executeStep();
@@ -121,7 +115,6 @@ class Joining {
     }
   }
 
-  /// Executes a statement and returns the number of changed rows.
   static int run(SQLite::Statement& statement) {
     const int changed = statement.exec();
     statement.reset();
@@ -140,7 +133,6 @@ class Joining {
     throw BadInput(path_.string() + ": unknown kind '" + name + "'");
   }
 
-  /// Inserts a row. Returns false if a row with the same key exists.
   bool insert(const ShardRow& row) {
     insert_.bindNoCopy(1, row.scenario);
     insert_.bind(2, row.seed);
@@ -155,8 +147,6 @@ class Joining {
     return run(insert_) == 1;
   }
 
-  /// Inserts a row, or replaces the existing row with the same key. Returns true if the row was stored; `id` is then
-  /// its number.
   bool take(const ShardRow& row, std::int64_t& id) {
     require_kind(row.kind);
     const OutcomeStatus own = status(row.status);
@@ -177,7 +167,6 @@ class Joining {
     return true;
   }
 
-  /// Removes the existing row if the new status outranks it.
   bool replaces_held(const ShardRow& row, OutcomeStatus own) {
     scores_into_.flush();
     held_.bindNoCopy(1, row.scenario);
@@ -187,7 +176,7 @@ class Joining {
     held_.bindNoCopy(5, row.varied);
     held_.bind(6, row.setting);
     if (!held_.executeStep())
-      throw BadInput(fmt::format("{}: a row of draw {} is stored more than once; the database is damaged",
+      throw BadInput(fmt::format("{}: a row of scenario {} is stored more than once; the database is damaged",
                                  path_.string(), row.scenario));
     const std::int64_t id = held_.getColumn(0).getInt64();
     const std::string status_text = held_.getColumn(1).getString(), recording = held_.getColumn(2).getString(),
@@ -203,8 +192,8 @@ class Joining {
     }
     if (outranks(known, own) || mixed_ || !was_scored(known)) return false;
     if (own != known || estimate != row.estimate_digest ||
-        // For the kind rate, digests of recordings are not compared: without lidars, which are not simulated if only
-        // rate methods run, the digest differs.
+        // For methods of the kind rate, digests of recordings are not compared, because a sweep of rate methods alone
+        // does not simulate lidars.
         (std::string(to_string(Kind::rate)) != row.kind && recording != row.recording_digest))
       complain(row, status_text, estimate);
     require_same_scores(row, id);
@@ -218,7 +207,6 @@ class Joining {
                     path_.string(), words(row), row.status, row.estimate_digest, known, digest));
   }
 
-  /// Throws BadInput if two rows with equal digests differ in a score other than cost.
   void require_same_scores(const ShardRow& row, std::int64_t held) {
     std::map<std::string, double> known;
     held_scores_.bind(1, held);
@@ -253,7 +241,6 @@ class Joining {
                     path_.string(), words(row), metric, here, elsewhere));
   }
 
-  /// Visits the scores of a row in the source database, sorted by name. Rows must be requested in order.
   template <typename Visit>
   void each_score(const ShardRow& row, const Visit& visit) {
     while (more_scores_ && scores_.getColumn(0).getInt64() < row.id) more_scores_ = next(scores_);
@@ -287,7 +274,7 @@ class Joining {
                           "SELECT id, status, recording_digest, estimate_digest FROM outcomes WHERE scenario = ? AND "
                           "seed = ? AND kind = ? AND method = ? AND varied = ? AND setting = ?"};
   SQLite::Statement held_scores_{into_, "SELECT metric, value FROM score_values WHERE outcome = ?"};
-  // In Mode::join, the database does not delete the scores of a deleted outcome itself.
+  // In Mode::join, the database does not delete the scores of a deleted outcome.
   SQLite::Statement remove_scores_{into_, "DELETE FROM score_values WHERE outcome = ?"};
   SQLite::Statement remove_{into_, "DELETE FROM outcomes WHERE id = ?"};
   SQLite::Statement forget_{into_, std::string("DELETE FROM outcomes") + kDraw + "= ''"};

@@ -32,7 +32,6 @@ OutcomeStatus status_named(const std::string& name, const std::filesystem::path&
   throw BadInput(path.string() + ": unknown status '" + name + "'");
 }
 
-/// Returns the SQL condition that selects `rows` in a table or join with the column `varied`.
 const char* picked(Rows rows) {
   switch (rows) {
     case Rows::plain:
@@ -45,7 +44,6 @@ const char* picked(Rows rows) {
   return "0";
 }
 
-// kOutcomes must be followed by a condition and an order.
 constexpr const char* kOutcomes =
     "SELECT scenario, seed, kind, method, status, message, recording_digest, estimate_digest, varied, setting "
     "FROM outcomes WHERE kind <> '' AND ";
@@ -145,7 +143,6 @@ void Results::each(Rows rows, Names& names, const std::function<void(const Outco
       auto name = names.begin();
       for (; whose == id && id != kNobody; whose = next_score()) {
         const std::string_view metric = text(scores, 1);
-        // Scores and names are sorted, so one of the next names usually matches.
         for (int ahead = 0; ahead < 2 && name != names.end() && *name < metric; ++ahead) ++name;
         if (name == names.end() || *name != metric) name = names.lower_bound(metric);
         if (name == names.end() || *name != metric) name = names.emplace_hint(name, metric);
@@ -198,14 +195,13 @@ std::vector<RejectedDraw> Results::rejected_of(const std::string& scenario, std:
 std::vector<DrawValues> Results::draws(Rows rows) const {
   return impl_->guarded([&] {
     std::vector<DrawValues> draws;
-    // Unmodified scenarios all have the same setting, so this order is that of the key and needs no sorting.
+    // Unmodified scenarios all have the same setting, so this order is that of the database key and needs no sorting.
     const char* order = rows == Rows::plain ? " ORDER BY scenario, seed, varied, setting, metric"
                                             : " ORDER BY varied, setting, scenario, seed, metric";
     SQLite::Statement select(
         impl_->database, std::string("SELECT scenario, seed, metric, value, varied, setting FROM draw_values WHERE ") +
                              picked(rows) + order);
     while (select.executeStep()) {
-      // Within a simulated run, only metric and value change, so the other strings are reused.
       const std::string_view scenario = select.getColumn(0).getText(), varied = select.getColumn(4).getText();
       const std::uint64_t seed = read_seed(select.getColumn(1).getInt64());
       const double setting = select.getColumn(5).getDouble();

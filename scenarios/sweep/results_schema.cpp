@@ -7,11 +7,9 @@
 
 namespace tumble::scenarios {
 
-// The database stores an unsigned 64-bit seed as a signed number with the same bits. A run that could not be simulated
-// is an outcome with an empty kind and method and the status 'rejected'. The column `varied` contains the keys of a
-// curve point and `setting` their value; for unmodified scenarios and methods, `varied` is empty. The view `scores`
-// contains one row per score, and a row with a null metric for an outcome without scores. The view `scores` contains
-// only rows with an empty `varied`; the view `curves` contains the others.
+// The database stores an unsigned 64-bit seed as a signed number with the same bits. The column `varied` contains the
+// keys of a curve point and `setting` their value; for unmodified scenarios and methods, `varied` is empty. The view
+// `scores` contains only rows with an empty `varied`; the view `curves` contains the others.
 const char* const kSchema = R"sql(
 CREATE TABLE notes (
   key TEXT PRIMARY KEY NOT NULL,
@@ -75,8 +73,6 @@ CREATE TABLE certificates (
 
 namespace {
 
-/// Returns the names of the parts of a database, such as "table outcomes", "column seed of table outcomes" and "view
-/// scores". Columns of views are omitted, because they follow from the tables.
 std::set<std::string> parts_of(const SQLite::Database& database) {
   std::set<std::string> parts;
   SQLite::Statement objects(database, "SELECT type || ' ' || name FROM sqlite_master WHERE type IN ('table', 'view')");
@@ -94,7 +90,6 @@ std::string missing_of_schema(const SQLite::Database& database) {
   SQLite::Database model(":memory:", SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
   model.exec(kSchema);
   const std::set<std::string> found = parts_of(database);
-  // A missing table is reported before its columns and views.
   std::string missing;
   for (const std::string& part : parts_of(model)) {
     if (found.contains(part)) continue;

@@ -11,10 +11,8 @@
 #include <string_view>
 #include <vector>
 
-/// RowsInto inserts many rows into a results database at a low cost per row.
 namespace tumble::scenarios {
 
-// Binds a number to a statement. SQLite has no NaN; null represents it.
 inline void bind_number(double value, SQLite::Statement& to, int index) {
   if (std::isnan(value))
     to.bind(index);
@@ -22,7 +20,6 @@ inline void bind_number(double value, SQLite::Statement& to, int index) {
     to.bind(index, value);
 }
 
-/// Kept stores each text once for all rows that contain it.
 class Kept {
  public:
   const std::string& operator()(std::string_view text) {
@@ -38,7 +35,6 @@ class Kept {
   std::array<const std::string*, 64> last_{};
 };
 
-/// ScoreValue is a row of the table score_values.
 struct ScoreValue {
   std::int64_t outcome;
   const std::string* metric;
@@ -53,7 +49,6 @@ struct ScoreValue {
   }
 };
 
-/// DrawValue is a row of the table draw_values.
 struct DrawValue {
   const std::string* scenario;
   std::int64_t seed;
@@ -74,8 +69,8 @@ struct DrawValue {
   }
 };
 
-/// RowsInto inserts rows in order, with many rows per SQL statement, because the fixed cost of a statement is as large
-/// as the cost of a row.
+/// RowsInto inserts many rows per SQL statement, because the fixed cost of a statement is as large as the cost of a
+/// row.
 template <typename Row>
 class RowsInto {
  public:
@@ -85,7 +80,6 @@ class RowsInto {
     rows_.push_back(row);
     if (rows_.size() == kMany) flush();
   }
-  /// Writes the remaining rows. The caller must call flush() before the rows are read.
   void flush() {
     if (rows_.size() == kMany) {
       for (std::size_t i = 0; i < kMany; ++i) rows_[i].bind(many_, static_cast<int>(i) * Row::kColumns);

@@ -23,8 +23,6 @@ std::string note_or(const std::map<std::string, std::string>& notes, const std::
   return found == notes.end() || found->second.empty() ? otherwise : found->second;
 }
 
-/// Returns the argument of --method that selects the method. For an external method, which a note with a version marks,
-/// it is the path of the method's file.
 std::string method_word(const RunKey& run, const std::map<std::string, std::string>& notes) {
   const std::string full = run.kind + "/" + run.method;
   const bool own = !notes.contains("method " + full);

@@ -16,7 +16,6 @@
 
 namespace tumble::scenarios {
 
-/// RunResult contains the recording of one run, and the estimate and the outcome of each method.
 struct RunResult {
   std::string scenario;
   std::uint64_t seed = 0;
@@ -30,15 +29,12 @@ struct RunResult {
   std::vector<Outcome> outcomes;    ///< parallel to methods
 };
 
-/// Draws and simulates one situation, then runs and scores each method, in this process. Methods for other robots are
-/// skipped. With a `setting`, the run is one point of a curve (variation.hpp), and the recording contains the sensor
-/// data that the methods receive. Throws BadInput, sim::InvalidSituation or sim::SimulationFailure if the simulation is
-/// impossible.
+/// With a `setting`, the run is one point of a curve, and the recording contains the sensor data that the methods
+/// receive.
 RunResult run_situation(const DataRoot& data, const Scenario& scenario, std::uint64_t seed,
                         std::span<const MethodPointer> methods, int threads, Lidars lidars = Lidars::simulated,
                         const Setting& setting = {});
 
-/// Returns a digest of the recording and of every estimate.
 std::string run_digest(const RunResult& result);
 
 }  // namespace tumble::scenarios

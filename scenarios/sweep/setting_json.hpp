@@ -7,7 +7,6 @@
 
 namespace tumble::scenarios {
 
-/// Converts a setting to and from JSON: a pair of key and value.
 nlohmann::json to_json(const Setting& setting);
 Setting setting_from(const nlohmann::json& pair);
 

@@ -11,8 +11,7 @@
 
 namespace tumble::scenarios {
 
-/// Reads a number from a row of the results database; null becomes NaN. Throws BadInput if the column contains text or
-/// a blob, which SQLite would convert to 0. The message contains the path and `row()`, a description of the row.
+/// A null in the results database becomes NaN; text or a blob, which SQLite would convert to 0, throws BadInput.
 template <typename Row>
 double stored_value(const SQLite::Column& column, const std::filesystem::path& path, const Row& row) {
   const int type = column.getType();

@@ -33,17 +33,16 @@ void read_seeds(const YamlNode& node, Suite& suite) {
   const auto fields = node.fields(required);
   suite.first_seed = fields.at("first").unsigned_integer();
   suite.last_seed = fields.at("last").unsigned_integer();
-  if (suite.last_seed < suite.first_seed) node.fail("the last seed is below the first");
+  if (suite.last_seed < suite.first_seed) node.fail("the last seed is below the first seed of the suite");
 }
 
-/// Splits a text such as "a + b" into its keys.
 std::vector<std::string> keys_of(const std::string& text, const YamlNode& node) {
   std::vector<std::string> keys;
   std::stringstream stream(text + "+");  // a trailing "+" gives an empty key, which is rejected later
   for (std::string key; std::getline(stream, key, '+');) {
     std::erase(key, ' ');
     if (key.empty() || std::find(keys.begin(), keys.end(), key) != keys.end()) {
-      node.fail(fmt::format("a key is empty or occurs twice in '{}'", text));
+      node.fail(fmt::format("in the keys '{}' of a curve, a key is empty or occurs twice", text));
     }
     keys.push_back(key);
   }
@@ -59,7 +58,7 @@ Variation read_variation(const DataRoot& data, const Suite& suite, const std::st
     }
     curve.values.push_back(value);
   }
-  if (curve.values.empty()) node.fail(fmt::format("no values are given for '{}'", text));
+  if (curve.values.empty()) node.fail(fmt::format("the curve over '{}' has no values; list at least one value", text));
   try {
     check(curve, data, suite.scenarios, suite.first_seed);
   } catch (const BadInput& error) {
@@ -72,11 +71,12 @@ void read_curves(const DataRoot& data, const YamlNode& node, Suite& suite) {
   for (const auto& [text, values] : node.entries()) {
     Variation curve = read_variation(data, suite, text, values);
     for (const Variation& other : suite.curves) {
-      if (other.key() == curve.key()) values.fail(fmt::format("a curve over '{}' occurs twice", curve.key()));
+      if (other.key() == curve.key())
+        values.fail(fmt::format("the suite contains two curves over '{}'; give each curve once", curve.key()));
     }
     suite.curves.push_back(std::move(curve));
   }
-  if (suite.curves.empty()) node.fail("the suite needs at least one curve");
+  if (suite.curves.empty()) node.fail("the list of curves is empty; this key needs at least one curve");
 }
 
 void read_scenarios(const DataRoot& data, const YamlNode& node, Suite& suite) {
@@ -93,10 +93,9 @@ void read_scenarios(const DataRoot& data, const YamlNode& node, Suite& suite) {
     }
     suite.scenarios.push_back(name);
   }
-  if (suite.scenarios.empty()) node.fail("the suite needs at least one scenario");
+  if (suite.scenarios.empty()) node.fail("the list of scenarios is empty; the suite needs at least one scenario");
 }
 
-/// Reads classes of runs with their scenarios and seeds from the key `draws: {mild: {hill: [3, 8]}}`.
 void read_classes(const DataRoot& data, const YamlNode& node, Suite& suite) {
   const std::vector<std::string> known = scenario_names(data);
   std::set<std::pair<std::string, std::uint64_t>> seen;
@@ -112,10 +111,10 @@ void read_classes(const DataRoot& data, const YamlNode& node, Suite& suite) {
       if (std::find(suite.scenarios.begin(), suite.scenarios.end(), scenario) == suite.scenarios.end())
         suite.scenarios.push_back(scenario);
     }
-    if (each.draws.empty()) scenarios.fail("each class needs at least one draw");
+    if (each.draws.empty()) scenarios.fail("this class is empty; each class needs at least one simulated run");
     suite.classes.push_back(std::move(each));
   }
-  if (seen.empty()) node.fail("the suite needs at least one draw");
+  if (seen.empty()) node.fail("this key is empty; the suite needs at least one simulated run");
   const auto by_seed = [](const auto& a, const auto& b) { return a.second < b.second; };
   suite.first_seed = std::min_element(seen.begin(), seen.end(), by_seed)->second;
   suite.last_seed = std::max_element(seen.begin(), seen.end(), by_seed)->second;
@@ -137,10 +136,9 @@ void read_recordings(const YamlNode& node, Suite& suite) {
     if (item.text().empty()) item.fail("must name a file");
     suite.recordings.push_back(item.text());
   }
-  if (suite.recordings.empty()) node.fail("the suite needs at least one recording");
+  if (suite.recordings.empty()) node.fail("the list of recordings is empty; the suite needs at least one recording");
 }
 
-/// Reads which runs the suite contains: recordings, listed runs, or scenarios with seeds.
 void read_draws(const DataRoot& data, const YamlNode& root, const std::map<std::string, YamlNode>& fields,
                 Suite& suite) {
   if (fields.contains("recordings")) {
@@ -153,7 +151,8 @@ void read_draws(const DataRoot& data, const YamlNode& root, const std::map<std::
   if (fields.contains("draws")) {
     for (const char* key : {"scenarios", "seeds"}) {
       if (fields.contains(key))
-        fields.at(key).fail("this key is not allowed in a suite that lists its draws (key 'draws'); remove the key");
+        fields.at(key).fail(
+            "this key is not allowed in a suite that lists its simulated runs (key 'draws'); remove the key");
     }
     read_classes(data, fields.at("draws"), suite);
     return;
@@ -170,7 +169,6 @@ std::string method_name(const std::string& text, const std::filesystem::path& fo
   return is_method_file(text) ? (folder / text).string() : text;
 }
 
-// Throws BadInput if the text is that of a scenario file.
 void require_no_scenario(const YamlNode& root) {
   if (!root.is_map()) return;
   for (const auto& [key, value] : root.entries()) {
@@ -203,21 +201,21 @@ Suite read_suite(const DataRoot& data, const std::filesystem::path& path) {
         item.fail(error.what());
       }
     }
-    if (suite.methods.empty()) fields.at("methods").fail("the suite needs at least one method");
+    if (suite.methods.empty())
+      fields.at("methods").fail("the list of methods is empty; the suite needs at least one method");
   } else {
     suite.methods = every_method();
   }
   if (fields.contains("timeout_s")) {
     suite.timeout_s = fields.at("timeout_s").number();
     if (!(suite.timeout_s > 0.0 && suite.timeout_s <= kTimeoutMaxS)) {
-      fields.at("timeout_s").fail("the time limit must be within (0, 1e6] s");
+      fields.at("timeout_s").fail("the time limit of a method must be within (0, 1e6] s");
     }
   }
   if (fields.contains("vary")) read_curves(data, fields.at("vary"), suite);
   return suite;
 }
 
-/// Returns a suite that runs all methods on one scenario.
 Suite suite_of_scenario(const std::string& name) {
   Suite suite;
   suite.name = name;
@@ -246,10 +244,10 @@ std::uint64_t Suite::draw_count() const {
 
 void require_seeds(const Suite& suite) {
   if (suite.last_seed < suite.first_seed)
-    throw BadInput(fmt::format("suite {}: the last seed is below the first", suite.name));
+    throw BadInput(fmt::format("suite {}: the last seed is below the first seed", suite.name));
   if (suite.last_seed - suite.first_seed >= kSeedsMax)
-    throw BadInput(
-        fmt::format("suite {}: has more than {} seeds; split the range of seeds into parts", suite.name, kSeedsMax));
+    throw BadInput(fmt::format("suite {}: the suite has more than {} seeds; split the range of seeds into parts",
+                               suite.name, kSeedsMax));
 }
 
 std::vector<std::string> suite_names(const DataRoot& data) {

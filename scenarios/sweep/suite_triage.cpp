@@ -22,7 +22,6 @@ namespace {
 
 constexpr char kBetween = '\t';  // separates an input's name from its outcome; names contain no tab
 
-/// Runs the triage of one simulated run in its process. Writes each result as a line, then an empty line or an error.
 void report_rows(const DataRoot& data, const Scenario& scenario, std::uint64_t seed, const Method& method,
                  const SuiteTriageOptions& options, int fd) {
   const auto report_trouble = [&](const std::string& why) {
@@ -36,7 +35,7 @@ void report_rows(const DataRoot& data, const Scenario& scenario, std::uint64_t s
     triage(data, scenario, seed, method, telling);
     write_all(fd, "\n");
   } catch (const std::bad_alloc&) {
-    report_trouble("not enough memory for the method");
+    report_trouble("there is not enough memory for the method; free memory or increase the memory limit of a process");
   } catch (const std::exception& error) {
     report_trouble(error.what());
   }
@@ -49,7 +48,6 @@ std::string doc_of(const std::string& input) {
   return "unchanged recording";
 }
 
-/// Reads the triage results that a process wrote. Returns false if the process did not complete.
 bool read_rows(const std::string& text, const Failure& failure, DrawTriage& out) {
   std::size_t begin = 0;
   for (std::size_t end; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1) {
@@ -76,15 +74,14 @@ struct Worker {
   std::string said;
 };
 
-/// Stores the result of a simulated run whose process has ended or timed out.
 void conclude(Worker& worker, bool late, const Failure& failure, DrawTriage& draw) {
   if (late) worker.process.kill();
   const Process::End end = worker.process.wait();
   if (read_rows(worker.said, failure, draw)) return;
-  draw.error_code = late ? "the draw did not end within its time limit" : "the draw's process " + end.describe();
+  draw.error_code = late ? "the simulated run did not end within its time limit"
+                         : "the process of the simulated run " + end.describe();
 }
 
-/// Starts the process of a simulated run. Returns false if another process must end first.
 bool begin(std::list<Worker>& workers, std::size_t index, double deadline_s, const std::function<void(int)>& work) {
   try {
     workers.push_back({index, deadline_s, Process(work, true), {}});

@@ -13,22 +13,16 @@
 #include "scenarios/sweep/sweep.hpp"
 #include "scenarios/sweep/triage.hpp"
 
-/// suite_triage.hpp runs the triage of many simulated runs, to find which true input improves a method most over a
-/// suite.
 namespace tumble::scenarios {
 
-/// DrawTriage is the triage result of one simulated run: outcomes with and without true inputs.
 struct DrawTriage {
   DrawName draw;
   std::vector<TriageRow> rows;  ///< rows of triage(); the first is the outcome without true inputs
   std::string error_code;       ///< reason for missing rows: simulation impossible, process died or timed out
 };
 
-/// Returns the scenarios and seeds of the suite whose robots the method supports, in the order of a sweep: seeds are
-/// the outer loop. Throws BadInput if the seeds are invalid.
 std::vector<DrawName> draws_of(const DataRoot& data, const Suite& suite, const Method& method);
 
-/// Returns the unmodified runs in `results` on which the method failed.
 std::set<DrawName> failed_draws(const Results& results, const Method& method, const Failure& failure);
 
 struct SuiteTriageOptions {
@@ -39,10 +33,9 @@ struct SuiteTriageOptions {
   std::function<void(const DrawTriage&)> on_draw;  ///< called after each simulated run
 };
 
-/// Runs the triage of each simulated run in a separate process. The time limit of the process is that of its method
-/// runs plus two further runs; its memory limit is `memory_mib`. If the process dies or times out, its results so far
-/// are kept, with an error. The results are in the order of `draws`; if the triage was stopped, the last ones are
-/// missing. Throws BadInput for an unreadable scenario, an invalid memory limit, or if no process can be started.
+/// Runs the triage of each simulated run in a separate process, whose time limit is that of its method runs plus two
+/// further runs. If the process dies or times out, its results so far are kept, with an error. Throws BadInput for an
+/// unreadable scenario, an invalid memory limit, or if no process can be started.
 std::vector<DrawTriage> triage_draws(const DataRoot& data, std::span<const DrawName> draws, const Method& method,
                                      const SuiteTriageOptions& options);
 

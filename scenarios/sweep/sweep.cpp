@@ -41,7 +41,8 @@ void claim(Results& results, const DataRoot& data, const Suite& suite, const std
   if (!suite.recordings.empty()) results.set_note("source", kRecordingsSource);
 }
 
-/// Stores absolute paths of the descriptions, so that each run can be repeated from any folder (run_again.hpp).
+/// The descriptions of external methods are stored with absolute paths, so that each run can be repeated from any
+/// folder.
 void note_descriptions(Results& results, const Suite& suite) {
   for (const std::string& name : suite.methods) {
     if (!is_method_file(name)) continue;
@@ -99,7 +100,6 @@ class Sweep {
   }
 
  private:
-  /// Ends the workers and removes the incomplete files of kept runs.
   void discard_unfinished() {
     for (DrawWorker& worker : workers_) worker.kill();
     workers_.clear();
@@ -115,7 +115,6 @@ class Sweep {
 
   bool stopped() const { return options_.stop != nullptr && options_.stop->load(); }
 
-  /// Runs until all tasks are complete or the sweep is stopped.
   void work(const NextDraw& next) {
     std::optional<DrawTask> waiting = next();
     while (!stopped()) {
@@ -142,7 +141,6 @@ class Sweep {
         std::count_if(workers_.begin(), workers_.end(), [](const DrawWorker& worker) { return worker.is_busy(); }));
   }
 
-  /// Returns the next task that has a method to run.
   std::optional<DrawTask> next_draw() {
     for (; !plan_.at_end() && !stopped(); plan_.advance()) {
       DrawTask task = plan_.next(results_);
@@ -156,7 +154,6 @@ class Sweep {
     return std::nullopt;
   }
 
-  /// Passes the task to an idle or new worker. Returns false if no worker is available.
   bool give(const DrawTask& task) {
     if (busy() >= options_.jobs) return false;
     const double deadline_s = now_s() + suite_.timeout_s * (static_cast<double>(task.runs.size()) + kSimulateTimeouts);
@@ -167,7 +164,8 @@ class Sweep {
     try {
       workers_.emplace_back(terms_);
     } catch (const std::system_error& error) {
-      if (workers_.empty()) throw BadInput(fmt::format("cannot start a worker process: {}", error.what()));
+      if (workers_.empty())
+        throw BadInput(fmt::format("cannot start a worker process for simulated runs: {}", error.what()));
       return false;  // retry after another process has ended
     }
     return workers_.back().give(task, deadline_s);
@@ -188,7 +186,6 @@ class Sweep {
     poll(waiting.data(), waiting.size(), kPollMs);
   }
 
-  /// Stores the messages of a worker. Returns true if the worker died during a task.
   bool serve(DrawWorker& worker) {
     if (!worker.is_busy()) return false;
     const bool open = hear(worker);
@@ -206,7 +203,6 @@ class Sweep {
     return true;
   }
 
-  /// Reads the messages of a worker. Returns false if the worker has ended.
   bool hear(DrawWorker& worker) {
     std::vector<Message> said;
     const bool open = worker.hear(said);
@@ -220,10 +216,10 @@ class Sweep {
     return open;
   }
 
-  // The process of a task died: each of its remaining methods gets an outcome without scores.
+  // If the worker process of a task dies, each of its remaining methods gets an outcome without scores.
   void account_for_death(const DrawTask& draw, bool late, const Process::End& end) {
-    const std::string what =
-        late ? "the draw did not end within its time limit" : "the draw's process " + end.describe();
+    const std::string what = late ? "the simulated run did not end within its time limit"
+                                  : "the process of the simulated run " + end.describe();
     if (updating_kept_) {
       progress_.not_kept = what;
       return;
@@ -238,8 +234,7 @@ class Sweep {
     if (outcome.status != OutcomeStatus::ok) ++progress_.failures[outcome.status];
   }
 
-  /// Updates the folder of kept runs to match the results: repeats missing runs, and removes runs that the rule does
-  /// not select. A file system error does not stop the sweep.
+  /// Repeats runs whose kept files are missing, and removes runs that the rule does not select.
   void update_kept() {
     updating_kept_ = true;
     const std::set<DrawName> wanted = draws_to_keep(results_, options_.keep);
@@ -318,7 +313,8 @@ std::uint64_t SweepProgress::not_ok() const {
 void require_worker_memory(double mib) {
   constexpr double kMinMib = 64.0, kMaxMib = 1e7;
   if (!(mib >= kMinMib && mib <= kMaxMib))
-    throw BadInput(fmt::format("the memory limit is {} MiB; it must be within [64, 1e7]", std::to_string(mib)));
+    throw BadInput(fmt::format("the memory limit of a worker process is {} MiB; it must be within [64, 1e7]",
+                               std::to_string(mib)));
 }
 
 Results open_results(const DataRoot& data, const Suite& suite, const std::filesystem::path& database) {
@@ -334,18 +330,20 @@ SweepProgress sweep(const DataRoot& data, const Suite& suite, const std::filesys
 
 void require_sound(const Suite& suite, const SweepOptions& options) {
   if (options.jobs < 1 || options.jobs > kJobsMax) {
-    throw BadInput(fmt::format("jobs is {}; it must be within [1, {}]", options.jobs, kJobsMax));
+    throw BadInput(fmt::format("the number of parallel processes (--jobs) is {}; it must be within [1, {}]",
+                               options.jobs, kJobsMax));
   }
   require_seeds(suite);
   for (const OutcomeStatus status : options.again) {
     if (!may_run_again(status)) {
       throw BadInput(fmt::format(
-          "runs with status '{}' cannot be repeated; possible statuses: crashed, timeout, killed", to_string(status)));
+          "runs with status '{}' cannot be repeated; only runs with status crashed, timeout or killed can be repeated",
+          to_string(status)));
     }
   }
   if (!suite.recordings.empty() && options.keep.which != Keep::Which::none)
     throw BadInput(fmt::format(
-        "suite {}: the draws of this suite are recordings that already exist as files; set --keep none", suite.name));
+        "suite {}: the suite consists of recordings, which exist already as files; set --keep none", suite.name));
   require_worker_memory(options.memory_mib);
 }
 

@@ -21,14 +21,12 @@
 
 namespace tumble::scenarios {
 
-/// DrawClass is a named class of simulated runs, for example "mild"; each run has a scenario and a seed.
 struct DrawClass {
   std::string name;
   std::vector<std::pair<std::string, std::uint64_t>> draws;
 };
 
-/// Suite is the content of a suite file, scenarios/suites/NAME.yaml. A suite runs methods on scenarios with several
-/// seeds, once per point of each curve, or on recordings (recorded_draw.hpp).
+/// A suite file, scenarios/suites/NAME.yaml, selects methods and either scenarios with several seeds or recordings.
 struct Suite {
   std::string name;
   std::string doc;
@@ -43,17 +41,14 @@ struct Suite {
   std::vector<Variation> curves;            ///< key `vary`: {KEY: [values]}; "+" joins keys that change together
 
   bool has_draw(const std::string& scenario, std::uint64_t seed) const;
-  /// Returns the number of unmodified simulated runs from `first_seed` to `last_seed`.
   std::uint64_t draw_count() const;
 };
 
-/// Throws BadInput if the last seed is below the first seed, or if there are more seeds than a sweep permits.
 void require_seeds(const Suite& suite);
 
 std::vector<std::string> suite_names(const DataRoot& data);
-/// Loads a suite by its name, from a suite file, or from the name of a scenario. The name of a scenario gives a suite
-/// of all methods on this scenario. A named case is used with its own seed. Throws BadInput if the name is unknown or
-/// the file is invalid.
+/// Loads a suite by its name, from a suite file, or from the name of a scenario, which gives a suite of all methods on
+/// this scenario. Throws BadInput if the name is unknown or the file is invalid.
 Suite load_suite(const DataRoot& data, const std::string& name);
 
 struct SweepProgress {
@@ -67,9 +62,7 @@ struct SweepProgress {
   std::uint64_t not_ok() const;
 };
 
-/// Default memory limit of a worker; equal to the limit of an external command (processes/command.hpp).
 inline constexpr double kWorkerMemoryMib = 8192.0;
-/// Throws BadInput if the memory limit of a worker is too small or too large.
 void require_worker_memory(double mib);
 
 struct SweepOptions {
@@ -80,29 +73,23 @@ struct SweepOptions {
   std::vector<OutcomeStatus> again;  ///< statuses of rows to repeat: crashed, timeout, killed
   Keep keep;                         ///< rule for kept runs; `none` leaves kept files unchanged
   RecordingInfo versions;            ///< versions of program and physics engine, for kept recordings
-  /// true: lidars are not simulated if the methods of a task do not read them, although the recording would contain
-  /// them. Estimates and scores are unchanged, but the digest of the recording differs. Not allowed with `keep`.
+  /// If true, lidars that no method of a task reads are not simulated; estimates and scores are unchanged, but the
+  /// digest of the recording differs.
   bool recordings_unseen = false;
 };
 
-/// Throws BadInput if an option is invalid: jobs, seeds, statuses to repeat, keep rule or memory.
 void require_sound(const Suite& suite, const SweepOptions& options);
 
-/// Opens or creates the results database for this suite, build, models and scenarios. Throws BadInput if the database
-/// belongs to another suite, build, models or scenarios.
+/// Throws BadInput if the results database belongs to another suite, build, models or scenarios.
 Results open_results(const DataRoot& data, const Suite& suite, const std::filesystem::path& database);
 
-/// Executes the runs of the suite that the database lacks. Workers (draw_worker.hpp) run each method in a separate
-/// process. If a method crashes, times out or exceeds its memory, its outcome is crashed, timeout or killed, and the
-/// sweep continues. Each outcome is stored when it is complete. Simulated runs are planned one at a time, so memory use
-/// does not depend on their number.
-///
-/// At the end, the folder of kept runs matches the keep rule. Returns the final progress; if the sweep was stopped,
-/// draws_done is below draws_total. Throws BadInput if the results of a recording come from other data (another
-/// digest), or if no method can run on any scenario.
+/// Executes the runs of the suite that the database lacks; worker processes run each method in a separate process. If a
+/// method crashes, times out or exceeds its memory, its outcome is crashed, timeout or killed, and the sweep continues.
+/// Each outcome is stored when it is complete. Simulated runs are planned one at a time, so memory use does not depend
+/// on their number. Throws BadInput if the results of a recording come from other data, or if no method can run on any
+/// scenario.
 SweepProgress sweep(const DataRoot& data, const Suite& suite, const DatabaseOwner& database,
                     const SweepOptions& options);
-/// Locks the database and executes the sweep. Throws BadInput if another process has locked the database.
 SweepProgress sweep(const DataRoot& data, const Suite& suite, const std::filesystem::path& database,
                     const SweepOptions& options);
 

@@ -4,27 +4,22 @@
 #include <string>
 #include <vector>
 
-/// sweep_notes.hpp lists keys and values of the notes that a sweep stores in its results (Results::set_note).
 namespace tumble::scenarios {
 
-/// Value of the note `source` if the results come from recordings, which cannot be simulated again.
+/// Value of the note `source` if the results come from recordings, which cannot be simulated again
 inline constexpr const char* kRecordingsSource = "recordings";
 
-/// Value of the note `build` if results of several builds were merged; only reports accept such results.
+/// Value of the note `build` if results of several builds were merged; only reports accept such results
 inline constexpr const char* kMixedBuilds = "mixed";
 
-/// Key of the note with the commands that produced the results: one line per sweep with suite, seeds and methods,
-/// quoted for a shell.
+/// Key of the note with the commands that produced the results: one line per sweep, quoted for a shell
 inline constexpr const char* kCommandNote = "command";
 
-/// Returns the non-empty lines of a note with commands.
 std::vector<std::string> commands_of(const std::string& note);
 
-/// Returns `note` with the lines of `more` that it lacks.
 std::string with_commands(const std::string& note, const std::string& more);
 
-/// Returns `text` as one word of a POSIX shell. The word is quoted if it contains anything but letters, digits and
-/// `_-./:=,+@%`.
+/// The word of a POSIX shell is quoted if it contains anything but letters, digits and `_-./:=,+@%`.
 std::string shell_word(const std::string& text);
 
 }  // namespace tumble::scenarios

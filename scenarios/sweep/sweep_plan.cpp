@@ -17,8 +17,8 @@ namespace {
 
 using nlohmann::json;
 
-// Fraction of a method's time limit that an external command receives. The parent process can then end the command
-// before its own deadline.
+// An external command receives this fraction of a method's time limit, so the parent process can end the command before
+// its own deadline.
 constexpr double kOwnShare = 0.9;
 
 }  // namespace
@@ -107,7 +107,6 @@ DrawTask SweepPlan::next(const Results& results) const {
   return next_.recording < recordings_.size() ? of_recording(results) : of_scenario(results);
 }
 
-/// Adds the methods that have no result for `setting`, or whose result must be repeated.
 void SweepPlan::add_missing(const std::vector<MethodPointer>& methods, const std::vector<Outcome>& held,
                             const Setting& setting, DrawTask& task) const {
   const auto stands = [&](const MethodInfo& info) {
@@ -170,7 +169,6 @@ DrawTask SweepPlan::again(const DrawName& draw, const Results& results) const {
   return task;
 }
 
-/// Returns true if a method reads lidars on this scenario and seed, in this or in an earlier sweep.
 bool SweepPlan::read_lidars(const Planned& planned, const std::vector<Outcome>& held) const {
   const auto reads = [](Kind kind) { return kind != Kind::rate; };
   return std::any_of(planned.methods.begin(), planned.methods.end(),

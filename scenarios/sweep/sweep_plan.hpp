@@ -17,8 +17,6 @@ namespace tumble::scenarios {
 /// SweepPlan iterates over the scenarios and seeds of a suite, with the methods to run on each, in constant memory.
 class SweepPlan {
  public:
-  /// Throws BadInput for an unknown method, scenario or recording, for a scenario from which no situation can be drawn,
-  /// or if no method can run on any scenario.
   SweepPlan(const DataRoot& data, const Suite& suite, const SweepOptions& options,
             const std::filesystem::path& database);
 
@@ -27,28 +25,23 @@ class SweepPlan {
 
   std::uint64_t draws_total() const;
   const std::vector<MethodPointer>& methods() const { return methods_; }
-  /// Throws BadInput if the results belong to another version of a recording in the suite.
   void require_same_recordings(const Results& results) const;
-  /// Stores the paths of the recordings in the results, so that runs can be repeated (run_again.hpp).
   void note_recordings(Results& results) const;
 
-  /// Recordings come first, then scenarios with seeds as the outer loop. A stopped sweep therefore covers all scenarios
-  /// and curve points.
+  /// Recordings come first, then scenarios with seeds as the outer loop, so a stopped sweep covers all scenarios and
+  /// curve points.
   bool at_end() const { return next_.recording == recordings_.size() && next_.past_seeds; }
   void advance();
-  /// Returns the next task, with the methods that have no result or must be repeated.
   DrawTask next(const Results& results) const;
 
-  /// Returns true if the scenario belongs to the suite, for any seed.
   bool has(const DrawName& draw) const;
-  /// Returns a task that repeats the completed methods on a scenario and seed, to keep their files.
+  /// The returned task repeats the completed methods on a scenario and seed, to keep their files.
   DrawTask again(const DrawName& draw, const Results& results) const;
 
   std::string to_line(const DrawTask& task) const;
   DrawTask from_line(const std::string& line) const;
 
  private:
-  /// Planned is a scenario or recording of the suite, with the methods that can run on it.
   struct Planned {
     std::string asked;  ///< name in the suite
     Scenario scenario;
@@ -65,7 +58,7 @@ class SweepPlan {
     bool past_seeds = false;
   };
 
-  /// Returns true if the suite contains the next scenario and seed. A suite without a list of runs contains all.
+  /// A suite without a list of runs contains all scenarios and seeds.
   bool is_wanted() const;
   void step();
   void add_missing(const std::vector<MethodPointer>& methods, const std::vector<Outcome>& held, const Setting& setting,

@@ -10,25 +10,17 @@
 
 namespace tumble::scenarios {
 
-/// TrueInput is one input of a method, with a function that replaces it by its true value. The table in true_inputs.cpp
-/// lists the inputs.
+/// TrueInput is one input of a method, with a function that replaces it by its true value.
 struct TrueInput {
   std::string name;
   std::string doc;
-  /// Replaces the input in `sensors`, which belong to `truth`, by its true value. Returns false if the recording lacks
-  /// the input or it is already exact.
   bool (*replace)(sim::Sensors& sensors, const sim::Truth& truth);
 };
 
-/// Returns all inputs that can be replaced by their true values; the last entry replaces all at once.
 std::span<const TrueInput> true_inputs();
 
-/// Returns true if the score is a verdict that the run failed (for example `map_failed`). Unranked verdicts only
-/// describe the run.
 bool is_failed_verdict(const Score& score);
 
-/// Failure contains the criteria of a failure: a status other than ok, a failing verdict (`map_failed`), or a metric
-/// worse than a limit.
 struct Failure {
   std::string metric;  ///< empty: only status and verdicts count
   double limit = 0.0;  ///< upper limit, or lower limit if higher values are better
@@ -50,9 +42,8 @@ struct TriageOptions {
 };
 
 /// Runs a method on the original sensor data, then with each input replaced by its true value, in separate processes.
-/// All runs are scored against the same truth. The first result is that of the original sensor data. If no true input
-/// prevents a failure, the cause is the method or the scenario. Throws the exceptions of simulate_draw, and BadInput if
-/// the method cannot run on the scenario.
+/// All runs are scored against the same truth. If no true input prevents a failure, the cause is the method or the
+/// scenario.
 std::vector<TriageRow> triage(const DataRoot& data, const Scenario& scenario, std::uint64_t seed, const Method& method,
                               const TriageOptions& options);
 

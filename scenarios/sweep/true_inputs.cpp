@@ -22,7 +22,7 @@ double largest(const Readings& readings) {
   return largest;
 }
 
-/// Returns a range above every reading, so that no reading counts as clipped.
+/// The stated range exceeds every reading, so no reading counts as clipped.
 double beyond(double stated, const Readings& readings) {
   return stated > 0.0 ? std::max(stated, 1.1 * largest(readings)) : stated;
 }
@@ -43,7 +43,6 @@ bool replace_accel(sim::ImuRecord& imu, const Readings& readings) {
   return true;
 }
 
-/// Applies `replace(record, truth)` to each IMU. Returns true if an IMU changed.
 template <typename Replace>
 bool each_imu(sim::Sensors& sensors, const sim::Truth& truth, Replace&& replace) {
   bool changed = false;
@@ -93,7 +92,7 @@ bool exact_mounting(sim::Sensors& sensors, const sim::Truth& truth) {
   return changed;
 }
 
-/// Sets each time stamp to the true end of the averaging window. The recording must contain all samples.
+/// Each time stamp becomes the true end of the averaging window.
 bool exact_stamps(sim::Sensors& sensors, const sim::Truth& truth) {
   bool changed = false;
   const std::int64_t end_ns = static_cast<std::int64_t>(truth.q_WB.size() - 1) * truth.period_ns;
@@ -108,7 +107,6 @@ bool exact_stamps(sim::Sensors& sensors, const sim::Truth& truth) {
   return changed;
 }
 
-/// Returns the true pose of the first lidar at `time_ns`. `track` must be that of the first lidar.
 Eigen::Isometry3d pose_of(const TruthTrack& track, std::int64_t time_ns) {
   const PoseState pose = track.pose(std::min(time_ns, track.last_ns()));
   Eigen::Isometry3d T_WL = Eigen::Isometry3d::Identity();
@@ -117,7 +115,6 @@ Eigen::Isometry3d pose_of(const TruthTrack& track, std::int64_t time_ns) {
   return T_WL;
 }
 
-/// Moves each lidar point to the true hit of its beam.
 bool exact_ranges(sim::Sensors& sensors, const sim::Truth& truth) {
   if (sensors.lidars.empty() || truth.lidars.empty()) return false;
   sim::LidarRecord& lidar = sensors.lidars.front();
@@ -133,8 +130,7 @@ bool exact_ranges(sim::Sensors& sensors, const sim::Truth& truth) {
   return !lidar.range_m.empty();
 }
 
-/// Removes the motion distortion of the sweeps: the true poses move all points to the sensor pose at the last point,
-/// with times within a microsecond. The range errors remain.
+/// Removes the motion distortion of the sweeps: the true poses move all points to the sensor pose at the last point.
 bool unbent_sweeps(sim::Sensors& sensors, const sim::Truth& truth) {
   if (sensors.lidars.empty() || truth.lidars.empty()) return false;
   sim::LidarRecord& lidar = sensors.lidars.front();
@@ -156,7 +152,6 @@ bool unbent_sweeps(sim::Sensors& sensors, const sim::Truth& truth) {
   return !lidar.range_m.empty();
 }
 
-/// Replaces each reading by the true mean over its averaging window.
 bool exact_series(sim::Sensors& sensors, const sim::Truth& truth) {
   bool changed = false;
   for (std::size_t i = 0; i < std::min(sensors.series.size(), truth.series.size()); ++i) {
@@ -171,8 +166,8 @@ bool exact_series(sim::Sensors& sensors, const sim::Truth& truth) {
   return changed;
 }
 
-/// Range errors are corrected first: the correction needs the time of each point, which the removal of distortion
-/// deletes.
+/// Range errors are corrected first, because the correction needs the time of each point, which the removal of
+/// distortion deletes.
 bool everything(sim::Sensors& sensors, const sim::Truth& truth) {
   bool changed = false;
   for (const auto& replace :
@@ -201,8 +196,8 @@ std::span<const TrueInput> true_inputs() {
       TrueInput{"lidar_unbent",
                 "replaces the sweeps by sweeps without skew (all points within a microsecond); the range errors remain",
                 unbent_sweeps},
-      TrueInput{"series_exact", "removes the errors of all other sensors", exact_series},
-      TrueInput{"all", "applies all other replacements together", everything},
+      TrueInput{"series_exact", "removes the errors of all sensors other than IMU and lidar", exact_series},
+      TrueInput{"all", "replaces all inputs of the method by their true values at once", everything},
   };
   return kInputs;
 }

@@ -56,7 +56,6 @@ const GivenError& given_error(const std::string& key) {
   throw BadInput("'" + key + "': unknown input error" + suggestion(name, known));
 }
 
-/// Splits a key into method and parameter, for example "rate/saave" and "jerk_psd_rad2_s5".
 std::pair<std::string, std::string> method_and_parameter(const std::string& key) {
   const std::size_t dot = key.find('.');
   return {key.substr(0, dot), dot == std::string::npos ? "" : key.substr(dot + 1)};
@@ -64,8 +63,8 @@ std::pair<std::string, std::string> method_and_parameter(const std::string& key)
 
 void require_settable(const std::string& key, const sim::Parameter& parameter, double value) {
   if (value >= parameter.low && value <= parameter.high) return;
-  throw BadInput(fmt::format("key '{}' is {:g} {}; it must be within [{:g}, {:g}]", key, value, parameter.unit,
-                             parameter.low, parameter.high));
+  throw BadInput(fmt::format("the value of key '{}' is {:g} {}; it must be within [{:g}, {:g}]", key, value,
+                             parameter.unit, parameter.low, parameter.high));
 }
 
 void check_parameter(const std::string& key, std::span<const double> values) {
@@ -80,7 +79,8 @@ void check_parameter(const std::string& key, std::span<const double> values) {
   const bool whole = std::any_of(method.info.settings.begin(), method.info.settings.end(), is_whole);
   for (const double value : values) {
     require_settable(key, *parameter, value);
-    if (whole && value != std::floor(value)) throw BadInput(fmt::format("key '{}' must be a whole number", key));
+    if (whole && value != std::floor(value))
+      throw BadInput(fmt::format("the value of key '{}' must be a whole number", key));
   }
 }
 
@@ -88,12 +88,14 @@ void check_given(const std::string& key, std::span<const double> values, const S
   const GivenError& error = given_error(key);
   for (const double value : values) require_settable(key, error.parameter, value);
   if (scenario.sensors.empty() || scenario.sensors.front().kind != "imu") {
-    throw BadInput(fmt::format("key '{}': the first sensor of scenario {} must be an IMU", key, scenario.name));
+    throw BadInput(
+        fmt::format("key '{}' is an error of the primary IMU, but the first sensor of scenario {} is not an IMU", key,
+                    scenario.name));
   }
   const bool lidar = std::any_of(scenario.sensors.begin(), scenario.sensors.end(),
                                  [](const Scenario::Sensor& sensor) { return sensor.kind.ends_with("lidar"); });
   if (error.needs_lidar && !lidar)
-    throw BadInput(fmt::format("key '{}': scenario {} has no lidar", key, scenario.name));
+    throw BadInput(fmt::format("key '{}' is an error of the lidar, but scenario {} has no lidar", key, scenario.name));
 }
 
 }  // namespace
@@ -153,7 +155,7 @@ SimulatedDraw with_setting(const SimulatedDraw& draw, const Setting& setting) {
   if (reach(setting) == Reach::input) {
     if (!draw.built)
       throw BadInput(
-          fmt::format("{} applies only to simulated draws, but {} is a recording", setting.key, draw.scenario));
+          fmt::format("{} applies only to simulated runs, but {} is a recording", setting.key, draw.scenario));
     for (const std::string& key : keys_of(setting.key)) {
       given_error(key).put_in(changed.recording.sensors, changed.recording.truth, changed.built->situation(),
                               setting.value);

@@ -12,48 +12,36 @@
 
 namespace tumble::scenarios {
 
-/// Variation is a curve of a suite: one parameter, or several that change together, with a list of values. There are
-/// three sorts of parameters.
+/// Variation is a curve of a suite: one parameter, or several that change together, with a list of values.
 ///
-/// - A key such as `world.rock_count` or `sensors.imu.output_rate_hz` names a parameter of the scenario
-///   (fixed_number.hpp). Each value needs a new simulation.
-/// - A key such as `given.lever_arm_error_m` names an error in the methods' input (given_errors.hpp). One simulation
-///   serves all values.
-/// - A key such as `rate/saave.jerk_psd_rad2_s5` names a parameter of one method. One simulation serves all values, and
-///   only this method is repeated.
+/// - A key such as `world.rock_count` names a parameter of the scenario; each value needs a new simulation.
+/// - A key such as `given.lever_arm_error_m` names an error in the methods' input; one simulation serves all values.
+/// - A key such as `rate/saave.jerk_psd_rad2_s5` names a parameter of one method; only this method is repeated.
 struct Variation {
   std::vector<std::string> keys;  ///< all of one sort
   std::vector<double> values;     ///< as written, each once
-  /// Returns the keys joined by "+", as the results store them.
   std::string key() const;
   std::vector<Setting> settings() const;
 };
 
-/// Reach states which part of a run a setting affects: for each value of the setting, this part is repeated.
+/// Reach states which part of a run must be repeated for each value of a setting.
 enum class Reach { nothing, simulation, input, method };
 Reach reach(const Setting& setting);
 
-/// Returns true if the setting is an error in the data from a lidar.
 bool needs_lidar(const Setting& setting);
 
-/// Throws BadInput if a key is unknown; the message suggests the nearest name. Throws BadInput if a key is of another
-/// sort than the other keys, or does not apply to one of the scenarios. Throws BadInput if no situation with seed
-/// `seed` can be drawn with one of the values.
+/// Throws BadInput if a key is unknown, is of another sort than the other keys, or does not apply to one of the
+/// scenarios. Throws BadInput if no situation with seed `seed` can be drawn with one of the values.
 void check(const Variation& variation, const DataRoot& data, std::span<const std::string> scenarios,
            std::uint64_t seed);
 
-/// Returns the scenario with the parameter of the setting fixed to its value; unchanged if the setting does not affect
-/// the simulation.
 Scenario with_setting(Scenario scenario, const Setting& setting);
 
-/// Returns the simulated run with the error of the setting in its sensor data. Throws BadInput if the run lacks the
-/// sensor, or is a recording: the error depends on the simulated situation.
+/// Throws BadInput if the run lacks the sensor, or is a recording: the error depends on the simulated situation.
 SimulatedDraw with_setting(const SimulatedDraw& draw, const Setting& setting);
 
-/// Returns the method with the parameter value of the setting.
 Method with_setting(const Method& method, const Setting& setting);
 
-/// Returns false if the setting is a parameter of another method, otherwise true.
 bool concerns(const Setting& setting, const MethodInfo& method);
 
 }  // namespace tumble::scenarios

@@ -15,8 +15,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Cell is one cell of a height field below a strut (capsule), in coordinates relative to the cell's first corner.
-/// MuJoCo divides the cell into two triangles, along the diagonal from the first to the last corner.
+/// MuJoCo divides a cell of a height field into two triangles, along the diagonal from the first to the last corner.
 class Cell {
  public:
   Cell(const Field& field, int row, int column, const Strut& strut, const Part& over)
@@ -49,12 +48,9 @@ class Cell {
  private:
   Vector3d first() const { return {0, 0, heights_m_[0]}; }
   Vector3d last() const { return {dx_, dy_, heights_m_[2]}; }
-  /// Returns the signed distance of a point from the cell's diagonal, positive below the diagonal.
   double beside_diagonal_m(const Vector3d& p_m) const {
     return (p_m.x() * dy_ - p_m.y() * dx_) / std::sqrt(dx_ * dx_ + dy_ * dy_);
   }
-  /// Returns whether the strut is too far above a plane for a contact. The plane contains the cell's first corner, and
-  /// has the given slopes.
   bool above_plane(double slope_x, double slope_y) const {
     const auto above_m = [&](const Vector3d& p_m) {
       return p_m.z() - heights_m_[0] - slope_x * p_m.x() - slope_y * p_m.y();
@@ -67,13 +63,11 @@ class Cell {
   std::array<double, 4> heights_m_;  ///< heights of the corners, anticlockwise from the first
 };
 
-/// Touched collects the contacts of a strut with the prisms of the ground.
 class Touched {
  public:
   Touched(const Strut& strut, const Vector3d& origin_W_m, mjPreContact* contacts)
       : radius_m_(strut.radius_m), origin_W_m_(origin_W_m), contacts_(contacts) {}
 
-  /// Adds the contact of the strut with one prism of ground. Returns false if the strut's axis is inside the prism.
   bool add(const Cell& cell, const Prism& prism) {
     Closest closest;
     const Meeting how = meet(cell.a_m, cell.b_m, prism, radius_m_, closest);
@@ -103,8 +97,6 @@ bool turned(const mjData& data, int geom) {
   return turn[0] != 1.0 || turn[4] != 1.0 || turn[8] != 1.0;
 }
 
-/// Returns MuJoCo's own collision function. The first call reads the function from MuJoCo's table, before
-/// find_field_contacts_by_geometry() replaces the entry.
 mjfCollision engines_own() {
   static const mjfCollision kOwn = mjCOLLISIONFUNC[mjGEOM_HFIELD][mjGEOM_CAPSULE];
   return kOwn;
@@ -132,7 +124,6 @@ std::optional<int> field_contacts(const mjModel& model, const mjData& data, int 
   for (int row = rows.first; row <= rows.last; ++row) {
     const Part in_row = Part{}.within(strut, 1, field.y_m(row), field.y_m(row + 1));
     if (in_row.none()) continue;
-    // Most cells are entirely below the strut, so the cheap comparison of heights comes first.
     const double lowest_m = std::min(strut.at_m(in_row.first).z(), strut.at_m(in_row.last).z()) - strut.reach_m;
     double left_m = field.higher_m(row, columns.first), right_m;
     for (int column = columns.first; column <= columns.last; ++column, left_m = right_m) {

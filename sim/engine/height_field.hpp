@@ -7,11 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
-/// height_field.hpp describes a height field and a strut above it, in axes of the field, which are parallel to the
-/// world's axes.
 namespace tumble::sim::engine {
 
-/// Field contains heights on a regular grid. Columns are along x.
 struct Field {
   const float* heights;
   int rows, columns;
@@ -33,14 +30,12 @@ struct Field {
   double x_m(int column) const { return cell_x_m * column - half_x_m; }
   double y_m(int row) const { return cell_y_m * row - half_y_m; }
   double height_m(int row, int column) const { return scale_m * heights[row * columns + column]; }
-  /// Returns the larger height of two grid nodes: (row, column) and (row + 1, column).
   double higher_m(int row, int column) const {
     return scale_m * std::max(heights[row * columns + column], heights[(row + 1) * columns + column]);
   }
 
-  /// Returns the depth of a point below the ground triangle at its position. The depth is negative above the ground,
-  /// and 0 outside the field. MuJoCo divides a cell of the height field along the diagonal from its first to its last
-  /// corner.
+  /// Returns the depth of a point below the ground triangle at its position; negative above the ground, and 0 outside
+  /// the field.
   double depth_m(const Eigen::Vector3d& p_m) const {
     const double across = (p_m.x() + half_x_m) / cell_x_m, along = (p_m.y() + half_y_m) / cell_y_m;
     if (!(across >= 0.0 && across <= columns - 1 && along >= 0.0 && along <= rows - 1)) return 0.0;
@@ -56,7 +51,7 @@ struct Field {
   }
 };
 
-/// Strut is a capsule of the robot's cage. `reach_m` is the distance from the axis within which contacts are searched.
+/// Strut is a capsule of the robot's cage; contacts are searched within the distance `reach_m` from its axis.
 struct Strut {
   Eigen::Vector3d from_m, along_m;
   double radius_m, reach_m;
@@ -78,14 +73,12 @@ struct Strut {
   double highest_m(int axis) const { return from_m[axis] + std::max(0.0, along_m[axis]) + reach_m; }
 };
 
-/// Part is a section of a strut's axis. `first` and `last` are fractions of the axis's length. The section is empty if
+/// Part is a section of a strut's axis, from the fraction `first` to the fraction `last` of its length; empty if
 /// `first` exceeds `last`.
 struct Part {
   double first = 0.0, last = 1.0;
   bool none() const { return first > last; }
 
-  /// Returns the part of the strut's axis whose coordinate `axis` is between two limits. The limits are extended by the
-  /// distance within which contacts are searched.
   Part within(const Strut& strut, int axis, double low_m, double high_m) const {
     const double from_m = strut.from_m[axis], along_m = strut.along_m[axis];
     low_m -= strut.reach_m;
@@ -96,8 +89,6 @@ struct Part {
   }
 };
 
-/// Cells contains the numbers of the first and last cell, along one axis, that a strut's bounding box overlaps. The
-/// range is empty if `first` exceeds `last`.
 struct Cells {
   int first, last;
   Cells(double low_m, double high_m, double half_m, double cell_m, int count)

@@ -22,8 +22,6 @@ Eigen::Quaterniond attitude(const mjData& data, int body) {
   return {q[0], q[1], q[2], q[3]};
 }
 
-/// Returns the difference between a body's pose and its target pose `T_WB`, in world axes: position [m], then rotation
-/// [rad].
 Vector6d missing(const Eigen::Isometry3d& T_WB, const mjData& data, int body) {
   const Eigen::AngleAxisd turn(Eigen::Quaterniond(T_WB.linear()) * attitude(data, body).conjugate());
   Vector6d out;

@@ -10,7 +10,6 @@
 
 #include "sim/situation.hpp"
 
-/// model.hpp defines World, a situation that MuJoCo has compiled.
 namespace tumble::sim::engine {
 
 struct ModelDeleter {
@@ -22,31 +21,26 @@ struct DataDeleter {
 using ModelPtr = std::unique_ptr<mjModel, ModelDeleter>;
 using DataPtr = std::unique_ptr<mjData, DataDeleter>;
 
-/// FrictionPatch is a rectangle of floor whose sliding friction applies while the robot touches the floor inside the
-/// rectangle.
 struct FrictionPatch {
   double centre_x_m, centre_y_m, half_x_m, half_y_m, yaw_rad, friction;
   bool contains(double x_m, double y_m) const;
 };
 
-/// World is a compiled situation: world and robot in one model.
 struct World {
   ModelPtr model;
-  /// Id of the body that carries the sensors. The inertial frame of this body is B.
+  /// Id of the body that carries the sensors, whose inertial frame is B
   int robot_body = -1;
   bool free = true;                   ///< true: the robot is a single free body; false: the body is attached by joints
   std::vector<std::string> surfaces;  ///< surface id -> name; parallel to `surface_geom`
   std::vector<int> surface_geom;      ///< surface id -> geom id; static geoms that a lidar sees and a robot touches
   std::vector<FrictionPatch> patches;
   double half_extent_m = 0;  ///< the robot has left the world beyond this |x| or |y|
-  /// Point on the ground where a robot starts. The robot moves along +x.
   Eigen::Vector3d start_W_m = Eigen::Vector3d::Zero();
-  /// True centre of mass in the robot's design frame, in B axes.
+  /// True centre of mass in the robot's design frame, in B axes
   Eigen::Vector3d com_offset_m = Eigen::Vector3d::Zero();
   double sphere_radius_m = 0;  ///< 0 if the robot is not a sphere
 };
 
-/// Copies the world together with its model, for changes of the physics (friction of a floor), trials and pictures.
 World copy_of(const World& world);
 
 }  // namespace tumble::sim::engine

@@ -8,10 +8,9 @@
 
 namespace tumble::sim::engine {
 
-/// NearGeoms restricts MuJoCo's bounding-volume tree of the world to geoms that a free robot may touch soon. The
+/// NearGeoms restricts MuJoCo's bounding-volume tree of the world to geoms that a free robot may touch soon; the
 /// destructor restores the original tree. MuJoCo tests the remaining pairs as before and sorts contacts by geom, so the
-/// motion stays bit-identical. Planes and height fields are always in the tree with unbounded boxes, because a test of
-/// their boxes saves no time. A model without a tree, or with further moving bodies, is unchanged.
+/// motion stays bit-identical.
 class NearGeoms {
  public:
   /// `model` must outlive this object, and must not be copied while this object exists.
@@ -20,11 +19,8 @@ class NearGeoms {
   NearGeoms(const NearGeoms&) = delete;
   NearGeoms& operator=(const NearGeoms&) = delete;
 
-  /// Returns whether the model's only moving body is a single free body.
   static bool serves(const mjModel& model);
 
-  /// Selects the geoms near the robot. Call around() before each step with the position of the robot's body. The
-  /// selection is valid for a step of at most 0.2 m.
   void around(const Eigen::Vector3d& p_WB_m);
 
  private:

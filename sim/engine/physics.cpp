@@ -46,7 +46,6 @@ Physics::Physics(World& world)
 
 BodyState Physics::state() const {
   if (!world_.free) return state_on_joints(*world_.model, *data_, world_.robot_body);
-  // Free joint: position and quaternion; velocity in world axes, angular velocity in body axes.
   const mjtNum* q = data_->qpos;
   return {data_->time, vector(q), Eigen::Quaterniond(q[3], q[4], q[5], q[6]), vector(data_->qvel),
           vector(data_->qvel + 3)};
@@ -139,14 +138,12 @@ void Physics::append_contacts(std::int64_t time_ns, std::vector<ContactTruth>& c
     const mjContact& contact = data_->contact[i];
     if (contact.efc_address < 0) continue;  // detected, but too far apart for a force
     const bool robot_second = model->geom_bodyid[contact.geom[1]] == world_.robot_body;
-    // The contact belongs to another segment of the robot.
     if (!robot_second && model->geom_bodyid[contact.geom[0]] != world_.robot_body) continue;
     mjtNum force[6];
     mj_contactForce(model, data_.get(), i, force);
     ContactTruth truth;
     truth.time_ns = time_ns;
     truth.point_W_m = vector(contact.pos);
-    // MuJoCo's normal points from the first geom to the second geom.
     truth.normal_W = (robot_second ? 1.0 : -1.0) * vector(contact.frame);
     const Eigen::Vector3d v_W = now.v_WB_m_s + w_W.cross(truth.point_W_m - now.p_WB_m);
     truth.slip_velocity_W_m_s = v_W - v_W.dot(truth.normal_W) * truth.normal_W;

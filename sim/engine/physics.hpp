@@ -12,35 +12,28 @@
 
 namespace tumble::sim::engine {
 
-/// Physics simulates one robot in one world step by step (RK4). The reported state is the state of the body that
-/// carries the sensors. A warning of MuJoCo ends the run, because lost contacts or invalid numbers would falsify the
-/// data.
+/// A warning of MuJoCo ends the run, because lost contacts or invalid numbers would falsify the data.
 class Physics {
  public:
-  /// Until its destruction, Physics modifies the model of `world`: the floor has the friction of the contact position,
-  /// and the tree contains only geoms near the robot. `world` must outlive this object.
+  /// Until its destruction, Physics modifies the model of `world`, which must outlive this object.
   explicit Physics(World& world);
 
   double step_s() const { return world_.model->opt.timestep; }
   BodyState state() const;
-  /// Sets the state of a free robot. For a robot on joints, the function sets only the time. Throws InvalidSituation if
-  /// the pose of a robot on joints differs from the current pose.
+  /// For a robot on joints, set_state() sets only the time, and throws InvalidSituation if the pose differs from the
+  /// current pose.
   void set_state(const BodyState& state);
 
-  /// Returns angle and angular velocity of the hinge with the given name. Throws InvalidSituation if the robot has no
-  /// hinge of this name.
+  /// Throws InvalidSituation if the robot has no hinge of this name.
   double joint_rad(const std::string& name) const;
   double joint_rate_rad_s(const std::string& name) const;
   void set_joint(const std::string& name, double angle_rad, double rate_rad_s);
 
-  /// Advances the simulation by one step under gravity, contacts and `wrench`, which is constant over the step. Throws
-  /// SimulationFailure with reason and simulated time for a warning of MuJoCo, a non-finite state, or a robot that left
-  /// its world.
+  /// Throws SimulationFailure for a warning of MuJoCo, a non-finite state, or a robot that left its world.
   void step(const Wrench& wrench);
 
-  /// Appends the contacts of the robot with the world at the end of the last step, in arbitrary order. MuJoCo computes
-  /// contacts at the last stage of RK4, whose position differs from the final state by an error of second order in the
-  /// step. Each contact stores `time_ns`.
+  /// MuJoCo computes contacts at the last stage of RK4, whose position differs from the final state by an error of
+  /// second order in the step.
   void append_contacts(std::int64_t time_ns, std::vector<ContactTruth>& contacts) const;
 
  private:

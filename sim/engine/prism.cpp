@@ -13,7 +13,6 @@ using Eigen::Vector3d;
 
 constexpr double kTouching_m = 1e-5;
 
-/// Pair is the closest pair of points that the search has found: one point on the strut's axis and one on the prism.
 struct Pair {
   double distance2_m2;
   Vector3d axis_m, prism_m;
@@ -30,8 +29,6 @@ double left_of(const Vector3d& edge_m, const Vector3d& beside_m) {
   return edge_m.x() * beside_m.y() - edge_m.y() * beside_m.x();
 }
 
-/// AxisBox is the bounding box of a strut's axis. The box quickly rejects geometry that is farther away than the
-/// closest pair of points found so far.
 class AxisBox {
  public:
   AxisBox(const Vector3d& a_m, const Vector3d& b_m)
@@ -44,8 +41,6 @@ class AxisBox {
     const double z = apart_m(2, std::min(from_m.z(), to_m.z()), std::max(from_m.z(), to_m.z()));
     return x * x + y * y + z * z > closest.distance2_m2;
   }
-  /// Returns whether every point below `top_m` is farther from the axis than the two points of `closest` from each
-  /// other.
   bool is_beyond_below(const Vector3d& top_m, const Pair& closest) const {
     const double x = apart_m(0, top_m.x(), top_m.x()), y = apart_m(1, top_m.y(), top_m.y());
     const double z = std::max(low_m_.z() - top_m.z(), 0.0);
@@ -74,7 +69,6 @@ void meet_edge(const Vector3d& p, const Vector3d& u, const Vector3d& q, const Ve
   closest.take(p + s * u, q + t * v);
 }
 
-/// Finds the closest points between one end of the strut's axis and the inside of the prism's top face.
 void meet_top(const Vector3d& end_m, const Prism& prism, const Vector3d& normal, Pair& closest) {
   const double above_m = normal.dot(end_m - prism.top_m[0]);
   if (above_m < 0.0 || above_m * above_m >= closest.distance2_m2) return;
@@ -85,8 +79,6 @@ void meet_top(const Vector3d& end_m, const Prism& prism, const Vector3d& normal,
   closest.take(end_m, on_top_m);
 }
 
-/// Finds the closest points between one end of the strut's axis and the inside of the prism's vertical face below edge
-/// `i`.
 void meet_side(const Vector3d& end_m, const Prism& prism, int i, Pair& closest) {
   const Vector3d& from_m = prism.top_m[i];
   const Vector3d edge_m = prism.top_m[(i + 1) % 3] - from_m, beside_m = end_m - from_m;
@@ -98,7 +90,6 @@ void meet_side(const Vector3d& end_m, const Prism& prism, int i, Pair& closest) 
   closest.take(end_m, on_face_m);
 }
 
-/// Returns whether the strut's axis, above the prism's top triangle, reaches below the plane of this triangle.
 bool pierces(const Vector3d& a_m, const Vector3d& along_m, const Prism& prism, const Vector3d& normal) {
   double first = 0.0, last = 1.0;
   for (int i = 0; i < 3; ++i) {

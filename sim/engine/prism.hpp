@@ -4,16 +4,13 @@
 #include <Eigen/Core>
 #include <array>
 
-/// prism.hpp computes the closest points of a strut's axis and one prism of ground, in any axes with z up.
 namespace tumble::sim::engine {
 
-/// Prism is the volume of ground between a triangle of the surface and a horizontal bottom.
 struct Prism {
   std::array<Eigen::Vector3d, 3> top_m;  ///< anticlockwise seen from above; no edge is vertical
   double foot_m;
 };
 
-/// Closest contains the closest points of a strut's axis and a prism, one on each.
 struct Closest {
   double distance_m;
   Eigen::Vector3d axis_m, prism_m;
@@ -21,11 +18,7 @@ struct Closest {
 
 enum class Meeting { apart, near, pierced };
 
-/// Finds the closest points if the axis from `a_m` to `b_m` is nearer to the prism than `reach_m`. There are no closest
-/// points if the axis pierces the prism or is within 10 um of it. The closest points of two separate convex bodies are
-/// exact except for rounding: an end of the axis and the inside of a face, or the axis and an edge. The bottom of the
-/// prism is assumed to be out of reach. If several pairs of points have equal distances, as for an axis along a face,
-/// the result is one of them.
+/// There are no closest points if the axis from `a_m` to `b_m` pierces the prism or is within 10 um of it.
 Meeting meet(const Eigen::Vector3d& a_m, const Eigen::Vector3d& b_m, const Prism& prism, double reach_m,
              Closest& closest);
 

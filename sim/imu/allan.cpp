@@ -11,7 +11,6 @@ namespace {
 
 constexpr std::size_t kLeastClusters = 9;
 
-/// Integrates the samples minus their mean. The subtraction keeps the sums of a slowly drifting rate small.
 std::vector<double> integrate(std::span<const double> samples) {
   double mean = 0.0;
   for (const double sample : samples) mean += sample;
@@ -22,9 +21,8 @@ std::vector<double> integrate(std::span<const double> samples) {
   return sums;
 }
 
-/// Computes the Allan deviation for an averaging time of `cluster` samples. `sums` contains the integrated samples, in
-/// units of the sample period. The second difference of `sums` over `cluster` samples is `cluster` times the difference
-/// of two means.
+/// The second difference of the integrated samples over `cluster` samples is `cluster` times the difference of two
+/// means.
 double deviation_of(const std::vector<double>& sums, std::size_t cluster) {
   const std::size_t count = sums.size() - 2 * cluster;
   double total = 0.0;
@@ -122,7 +120,7 @@ double walk_deviation(double walk_sqrt_s, double tau_s) {
 
 double gauss_markov_deviation(double sigma, double time_s, double tau_s) {
   const double x = tau_s / time_s;
-  // For small x, the bracket suffers from cancellation, so the code uses its series x^2 / 3 - x^3 / 4.
+  // For small x, the expression in brackets suffers from cancellation, so the code uses its series x^2 / 3 - x^3 / 4.
   const double bracket =
       x < 1e-3 ? x * x / 3.0 - x * x * x / 4.0 : 1.0 - (3.0 - 4.0 * std::exp(-x) + std::exp(-2.0 * x)) / (2.0 * x);
   return sigma * std::sqrt(2.0 / x * bracket);

@@ -5,13 +5,10 @@
 #include <span>
 #include <vector>
 
-/// allan.hpp computes the overlapping Allan deviation of a stationary sensor, with confidence intervals. The functions
-/// are independent of the simulation. The source is Riley, "Handbook of Frequency Stability Analysis", NIST Special
-/// Publication 1065 (2008), sections 5.2.5 (overlapping Allan variance), 5.3.2 (confidence) and table 5 (degrees of
-/// freedom). The names of the noises of a gyroscope are from IEEE Std 952-1997, annex C.
+/// The source is Riley, "Handbook of Frequency Stability Analysis", NIST Special Publication 1065 (2008), sections
+/// 5.2.5, 5.3.2 and table 5. The names of the noises of a gyroscope are from IEEE Std 952-1997, annex C.
 namespace tumble::sim {
 
-/// AllanPoint is the Allan deviation at one averaging time.
 struct AllanPoint {
   double tau_s = 0.0;
   double deviation = 0.0;   ///< in the unit of the series
@@ -20,7 +17,7 @@ struct AllanPoint {
   std::size_t series = 1;   ///< number of independent series in the mean
 };
 
-/// AllanNoise is the dominant noise at an averaging time, which determines the degrees of freedom of the average.
+/// The dominant noise at an averaging time determines the degrees of freedom of the average.
 enum class AllanNoise {
   white,    ///< N / sqrt(tau): angle (or velocity) random walk
   flicker,  ///< minimum of the Allan deviation: bias instability
@@ -28,18 +25,15 @@ enum class AllanNoise {
 };
 
 /// Computes the overlapping Allan deviation of `samples`, which are means over consecutive periods (rates, not angles).
-/// The averaging times range from one period to a ninth of the series, with `per_decade` times per decade. The mean of
-/// the series has no effect. Returns nothing for fewer than nine samples. Cost: O(samples) per averaging time. Throws
-/// std::invalid_argument for a period that is not positive and finite, `per_decade` outside [1, 100], or a non-finite
-/// sample.
+/// The averaging times range from one period to a ninth of the series, with `per_decade` times per decade. Returns
+/// nothing for fewer than nine samples. Throws std::invalid_argument for a period that is not positive and finite,
+/// `per_decade` outside [1, 100], or a non-finite sample.
 std::vector<AllanPoint> allan_deviation(std::span<const double> samples, double period_s, int per_decade = 5);
 
 /// Returns the root of the mean Allan variance of several independent series of equal length and period, for example
-/// the axes of a triad. Throws std::invalid_argument if there is no series, or if the averaging times differ.
+/// the axes of a triad. Throws std::invalid_argument if the averaging times differ.
 std::vector<AllanPoint> mean_deviation(std::span<const std::vector<AllanPoint>> series);
 
-/// Returns the point whose averaging time has the ratio to `tau_s` that is closest to 1. Throws std::invalid_argument
-/// for an empty curve.
 const AllanPoint& nearest_point(std::span<const AllanPoint> curve, double tau_s);
 
 /// Returns the equivalent number of degrees of freedom of the Allan variance at one averaging time, at least 1 (NIST SP
@@ -50,18 +44,17 @@ struct AllanInterval {
   double low = 0.0, high = 0.0;
 };
 
-/// Returns the confidence interval of the true Allan deviation. The confidence equals the probability of `sigmas`
-/// standard deviations of a normal distribution (3: 99.73 %). The interval uses the chi-squared distribution, with the
-/// quantiles of Wilson and Hilferty (1931; within 1 % for 3 degrees of freedom or more). Throws std::invalid_argument
-/// for `sigmas` outside (0, 6].
+/// Returns the confidence interval of the true Allan deviation by the chi-squared distribution, with the quantiles of
+/// Wilson and Hilferty (1931). The confidence equals the probability of `sigmas` standard deviations of a normal
+/// distribution (3: 99.73 %).
 AllanInterval confidence_interval(const AllanPoint& point, AllanNoise noise, double sigmas = 3.0);
 
-/// Returns the Allan deviation of white noise of density N [unit / sqrt(Hz)] at averaging time `tau_s`, in closed form.
+/// Returns the Allan deviation of white noise of density N [unit / sqrt(Hz)].
 double white_deviation(double density, double tau_s);
-/// Returns the Allan deviation of a random walk with coefficient K [unit / sqrt(s)], in closed form.
+/// Returns the Allan deviation of a random walk with coefficient K [unit / sqrt(s)].
 double walk_deviation(double walk_sqrt_s, double tau_s);
 /// Returns the Allan deviation of a first-order Gauss-Markov process with stationary standard deviation `sigma` and
-/// correlation time `time_s`, in closed form.
+/// correlation time `time_s`.
 double gauss_markov_deviation(double sigma, double time_s, double tau_s);
 
 }  // namespace tumble::sim

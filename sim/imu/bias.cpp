@@ -11,12 +11,11 @@ namespace tumble::sim {
 
 namespace {
 
-// Ratio of successive correlation times. With a ratio of 10, the Allan deviation is flat within 2 %.
+// With a ratio of 10 between successive correlation times, the Allan deviation is flat within 2 %.
 constexpr double kRatio = 10.0;
 
-/// Returns the standard deviation of one Gauss-Markov process in an infinite series of processes whose combined Allan
-/// deviation is `floor`. Each process contributes sigma^2 / (f ln ratio) to the spectrum at frequency f; flicker noise
-/// of spectrum h / f has the Allan variance 2 ln 2 h.
+/// Each process contributes sigma^2 / (f ln ratio) to the spectrum at frequency f; flicker noise of spectrum h / f has
+/// the Allan variance 2 ln 2 h.
 double sigma_of_one(double floor) {
   return floor * std::sqrt(std::log(kRatio) / (2.0 * std::numbers::ln2));
 }

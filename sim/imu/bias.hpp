@@ -13,10 +13,10 @@ namespace tumble::sim {
 /// - in-run instability: flicker noise over three decades, from four first-order Gauss-Markov processes of equal size,
 ///   with correlation times a factor of ten apart (Keshner, "1/f noise", Proceedings of the IEEE 70, 1982),
 /// - a random walk.
-/// The Gauss-Markov processes start in their stationary state, so the in-run instability is bounded. The in-run
-/// instability has a standard deviation of 2.58 times the floor of its Allan deviation. This Allan deviation is flat at
-/// `in_run` within 5 % for averaging times from 1/200 to 1/2 of `in_run_s`. Data sheets call `in_run` the "in-run bias
-/// stability" (IEEE Std 952-1997, annex C). The model excludes temperature and any dependence on earlier motion.
+///
+/// The Allan deviation of the in-run instability is flat at `in_run` within 5 % for averaging times from 1/200 to 1/2
+/// of `in_run_s`. Data sheets call `in_run` the "in-run bias stability" (IEEE Std 952-1997, annex C). The model
+/// excludes temperature and any dependence on earlier motion.
 class Bias {
  public:
   struct Params {
@@ -25,12 +25,9 @@ class Bias {
     double in_run_s = 1000.0;  ///< longest correlation time of the in-run instability
     double walk_sqrt_s = 0.0;  ///< standard deviation of the random walk after one second
   };
-  /// Constructs a bias that changes once per `period_s`. A part of the bias whose size is 0 draws no random numbers.
   Bias(const Params& params, double period_s, const Stream& stream);
-  /// Returns the current bias, then advances the bias by one period.
   Eigen::Vector3d next();
 
-  /// Returns the Allan deviation of the in-run instability alone, in closed form.
   static double in_run_deviation(const Params& params, double tau_s);
 
  private:

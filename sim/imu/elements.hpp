@@ -9,48 +9,41 @@
 
 namespace tumble::sim {
 
-/// Elements models the sensing elements of a triad (gyroscope or accelerometer). Each sensing element has its own axis,
-/// scale, zero offset and saturation level. Let u be the signal in the device's axes, with all errors except
-/// saturation. Sensing element i measures s_i = m_i . u + o_i, where m_i is row i of the misalignment matrix M, and o_i
-/// is the zero offset. Saturation maps the vector s to c(s). The device then subtracts the offset and inverts the
-/// matrix: the reading is y = M^-1 (c(s) - o).
-/// Saturation of sensing elements has these consequences:
-/// - While no element saturates, the reading is u, bit for bit: neither M nor o is observable.
-/// - While only element j is at its limit r, the reading satisfies m_j . y = +r - o_j or -r - o_j. The saturated
-///   readings are on a tilted plane, which differs for the two signs.
+/// Elements models the sensing elements of a triad (gyroscope or accelerometer), each with its own axis, scale, zero
+/// offset and saturation level. Let u be the signal in the device's axes, with all errors except saturation. Sensing
+/// element i measures s_i = m_i . u + o_i, where m_i is row i of the misalignment matrix M, and o_i is the zero offset.
+/// Saturation maps the vector s to c(s). The device then subtracts the offset and inverts the matrix: the reading is y
+/// = M^-1 (c(s) - o).
+///
+/// - While only element j is at its limit r, the reading satisfies m_j . y = +r - o_j or -r - o_j, so the saturated
+///   readings are on two tilted planes.
 /// - While element j is at its limit, the other axes are also wrong, by entries of M^-1 times the saturation deficit of
-///   element j. The equation m_i . y = m_i . u still holds for each unsaturated element i.
-/// Measured devices show planes tilted by 0.02 and 0.05, and offsets of 0.05 and 0.14 rad/s (wand and pendulum of
-/// RepoIMU; see scenarios/certificate/real_rails.cpp). In the model, noise and quantisation act in the axes of the
-/// device. The model excludes compensation errors that differ at saturation, and offsets that drift within a recording.
+///   element j.
+///
+/// Measured devices show planes tilted by 0.02 and 0.05, and offsets of 0.05 and 0.14 rad/s
+/// (scenarios/certificate/real_rails.cpp). The model excludes compensation errors that differ at saturation, and
+/// offsets that drift within a recording.
 class Elements {
  public:
   struct Params {
-    /// Standard deviation of each entry off M's diagonal [1], truncated at three standard deviations.
+    /// Standard deviation of each entry off M's diagonal [1], truncated at three standard deviations
     double misalignment = 0.0;
     double scale = 0.0;   ///< standard deviation of each entry on the diagonal, about 1
     double offset = 0.0;  ///< standard deviation of each element's offset o [unit of the signal]
   };
   static constexpr double kMisalignmentMax = 0.1;  ///< upper bound of both spreads, for which M is always invertible
 
-  /// Creates aligned sensing elements: M is the identity, and there is no offset.
   Elements() = default;
-  /// Draws misalignment, scale and offset of the sensing elements at random. A parameter of 0 draws no random numbers.
   Elements(const Params& params, Stream stream);
-  /// Creates sensing elements with the misalignment matrix M = `axes`, which must be invertible.
   Elements(const Eigen::Matrix3d& axes, const Eigen::Vector3d& offset);
 
   const Eigen::Matrix3d& axes() const { return axes_; }
   const Eigen::Vector3d& offset() const { return offset_; }
-  /// Returns whether M is the identity and there is no offset.
   bool axis_aligned() const { return axis_aligned_; }
 
-  /// Returns the device's reading of `signal` after saturation by `rail`. Signal and reading are in the device's axes.
-  /// Sets bit `first_bit + i` of `flags` if element i saturated. For axis-aligned elements, the reading equals the
-  /// output of `rail`.
+  /// Sets bit `first_bit + i` of `flags` if element i saturated.
   Eigen::Vector3d clip(const Eigen::Vector3d& signal, Rail& rail, int first_bit, std::uint8_t& flags) const;
 
-  /// Returns `reading`, with the components of the elements in `mask` (bit i) replaced by the components of `other`.
   Eigen::Vector3d with_elements_of(const Eigen::Vector3d& other, std::uint8_t mask,
                                    const Eigen::Vector3d& reading) const;
 

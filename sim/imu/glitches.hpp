@@ -12,14 +12,12 @@
 namespace tumble::sim {
 
 /// Glitches replaces one axis of single samples by a wrong reading, as an error on the device's bus does. The wrong
-/// reading is independent of the signal, and uniform within 1.5 times the stated range. A wrong reading does not count
-/// as saturation, so it also replaces the unclipped reading in the truth. The model excludes runs of several wrong
-/// samples, and wrong time stamps.
+/// reading is independent of the signal, and uniform within 1.5 times the stated range. The model excludes runs of
+/// several wrong samples, and wrong time stamps.
 class Glitches {
  public:
-  /// Constructs from the parameter `glitch_share` and the stated ranges. A `glitch_share` of 0 draws no random numbers.
   Glitches(const Values& values, const Stream& stream);
-  /// Replaces readings of one sample at random. Call this function once for each sample, delivered or lost.
+  /// Call spoil() once for each IMU sample, delivered or lost.
   void spoil(TriadReading& gyro, TriadReading& accel);
 
  private:

@@ -14,52 +14,42 @@
 
 namespace tumble::sim {
 
-/// TriadReading is the output of a triad for one averaging window.
 struct TriadReading {
   Eigen::Vector3d delivered;  ///< reading as delivered by the device
   Eigen::Vector3d unclipped;  ///< reading with the same errors, but without saturation
   Eigen::Vector3d bias;       ///< bias at the end of the window
 };
 
-/// TriadChain is the error chain of one triad (gyroscope or accelerometer), updated at the physics rate and read once
-/// per output window. The stages in order are: analogue low-pass, scale and misalignment, bias, external additions
-/// (g-sensitivity), white noise of the active range, sensing elements with saturation, compensation of the elements,
-/// quantum, digital low-pass, mean over the window. With `clip_after_low_pass`, sensing elements and saturation act on
-/// the mean over the window instead.
+/// The stages in order are: analogue low-pass, scale and misalignment, bias, external additions (g-sensitivity), white
+/// noise of the active range, sensing elements with saturation, compensation of the elements, quantum, digital
+/// low-pass, mean over the window.
 ///
 /// If a triad rotates, the mean of the readings differs from the increment of the motion (coning, sculling). The caller
-/// therefore passes the ideal reading of the window, and TriadChain adds the mean of the errors. If every stage is off,
-/// the reading equals the ideal reading, bit for bit. If an element saturated in the window, its reading is the plain
-/// mean of the chain's output. The same applies to all readings of a device with a separate window or update rate
-/// (sampling.hpp). A second chain with equal stages and noise, but without saturation, computes the unclipped reading.
+/// therefore passes the ideal reading of the window, and TriadChain adds the mean of the errors. If an element
+/// saturated in the window, its reading is the plain mean of the chain's output. A second chain with equal stages and
+/// noise, but without saturation, computes the unclipped reading.
 class TriadChain {
  public:
-  /// Constructs the chain of one triad. `prefix` and `unit` select the parameters: "gyro" and "rad_s", or "accel" and
-  /// "m_s2". The names of the random streams begin with `stream_name`. `steps` is the number of physics steps per
-  /// window.
+  /// `prefix` and `unit` select the parameters: "gyro" and "rad_s", or "accel" and "m_s2".
   TriadChain(const Values& values, const std::string& prefix, const std::string& unit, double rate_hz, int steps,
              std::uint64_t seed, const std::string& stream_name);
 
-  /// Processes one physics step. `ideal` is the ideal mean over the step. `added` is added to the signal before the
-  /// noise.
+  /// `ideal` is the ideal mean of the signal over the physics step; `added` is added to the signal before the noise.
   void step(const Eigen::Vector3d& ideal, const Eigen::Vector3d& added);
-  /// Ends the window with the exact ideal reading `exact`. Sets bit `first_bit + i` of `flags` for each element i that
-  /// saturated.
+  /// Sets bit `first_bit + i` of `flags` for each element i that saturated.
   TriadReading take(const Eigen::Vector3d& exact, int first_bit, std::uint8_t& flags);
 
   const Elements& elements() const { return elements_; }
-  /// Replaces the randomly drawn sensing elements. Call this function before the first step.
+  /// Call set_elements() before the first step.
   void set_elements(const Elements& elements) { elements_ = elements; }
 
  private:
-  /// Path applies all stages to the signal, with or without saturation, and averages over a window.
   struct Path {
     LowPass low_pass;
     Eigen::Vector3d sum = Eigen::Vector3d::Zero(), error = Eigen::Vector3d::Zero();
     Eigen::Vector3d add(const Eigen::Vector3d& signal, const Eigen::Vector3d& ideal);
   };
 
-  /// Returns the reading of a device that integrates between outputs.
   TriadReading integrated(const Eigen::Vector3d& exact) const;
 
   double rate_hz_, noise_, precise_noise_, quantum_, precise_quantum_;

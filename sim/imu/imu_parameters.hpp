@@ -8,12 +8,9 @@
 
 namespace tumble::sim {
 
-/// Returns the parameters of a simulated IMU. The default values describe an ideal device at 100 Hz, without a
-/// magnetometer.
 std::span<const Parameter> imu_parameters();
 
-/// Checks that the resolved parameters of an IMU do not contradict each other. Throws InvalidSituation for the
-/// contradictions below; the message starts with `place`.
+/// Throws InvalidSituation, with a message that starts with `place`, for these contradictions:
 /// - a kind of saturation without a saturation level
 /// - spreads or offsets that leave no saturation level
 /// - `wrap` together with `slow_recovery`

@@ -16,7 +16,6 @@ namespace tumble::sim {
 
 namespace {
 
-/// Ideal contains the mean angular velocity and specific force over an interval, in frame I.
 struct Ideal {
   Eigen::Vector3d rate_rad_s, force_m_s2;
 };
@@ -32,7 +31,6 @@ std::optional<Eigen::Matrix3d> draw_g_sensitivity(const SensorSpec& sensor, std:
   return drawn;
 }
 
-/// Device is a simulated IMU: gyro and accelerometer, time stamps, and the output of samples.
 class Device {
  public:
   Device(const SensorSpec& sensor, double rate_hz, int steps, std::uint64_t seed, const GivenElements& given,
@@ -58,7 +56,6 @@ class Device {
     accel_.step(ideal.force_m_s2, Eigen::Vector3d::Zero());
   }
 
-  /// Ends an averaging window and stores its sample. Returns false if the device loses the sample.
   bool take(const Ideal& exact, std::int64_t end_ns) {
     std::uint8_t flags = 0;
     TriadReading gyro = gyro_.take(exact.rate_rad_s, 0, flags);
@@ -100,7 +97,6 @@ class Device {
   bool flagged_;
 };
 
-/// Compass is the optional magnetometer of a device, which averages the true field over each window.
 class Compass {
  public:
   Compass(const Truth& truth, const SensorSpec& sensor, const Eigen::Isometry3d& T_BI, std::uint64_t seed)
@@ -133,7 +129,6 @@ class Compass {
   int count_ = 0;
 };
 
-/// Pace relates the output samples of a device to the steps of its error chain.
 struct Pace {
   int steps = 1;   ///< steps of the error chain per sample
   int shares = 1;  ///< steps of the error chain per physics step; above 1 for devices faster than the physics
@@ -157,15 +152,14 @@ BodyState state_at(const Truth& truth, std::size_t k) {
           truth.v_WB_m_s[k], truth.w_WB_B_rad_s[k]};
 }
 
-/// Returns the ideal reading of a device mounted at T_BI for the motion between two states, including the lever arm.
 Ideal ideal_between(const BodyState& before, const BodyState& after, const Eigen::Isometry3d& T_BI,
                     double gravity_m_s2) {
   const Eigen::Matrix3d R_IB = T_BI.linear().transpose();
   return {R_IB * mean_rate_B(before, after), R_IB * specific_force_B(before, after, T_BI.translation(), gravity_m_s2)};
 }
 
-/// Returns the mean rate over a window, with the correct number of full turns. The attitudes at the ends of the window
-/// determine the rotation only up to full turns; the physics steps within the window determine the number of turns.
+/// The attitudes at the ends of the averaging window determine the rotation only up to full turns; the physics steps
+/// within the window determine the number of turns.
 Eigen::Vector3d unwound(const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& mean_of_steps_rad_s, double time_s) {
   constexpr double kRevolution_rad = 6.283185307179586;
   const double norm = rate_rad_s.norm();

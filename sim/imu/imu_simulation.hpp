@@ -12,38 +12,25 @@
 
 namespace tumble::sim {
 
-/// GivenElements contains the sensing elements of a known device, for example a measured device. The elements of a
-/// triad without an entry are drawn at random from `sensor.values`.
 struct GivenElements {
   std::optional<Elements> gyro, accel;
 };
 
-/// Simulates the readings and the truth of one IMU from the body's true motion.
-///
 /// The ideal reading of an averaging window is the exact increment of the motion. The ideal rate is the rotation
 /// between the attitudes at the window's ends, divided by the duration. The ideal specific force is the change of the
 /// sensor's velocity minus gravity, in the axes of the attitude halfway. The integral of the ideal readings is
 /// therefore the true motion at any output rate, also through impacts.
 ///
-/// The errors of the device apply in this order (headers in brackets): lever arm and mounting (truth/record_truth.hpp),
-/// delay, analogue low-pass, scale and misalignment, bias, g-sensitivity, white noise of the active range, sensing
-/// elements, saturation, compensation of the elements (elements.hpp), quantum, digital low-pass, mean over the window
-/// (imu_chain.hpp), stamps and losses (time_stamps.hpp). The header magnetometer.hpp describes the magnetic field. The
-/// unclipped readings in ImuTruth have the same noise as the readings, but no saturation. The model excludes
+/// The unclipped readings in ImuTruth have the same noise as the readings, but no saturation. The model excludes
 /// temperature, vibration rectification and bending of the mount.
 ///
-/// `sensor.values` must be complete (see resolve()). `T_BI` is the true mounting of the IMU. Clip flags mark windows in
-/// which an element saturated at any moment; a saturated tilted element also makes the readings of unflagged axes
-/// wrong. A sample that the device loses is also missing in the truth. The elements in `given` do not change the random
-/// numbers of the other stages. Throws InvalidSituation if the output period is not a whole number of physics steps, or
-/// if parameters contradict each other.
+/// Clip flags mark windows in which an element saturated at any moment; a saturated tilted element also makes the
+/// readings of unflagged axes wrong.
 void simulate_imu(const Truth& truth, const SensorSpec& sensor, const Eigen::Isometry3d& T_BI, double gravity_m_s2,
                   std::uint64_t seed, ImuRecord& record, ImuTruth& imu_truth, const GivenElements& given = {});
 
-/// Simulates the readings of an IMU at rest with z up for `duration_s`, without engine, body and magnetometer. Tests
-/// measure the device's noise from such readings. The error chain runs at `chain_rate_hz` instead of the physics rate;
-/// an hour at 500 Hz takes about a second. The analogue and digital bandwidths of the device must be 0 or below half of
-/// `chain_rate_hz`.
+/// The error chain runs at `chain_rate_hz` instead of the physics rate; an hour at 500 Hz takes about a second. The
+/// bandwidths of the device must be 0 or below half of `chain_rate_hz`.
 void simulate_imu_at_rest(const SensorSpec& sensor, double duration_s, double chain_rate_hz, double gravity_m_s2,
                           std::uint64_t seed, ImuRecord& record, ImuTruth& imu_truth);
 

@@ -12,7 +12,6 @@
 
 namespace tumble::sim {
 
-/// MagneticDipole is a small static magnet or piece of iron in the world.
 struct MagneticDipole {
   Eigen::Vector3d p_W_m;
   Eigen::Vector3d moment_W_a_m2;
@@ -27,17 +26,14 @@ struct MagneticField {
   Eigen::Vector3d at(const Eigen::Vector3d& p_W_m) const;
 };
 
-/// Draws the magnetic field of one situation. The Earth's field has strength earth_field_t and dip
-/// earth_inclination_rad. The horizontal part of the Earth's field points earth_north_rad from the world's x axis
-/// towards y. There are magnetic_sources dipoles. Each dipole is at least magnetic_source_nearest_m away from the path
-/// `p_W_m`, and within magnetic_source_farthest_m of a random position of the path. The moments of the dipoles are
-/// log-uniform within a factor of 3 of magnetic_source_moment_a_m2, in random directions. Equal parameters and seeds
-/// give equal fields for every magnetometer.
+/// The horizontal part of the Earth's field points earth_north_rad from the world's x axis towards y. The moments of
+/// the dipoles are log-uniform within a factor of 3 of magnetic_source_moment_a_m2, in random directions. Equal
+/// parameters and seeds give equal fields for every magnetometer.
 MagneticField draw_magnetic_field(const Values& values, std::span<const Eigen::Vector3d> p_W_m, std::uint64_t seed);
 
 /// Magnetometer applies the errors of a magnetometer with three axes: soft iron (scale and misalignment), hard iron (a
-/// constant offset in sensor axes), white noise, saturation, quantisation. If every error parameter is 0, the reading
-/// is the true field, bit for bit. The model excludes bandwidth, delay and temperature.
+/// constant offset in sensor axes), white noise, saturation, quantisation. The model excludes bandwidth, delay and
+/// temperature.
 class Magnetometer {
  public:
   Magnetometer(const Values& values, std::uint64_t seed, const std::string& stream_name);

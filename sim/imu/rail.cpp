@@ -12,7 +12,6 @@ namespace {
 
 constexpr double kEventEnds_share = 0.9;
 
-/// Returns `value` as a binary word with the range -level to level reports it after an overflow.
 double wrapped(double value, double level) {
   return value - 2.0 * level * std::round(value / (2.0 * level));
 }

@@ -11,11 +11,12 @@ namespace tumble::sim {
 
 /// Rail models the saturation of a triad's output, in the forms that real devices show.
 /// - `clamp`: the output stops at `level`, which may exceed the stated range.
-/// - `plateau`: the level differs between axes and signs (drawn once), and between clipping events. A new level is
-///   drawn after the signal has fallen below 90 % of the level.
+/// - `plateau`: the level differs between axes and signs, and between clipping events; a new level is drawn after the
+///   signal has fallen below 90 % of the level.
 /// - `wrap`: a reading beyond the level appears with the opposite sign, as when a 16-bit word overflows.
 /// - `slow_recovery`: a clipped axis accumulates an offset with the sign of the signal, up to `recovery_share` of the
-///   level, with time constant `recovery_s`. After clipping, the offset decays with the same time constant.
+///   level, with time constant `recovery_s`.
+///
 /// The model excludes saturation levels that depend on temperature, and devices that stop after saturation.
 class Rail {
  public:
@@ -27,7 +28,6 @@ class Rail {
     double recovery_s = 0.0;      ///< time constant of the offset after clipping; 0: no offset
     double recovery_share = 0.0;  ///< offset after clipping, as a fraction of the level
   };
-  /// `period_s` is the time between two calls of operator(). Random numbers are drawn only if a spread is above 0.
   Rail(const Params& params, double period_s, const Stream& stream);
 
   /// Applies saturation to each axis and sets bit `first_bit + axis` of `flags` for saturated axes.

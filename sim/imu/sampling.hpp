@@ -9,10 +9,10 @@
 
 namespace tumble::sim {
 
-/// Sampling models a device that does not integrate between outputs. Each reading is the plain mean of the signal over
-/// the device's averaging window. The device's update rate may be lower or higher than the output rate; updates and
-/// outputs are asynchronous. The output repeats the last reading until a new reading is available (sample and hold).
-/// The model excludes drift and jitter of the device's clock, and weighted windows.
+/// Sampling models a device that does not integrate between outputs: each reading is the plain mean of the signal over
+/// the device's averaging window. The device's update rate may be lower or higher than the output rate; the output
+/// repeats the last reading until a new reading is available (sample and hold). The model excludes drift and jitter of
+/// the device's clock, and weighted windows.
 class Sampling {
  public:
   struct Params {
@@ -24,15 +24,11 @@ class Sampling {
     std::uint8_t railed = 0;  ///< bits of elements that saturated at any step in the window
   };
 
-  /// `rate_hz` is the rate at which the caller calls `add`. If the device has a separate update rate, the phase of its
-  /// readings is drawn from `stream`.
+  /// If the device has a separate update rate, the phase of its readings is drawn from `stream`.
   Sampling(const Params& params, double rate_hz, Stream stream);
 
-  /// Returns whether the device averages over a separate window, instead of integrating between outputs. Call the other
-  /// members only if on() is true.
   bool on() const { return !ring_.empty(); }
   void add(const Reading& step);
-  /// Returns the current output. Cost: O(window) for a device without a separate update rate.
   Reading output() const;
 
  private:

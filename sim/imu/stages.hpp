@@ -7,20 +7,16 @@
 
 #include "sim/random/stream.hpp"
 
-/// stages.hpp contains small stages of an inertial sensor's error model, each for one triad; bias.hpp and rail.hpp
-/// contain larger stages. A stage that is off returns its input bit for bit, and draws no random numbers.
+/// A stage of the error model that is off returns its input bit for bit, and draws no random numbers.
 namespace tumble::sim {
 
-/// Returns three normally distributed numbers with standard deviation `sigma`. For `sigma` 0, the numbers are zero, and
-/// no random number is drawn.
 Eigen::Vector3d normals(Stream& stream, double sigma);
 
-/// Returns a normally distributed number with standard deviation `sigma`, truncated at three standard deviations. For
-/// `sigma` 0, the result is 0 and no random number is drawn.
+/// The normally distributed number is truncated at three standard deviations; for `sigma` 0, no random number is drawn.
 double bounded_normal(Stream& stream, double sigma);
 
-/// DelayLine delays a signal by `delay_s`. Until the delay has passed, the output is the first value. Values between
-/// samples are interpolated linearly, which preserves the integral of the signal. A delay of 0 switches the stage off.
+/// DelayLine delays a signal by `delay_s`; until the delay has passed, the output is the first value. Values between
+/// samples are interpolated linearly, which preserves the integral of the signal.
 class DelayLine {
  public:
   DelayLine(double delay_s, double rate_hz);
@@ -49,21 +45,17 @@ class LowPass {
   Eigen::Vector3d s1_ = Eigen::Vector3d::Zero(), s2_ = Eigen::Vector3d::Zero();
 };
 
-/// Draws the matrix of scale and misalignment errors of a triad. The diagonal is 1 plus scale errors, and the other
-/// entries are six independent small angles; all errors are normally distributed. The matrix is exactly the identity if
-/// both standard deviations are 0.
+/// The diagonal of the axis error matrix is 1 plus scale errors, and the other entries are six independent small
+/// angles; all errors are normally distributed.
 Eigen::Matrix3d draw_axis_errors(Stream& stream, double scale_sigma, double misalignment_sigma_rad);
 
 /// RangeChoice selects for each axis the precise or the coarse range of a device with two ranges. An axis switches to
 /// the coarse range when the signal exceeds `handover`, and back when the signal is below 90 % of `handover`. A
-/// handover of 0 always selects the coarse range. Bias, scale and axes are equal in both ranges; noise and quantum
-/// differ.
+/// handover of 0 always selects the coarse range.
 class RangeChoice {
  public:
   explicit RangeChoice(double handover) : handover_(handover) {}
-  /// Selects the precise or the coarse range for each axis, from the signal before noise and saturation.
   void update(const Eigen::Vector3d& signal);
-  /// Returns `coarse` or `precise` for each axis, according to the selected range.
   Eigen::Vector3d pick(double coarse, double precise) const;
 
  private:
@@ -71,11 +63,10 @@ class RangeChoice {
   std::array<bool, 3> precise_ = {false, false, false};
 };
 
-/// Returns one sample of white noise per axis. At the sample rate `rate_hz`, noise of `density` [unit / sqrt(Hz)] has
-/// the standard deviation density * sqrt(rate).
+/// At the sample rate `rate_hz`, white noise of `density` [unit / sqrt(Hz)] has the standard deviation density *
+/// sqrt(rate).
 Eigen::Vector3d white_noise(Stream& stream, const Eigen::Vector3d& density, double rate_hz);
 
-/// Rounds each axis to the nearest multiple of its `quantum`. A quantum of 0 switches rounding off.
 Eigen::Vector3d quantise(const Eigen::Vector3d& input, const Eigen::Vector3d& quantum);
 
 }  // namespace tumble::sim

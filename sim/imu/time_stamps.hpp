@@ -11,16 +11,14 @@
 namespace tumble::sim {
 
 /// TimeStamps converts the true end of each averaging window to the host's time stamp, or to no stamp if the sample is
-/// lost. The time stamps have a constant offset and white jitter. The jitter is normal, truncated at three standard
-/// deviations, and small compared with the period, so that stamps always increase. Lost samples form runs of geometric
-/// length (Gilbert's model), independent of the signal. The device delivers no sample until its start delay is over.
-/// The model excludes a clock with a rate error, and samples in the wrong order.
+/// lost. The time stamps have a constant offset and white jitter, truncated at three standard deviations. Lost samples
+/// form runs of geometric length (Gilbert's model), independent of the signal. The model excludes a clock with a rate
+/// error, and samples in the wrong order.
 class TimeStamps {
  public:
-  /// Reads the parameters time_offset_s, time_jitter_s, dropout_share, dropout_mean_samples and start_delay_s. Throws
-  /// InvalidSituation, with a message that starts with `place`, if six times the jitter is at least the period.
+  /// Throws InvalidSituation if six times the jitter is at least the period.
   TimeStamps(const Values& values, const std::string& place, std::int64_t period_ns, const Stream& stream);
-  /// Returns the time stamp of a window. Call this function once for each window.
+  /// Call stamp() once for each averaging window.
   std::optional<std::int64_t> stamp(std::int64_t window_end_ns);
 
  private:

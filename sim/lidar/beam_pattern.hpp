@@ -9,21 +9,15 @@
 
 namespace tumble::sim {
 
-/// kMaxChannels is the maximum number of lidar beams (channels) per slot. BeamPattern defines slots.
+/// Maximum number of lidar beams (channels) that fire in one sequence
 inline constexpr int kMaxChannels = 16;
 
-/// ChannelFirings contains the firings of one channel in kLanes consecutive slots: origins and directions in the axes
-/// of L.
 struct ChannelFirings {
   alignas(64) double origin_x_m[kLanes], origin_y_m[kLanes], origin_z_m[kLanes];
   alignas(64) double direction_x[kLanes], direction_y[kLanes], direction_z[kLanes];  ///< unit vectors
 };
 
-/// FiringBlock contains the firings of up to kLanes consecutive slots. A lane is one of the kLanes rays that are cast
-/// together. Neighbouring lanes have similar directions, so a packet of lanes is fast to cast. Lanes beyond the number
-/// of slots are also filled.
 struct FiringBlock {
-  /// Number of the slot since the start of the recording. This number determines the random numbers of the slot.
   std::int64_t first_slot = 0;
   int slots = 0;
   std::array<std::int64_t, kLanes> start_ns{};      ///< true start time of each slot since the start of the recording
@@ -32,9 +26,8 @@ struct FiringBlock {
   std::array<ChannelFirings, kMaxChannels> channel;
 };
 
-/// BeamPattern describes the times and directions of a lidar's firings. A slot is one sequence of all channels
-/// (spinning lidar), or one instant at which all units fire (rosette). Slot k starts at k times the slot period,
-/// counted over all sweeps.
+/// A slot is one sequence of all channels (spinning lidar), or one instant at which all units fire (rosette). Slot k
+/// starts at k times the slot period, counted over all sweeps.
 class BeamPattern {
  public:
   virtual ~BeamPattern() = default;
@@ -44,24 +37,17 @@ class BeamPattern {
     return (sweep * sweep_period_ns_ + slot_period_ns_ - 1) / slot_period_ns_;
   }
   int channels() const { return channels_; }
-  /// Returns the true and reported time from the start of a slot to the firing of a channel.
   std::int64_t lag_ns(int channel) const { return channel * firing_period_ns_; }
-  /// Returns the longest time from the start of a slot to its last firing.
   std::int64_t slot_length_ns() const { return lag_ns(channels_ - 1); }
   std::uint16_t ring(int channel, std::int64_t slot) const {
     return static_cast<std::uint16_t>(ring_[channel] + channels_ * (slot % banks_));
   }
 
-  /// Fills in the firings of the slots `slot` to `slot + slots - 1` of a sweep, at most kLanes.
   virtual void fire(std::int64_t sweep, std::int64_t slot, int slots, FiringBlock& block) const = 0;
 
-  /// Returns the number of direction cells. Each slot is in one cell, so that results can be precomputed per channel
-  /// and cell. Returns 0 for a pattern that does not repeat.
+  /// Returns 0 for a firing pattern that does not repeat.
   virtual int cells() const { return 0; }
-  /// Returns the largest angle about the z axis of L between a firing in a cell and the firing at the middle of the
-  /// cell.
   virtual double cell_half_angle_rad() const { return 0.0; }
-  /// Fills in the origins and directions of the beams at the middles of the cells `first` to `first + kLanes - 1`.
   virtual void fire_cells(int /*first*/, FiringBlock& /*block*/) const {}
 
  protected:
@@ -73,9 +59,8 @@ class BeamPattern {
 
 /// SpinningPattern is the pattern of a spinning lidar, in which a column of lasers rotates about the z axis. The
 /// azimuth is zero (along x of L) at the start of each sweep, and increases clockwise seen from above. Channel c of
-/// sequence k fires at the time k P + c p, with the sequence period P and the firing period p. The beam of a channel
-/// leaves the mirror at the distance R1 from the axis and R2 below the origin. Ring numbers start at the lowest
-/// elevation. The timing and geometry are from the RoboSense RS-16 User's Guide v4.0 and the published driver.
+/// sequence k fires at the time k P + c p, with the sequence period P and the firing period p. The timing and geometry
+/// are from the RoboSense RS-16 User's Guide v4.0 and the published driver.
 class SpinningPattern final : public BeamPattern {
  public:
   explicit SpinningPattern(const Values& values);
@@ -86,7 +71,6 @@ class SpinningPattern final : public BeamPattern {
 
  private:
   std::uint32_t reported_start_ns(std::int64_t sweep, std::int64_t slot) const;
-  /// Fills in the firings of all channels. `azimuth_rad` is the azimuth at the start of each slot.
   void aim(const std::array<double, kLanes>& azimuth_rad, FiringBlock& block) const;
 
   double rate_rad_ns_, sense_, mirror_radius_m_, mirror_drop_m_;
@@ -97,8 +81,8 @@ class SpinningPattern final : public BeamPattern {
 
 /// ColumnPattern is the pattern of a lidar with up to 128 evenly spaced rings, in which a column of lasers rotates
 /// about the z axis. A column fires in banks of 16 rings from bottom to top, evenly distributed over the column's
-/// period. Each bank is one slot. All beams start at the origin of L. Elevations may rise by a fraction of the ring
-/// spacing from sweep to sweep, which approximates patterns that do not repeat.
+/// period. Elevations may rise by a fraction of the ring spacing from sweep to sweep, which approximates patterns that
+/// do not repeat.
 class ColumnPattern final : public BeamPattern {
  public:
   explicit ColumnPattern(const Values& values);
@@ -108,10 +92,10 @@ class ColumnPattern final : public BeamPattern {
   double rate_rad_ns_, sense_, lowest_rad_, spacing_rad_, shift_share_;
 };
 
-/// RosettePattern is the pattern of a rosette lidar with one or several units in different directions. In each unit,
-/// two prisms that rotate at constant rates deflect the beam. At the time t since the start of the recording, the
-/// direction (x, y, z) of the beam satisfies y/x + i z/x = A exp(i w1 t) + B exp(i w2 t) + C exp(i (2 w1 - w2) t). The
-/// ring number is the number of the unit, from right (negative yaw) to left. All units share the origin of L.
+/// RosettePattern is the pattern of a rosette lidar with one or several units, in which two prisms that rotate at
+/// constant rates deflect the beam. At the time t since the start of the recording, the direction (x, y, z) of the beam
+/// satisfies y/x + i z/x = A exp(i w1 t) + B exp(i w2 t) + C exp(i (2 w1 - w2) t). The ring number is the number of the
+/// unit, from right (negative yaw) to left.
 class RosettePattern final : public BeamPattern {
  public:
   explicit RosettePattern(const Values& values);

@@ -13,8 +13,6 @@ struct Share {
   int ray;
 };
 
-/// Echo is the strongest echo of a beam: the rays `first` to `last` - 1 in order of range. Among echoes with equal
-/// energy, the nearest echo counts as the strongest.
 struct Echo {
   int first = 0, last = 0;
   float energy = 0.0f;
@@ -49,8 +47,6 @@ BeamSpread::BeamSpread(const Values& values) : echo_length_m_(static_cast<float>
   firings = axis;
   for (int s = 0; s < kLanes; ++s) {
     const double x = axis.direction_x[s], y = axis.direction_y[s], z = axis.direction_z[s];
-    // The horizontal axis across the beam is (-y, x, 0). For a vertical beam, which no known device has, any direction
-    // is valid.
     const double flat = std::sqrt(x * x + y * y), per = flat > 0.0 ? 1.0 / flat : 0.0;
     const double hx = flat > 0.0 ? -y * per : 1.0, hy = x * per;
     const double vx = -z * hy, vy = z * hx, vz = x * hy - y * hx;

@@ -12,7 +12,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Returns a shape that contains every point within `margin_m` of a bounded shape.
 Shape widened(Shape shape, double margin_m) {
   Vector3d& size = shape.size_m;
   switch (shape.kind) {
@@ -67,8 +66,7 @@ CageMask::CageMask(const SceneGeometry& cage, const BeamPattern& pattern)
     std::fill(meets_.begin(), meets_.end(), std::uint8_t{1});
     return;
   }
-  // Any beam of the cell is the middle beam, rotated about z by at most the half angle. A further margin covers float
-  // rounding.
+  // Any beam of the cell is the middle beam, rotated about z by at most the half angle.
   const double margin_m = reach_m * pattern.cell_half_angle_rad() + 1e-4 * (1.0 + reach_m);
   for (SceneShape& part : wide.shapes) part.shape = widened(part.shape, margin_m);
 

@@ -9,17 +9,12 @@
 
 namespace tumble::sim {
 
-/// CageMask precomputes which firings of a repeating pattern may hit the robot's own cage. The cage is rigidly attached
-/// to the lidar, and most firings miss it, so the mask saves time. The mask contains every firing that hits the cage,
-/// and some that do not. The test uses the beam at the middle of each direction cell, and enlarged shapes, which cover
-/// all other beams of the cell.
+/// The cage is rigidly attached to the lidar, and most firings miss it, so the mask saves time. The mask contains every
+/// firing that hits the cage, and some that do not.
 class CageMask {
  public:
-  /// `cage` is in the axes of the lidar frame L. For a pattern that does not repeat, every firing counts as a possible
-  /// hit.
   CageMask(const SceneGeometry& cage, const BeamPattern& pattern);
 
-  /// Returns whether any firing of a channel in the block may hit the cage.
   bool may_hit(const FiringBlock& block, int channel) const {
     if (cells_ == 0) return !is_empty_;
     bool may = false;

@@ -14,7 +14,6 @@ struct Words {
   alignas(64) std::uint32_t word[4][kBlocks];
 };
 
-/// Computes philox4x32_10 for the counters first + i, all counters in parallel.
 [[gnu::target("avx2")]] void philox(std::uint64_t first, std::array<std::uint32_t, 2> key, Words& words) {
   for (int i = 0; i < kBlocks; ++i) {
     const std::uint64_t counter = first + static_cast<std::uint64_t>(i);
@@ -36,14 +35,13 @@ struct Words {
   }
 }
 
-/// Converts a random 32-bit word to a number in (0, 1]. Small numbers keep the relative precision of float, which the
-/// logarithm needs.
+/// Small random numbers keep the relative precision of float, which the logarithm needs.
 float unit_of(std::uint32_t word) {
   return (static_cast<float>(static_cast<std::int32_t>(word >> 1)) + 0.5f) * 0x1p-31f;
 }
 
-/// Computes the natural logarithm of x in (0, 1]. With x = 2^e m and m in [0.71, 1.41], the logarithm of m is the
-/// series of 2 atanh((m - 1) / (m + 1)). The relative error is 2e-7.
+/// With x = 2^e m and m in [0.71, 1.41], the logarithm of m is the series of 2 atanh((m - 1) / (m + 1)). The relative
+/// error is 2e-7.
 float log_of(float x) {
   const std::int32_t bits = std::bit_cast<std::int32_t>(x) - 0x3f3504f3;
   const std::int32_t exponent = bits >> 23;
@@ -53,7 +51,6 @@ float log_of(float x) {
   return static_cast<float>(exponent) * 0.693147181f + series;
 }
 
-/// Computes cosine and sine of the angle 2 pi word / 2^32 by Taylor series within +-pi/4, with an error of 1e-7.
 void cos_sin_of(std::uint32_t word, float& cosine, float& sine) {
   const std::uint32_t quadrant = (word + 0x20000000u) >> 30;
   const auto rest = static_cast<std::int32_t>(word - (quadrant << 30));
@@ -84,7 +81,6 @@ LaneNoiseSource::LaneNoiseSource(const Stream& stream) {
     noise.normal[i + kBlocks] = radius * sine;
   }
   for (int i = 0; i < kBlocks; ++i) {
-    // With 23 bits, the largest uniform number is below 1 in float.
     noise.uniform[i] = (static_cast<float>(static_cast<std::int32_t>(words.word[2][i] >> 9)) + 0.5f) * 0x1p-23f;
     noise.uniform[i + kBlocks] =
         (static_cast<float>(static_cast<std::int32_t>(words.word[3][i] >> 9)) + 0.5f) * 0x1p-23f;

@@ -9,21 +9,18 @@
 
 namespace tumble::sim {
 
-/// LaneNoise contains the random numbers of one packet of rays: one number of each kind per lane.
 struct LaneNoise {
   alignas(64) float normal[kLanes];   ///< mean 0, standard deviation 1, tails truncated at 6.6
   alignas(64) float uniform[kLanes];  ///< in (0, 1)
 };
 
-/// LaneNoiseSource draws random numbers for sixteen lanes at a time. The compiler vectorises the loops over lanes,
-/// which compute Philox 4x32-10 and Box-Muller (1958) in single precision. The random numbers depend only on (stream,
-/// index, lane).
+/// LaneNoiseSource draws random numbers for sixteen lanes at a time by Philox 4x32-10 and Box-Muller (1958) in single
+/// precision. The random numbers depend only on (stream, index, lane).
 class LaneNoiseSource {
  public:
-  /// Constructs from a random stream. The key of the source is a block of the stream that draw() does not use.
   explicit LaneNoiseSource(const Stream& stream);
 
-  /// Draws the random numbers of the packet `index`, which must be below 2^61.
+  /// The packet number `index` must be below 2^61.
   void draw(std::uint64_t index, LaneNoise& noise) const;
 
  private:

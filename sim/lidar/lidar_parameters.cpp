@@ -19,8 +19,6 @@ constexpr Parameter elevation(std::string_view name, double value_rad) {
           "elevation of this channel; channels are numbered in firing order"};
 }
 
-// Parameters that all lidars have, for example of the range errors. The default values are those of the lidars RS-16
-// and Mid-100.
 constexpr Parameter kRangeNoise{
     "range_noise_m", 0.02, 0.0, 10.0, "m", "standard deviation of a range, independent from point to point; 0: off"};
 constexpr Parameter kReferenceReflectivity{"detection_reflectivity",
@@ -59,7 +57,6 @@ constexpr Parameter kEchoLength{"echo_length_m",
                                 "with beam_rays above 1: echoes whose ranges differ by less than this value merge into "
                                 "one mixed return; 0.75 m corresponds to a pulse of 5 ns (assumed)"};
 
-// Parameters of lidars whose sweep is one full turn.
 constexpr Parameter kSpinRate{"spin_rate_hz", 10.0, 1.0, 50.0, "Hz", "rotations per second; one rotation is one sweep"};
 constexpr Parameter kClockwise{"clockwise", 1.0, 0.0,
                                1.0,         "1", "1: the lidar rotates from x towards -y; 0: from x towards +y"};
@@ -93,7 +90,6 @@ constexpr Parameter divergence(std::string_view name, double value_rad) {
 constexpr Parameter kCage{
     "sees_own_cage", 1.0, 0.0, 1.0, "1", "1: the robot's own struts give returns; 0: beams pass through the struts"};
 
-// The elevations [rad] are the calibrated values of the published rig.
 constexpr std::array kSpinning = {
     kSpinRate,
     kClockwise,
@@ -142,7 +138,7 @@ constexpr std::array kSpinning = {
               "passes at half the true rate; 0: correct time stamps"},
 };
 
-// The default values are from the Ouster OS1 with 64 rings.
+// The default values are those of the Ouster OS1 with 64 rings.
 constexpr std::array kColumn = {
     kSpinRate,
     kClockwise,

@@ -22,8 +22,6 @@ void append(const std::vector<T>& from, std::size_t count, std::vector<T>& to) {
   to.insert(to.end(), from.begin(), from.begin() + static_cast<std::ptrdiff_t>(count));
 }
 
-/// Reserves memory for one point per firing, so that points are never moved. Firings without a hit leave virtual memory
-/// unused, which needs no physical memory.
 void reserve(std::size_t points, LidarRecord& record, LidarTruth& truth) {
   record.position_L_m.reserve(points);
   record.range_m.reserve(points);
@@ -44,7 +42,6 @@ void append_sweep(const SweepPoints& sweep, LidarRecord& record, LidarTruth& tru
   append(sweep.surface_id, sweep.count, truth.surface_id);
 }
 
-/// Returns the number of sweeps that end within the motion. The last motion sample is valid for one more period.
 std::int64_t whole_sweeps(const MotionTrack& motion, std::int64_t sweep_period_ns) {
   if (motion.period_ns <= 0 || motion.p_WB_m.size() != motion.q_WB.size()) {
     throw std::invalid_argument(
@@ -54,8 +51,7 @@ std::int64_t whole_sweeps(const MotionTrack& motion, std::int64_t sweep_period_n
   return static_cast<std::int64_t>(motion.p_WB_m.size()) * motion.period_ns / sweep_period_ns;
 }
 
-/// Delivery decides for each sweep in turn whether the device delivers the sweep. Sweeps before the start of the
-/// device, and random sweeps, are lost.
+/// The device loses sweeps before its start, and random sweeps.
 class Delivery {
  public:
   Delivery(const SensorSpec& sensor, std::uint64_t seed)

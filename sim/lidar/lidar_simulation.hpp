@@ -12,18 +12,14 @@
 
 namespace tumble::sim {
 
-/// MotionTrack is the true motion of the body at a fixed period from time 0.
 struct MotionTrack {
   std::int64_t period_ns = 0;
   std::span<const Eigen::Vector3d> p_WB_m;
   std::span<const Eigen::Quaterniond> q_WB;
 };
 
-/// Casts all sweeps of one lidar over a motion, and applies the errors of the device: range noise and quantum,
-/// drop-outs. Each point is cast from the true sensor pose at its firing time. Rays hit the static world and the
-/// robot's own cage (Embree); a ray without a hit gives no point. The results are independent of the number of threads.
-/// `T_BL` is the true mounting of the lidar. The function fills in `record` and `truth`, except for the calibration in
-/// `record.T_BL`.
+/// Each point is cast from the true sensor pose at its firing time; a ray without a hit gives no point. The results are
+/// independent of the number of threads.
 void simulate_lidar(const engine::World& world, const SensorSpec& sensor, const Eigen::Isometry3d& T_BL,
                     const MotionTrack& motion, std::uint64_t seed, int threads, LidarRecord& record, LidarTruth& truth);
 

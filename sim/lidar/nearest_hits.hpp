@@ -5,16 +5,14 @@
 
 #include "sim/lidar/ray_scene.hpp"
 
-/// nearest_hits.hpp finds the nearest of several hits for each ray of a packet.
 namespace tumble::sim {
 
-/// NearestHits computes the nearest hit of each lane with arithmetic that is identical on every CPU. Among hits at
-/// equal ranges, NearestHits keeps the hit with the lowest geometry number, so that the order of calls is irrelevant.
+/// Among hits at equal ranges, NearestHits keeps the hit with the lowest geometry number, so that the order of calls is
+/// irrelevant.
 class NearestHits {
  public:
   static constexpr unsigned int kNone = ~0u;
 
-  /// Constructs without hits. Hits beyond the maximum range of a ray are ignored.
   explicit NearestHits(const RayPacket& packet);
 
   bool is_replaced(unsigned int lane, double by_range_m, unsigned int by_geometry, unsigned int by_primitive) const {
@@ -23,7 +21,6 @@ class NearestHits {
            (geometry_[lane] != kNone &&
             (by_geometry < geometry_[lane] || (by_geometry == geometry_[lane] && by_primitive < primitive_[lane])));
   }
-  /// Replaces the hit of a lane. The normal may have any length.
   void replace(unsigned int lane, double range_m, double normal_x, double normal_y, double normal_z,
                unsigned int geometry, unsigned int primitive) {
     range_m_[lane] = range_m;
@@ -36,7 +33,6 @@ class NearestHits {
 
   unsigned int geometry(int lane) const { return geometry_[static_cast<std::size_t>(lane)]; }  ///< kNone: no hit
   unsigned int primitive(int lane) const { return primitive_[static_cast<std::size_t>(lane)]; }
-  /// Writes ranges and cosines of lanes with hits. Lanes without a hit are unchanged.
   void write(RayPacket& packet) const;
 
  private:

@@ -8,14 +8,12 @@ namespace tumble::sim {
 
 namespace {
 
-// Two limits of the signal avoid the power function for most returns. Above sure_signal_, a return is detected if its
-// uniform random number is below kSure. Above certain_signal_, a return is always detected, because its loss
-// probability is below the resolution of the random numbers.
+// Above certain_signal_, a return is always detected, because its loss probability is below the resolution of the
+// random numbers.
 constexpr double kSure = 0.99;
 constexpr double kCertainOdds = 0x1p25;
 
-/// Rounds to the nearest multiple of `quantum`, ties to even. Adding 1.5 * 2^52 removes the fraction without a function
-/// call.
+/// Adding 1.5 * 2^52 removes the fraction without a function call; ties round to even.
 double rounded(double value, double quantum) {
   constexpr double kShift = 0x1.8p52;
   return quantum * ((value / quantum + kShift) - kShift);
@@ -40,11 +38,10 @@ RangeErrors::RangeErrors(const Values& values, std::uint64_t seed, std::string_v
 bool RangeErrors::is_detected(float signal, double uniform) const {
   if (uniform >= kept_share_) return false;
   if (detection2_m2_ == 0.0 || signal >= certain_signal_) return true;
-  // If a return is not lost at random, its random number divided by kept_share_ is again uniform.
+  // If a lidar return is not lost at random, its random number divided by kept_share_ is again uniform.
   const double u = uniform / kept_share_;
   if (u < kSure && signal >= sure_signal_) return true;
   const double odds = std::pow(signal, steepness_);
-  // The odds overflow to infinity for a return that is never lost.
   return u < 1.0 - 1.0 / (1.0 + odds);
 }
 

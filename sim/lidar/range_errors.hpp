@@ -9,7 +9,6 @@
 
 namespace tumble::sim {
 
-/// Returns contains the measurements of sixteen exact hits. A measurement is valid if `kept` is set.
 struct Returns {
   bool kept[kLanes];
   alignas(64) float range_m[kLanes];
@@ -17,16 +16,13 @@ struct Returns {
 };
 
 /// RangeErrors applies range errors in this order: loss of weak returns (by range, incidence, reflectivity), random
-/// loss, white noise, range limits, quantum. The intensity is reflectivity times the cosine of incidence, rounded down
-/// to the intensity quantum, as in devices that compensate for range. The model excludes range bias by incidence or
-/// intensity, cross-talk, and several returns per firing. Beam divergence and mixed returns belong to BeamSpread, which
-/// acts before RangeErrors.
+/// loss, white noise, range limits, quantum. The intensity is reflectivity times the cosine of incidence, as in devices
+/// that compensate for range. The model excludes range bias by incidence or intensity, cross-talk, and several returns
+/// per firing.
 class RangeErrors {
  public:
   RangeErrors(const Values& values, std::uint64_t seed, std::string_view stream_name);
 
-  /// Computes the returns of a packet of exact hits. The result depends only on seed, name, `index` (unique per packet)
-  /// and hits.
   void apply(const RayPacket& hits, std::uint64_t index, Returns& returns) const;
 
  private:

@@ -9,8 +9,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Shares contains for each lane the elapsed fraction of an interval of the motion, and the weights for interpolating
-/// the pose.
 struct Shares {
   alignas(64) double share[kLanes], first[kLanes], second[kLanes];
   alignas(64) double within[kLanes];  ///< 1 from the first lane of the interval on, 0 before
@@ -36,8 +34,6 @@ struct Shares {
   }
 }
 
-/// Computes one entry of the lidar's rotation or position, and its time derivative, for the lanes within an interval of
-/// the motion.
 [[gnu::target("avx2")]] void follow_number(const TrackCursor::Interval& now, const Shares& shares, int row, int column,
                                            double (&pose)[kLanes], double (&rate)[kLanes]) {
   const double start = now.start(row, column), turned = now.turned(row, column), twice = now.rotated_twice(row, column);
@@ -60,7 +56,6 @@ struct Shares {
   }
 }
 
-/// Computes one world coordinate for all lanes from `row` of the rotation and the matching coordinate of the position.
 [[gnu::target("avx2")]] void aim_coordinate(const double (*pose)[kLanes], const double (*rate)[kLanes], int row,
                                             double after_s, const ChannelFirings& firings, float* origin,
                                             float* direction) {
@@ -79,7 +74,6 @@ struct Shares {
 
 void BlockPoses::follow(const BeamPattern& pattern, const FiringBlock& block, TrackCursor& track) {
   const std::int64_t length_ns = pattern.slot_length_ns();
-  // Lanes without a slot repeat the last slot, so that all lanes are initialised.
   const auto start_ns = [&](int lane) { return block.start_ns[std::min(lane, block.slots - 1)]; };
   const auto middle_ns = [&](int lane) { return start_ns(lane) + length_ns / 2; };
   broken_count_ = 0;
@@ -87,7 +81,6 @@ void BlockPoses::follow(const BeamPattern& pattern, const FiringBlock& block, Tr
     const TrackCursor::Interval& now = track.interval(middle_ns(from));
     Shares shares;
     for (int s = 0; s < kLanes; ++s) {
-      // Lanes beyond this interval are computed again with the next interval.
       shares.within[s] = s >= from ? 1.0 : 0.0;
       shares.share[s] = now.share(middle_ns(std::max(s, from)));
     }

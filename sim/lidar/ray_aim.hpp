@@ -6,15 +6,12 @@
 
 namespace tumble::sim {
 
-/// BlockPoses computes the lidar's pose for a block of firings, and converts firings to world rays, each at its own
-/// firing time. Within a slot (50 us), the pose is extrapolated with the rate at the middle of the slot. At 20 rad/s,
-/// the extrapolation error is (rate dt)^2 / 2 = 1e-7 rad. At a sample of the motion, the rate changes, so a slot that
-/// contains such a sample has one pose per firing.
+/// Within a slot (50 us), the pose is extrapolated with the rate at the middle of the slot; at 20 rad/s, the error is
+/// (rate dt)^2 / 2 = 1e-7 rad.
 class BlockPoses {
  public:
   void follow(const BeamPattern& pattern, const FiringBlock& block, TrackCursor& track);
 
-  /// Sets origins and directions of `rays` for one channel. The other members of `rays` are unchanged.
   void aim(const BeamPattern& pattern, const FiringBlock& block, const ChannelFirings& firings, int channel,
            RayPacket& rays) const;
 
@@ -29,7 +26,6 @@ class BlockPoses {
   Pose34 broken_pose_[kLanes][kMaxChannels];
 };
 
-/// Returns rays in the axes of the lidar frame L.
 void aim_in_lidar_axes(const ChannelFirings& firings, RayPacket& rays);
 
 }  // namespace tumble::sim

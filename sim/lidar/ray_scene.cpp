@@ -30,15 +30,13 @@ struct SceneDeleter {
 using DevicePtr = std::unique_ptr<RTCDeviceTy, DeviceDeleter>;
 using ScenePtr = std::unique_ptr<RTCSceneTy, SceneDeleter>;
 
-/// The options select one Embree kernel on every CPU: AVX2 with its native packet width. By default, Embree chooses the
-/// kernel by CPU, and the results of different kernels differ in the last bits.
+/// By default, Embree chooses the kernel by CPU, and the results of different kernels differ in the last bits.
 constexpr const char* kDevice =
-    // "threads=1" would limit oneTBB in the whole process while the Embree device exists
+    // The option "threads=1" would limit oneTBB in the whole process while the Embree device exists.
     "start_threads=0,set_affinity=0,isa=avx2,frequency_level=simd256,ignore_config_files=1";
 constexpr int kKernelLanes = 8;
 static_assert(kKernelLanes == kShapeLanes && NearestHits::kNone == RTC_INVALID_GEOMETRY_ID);
-/// Embree divides with an approximate reciprocal that differs between CPU vendors. Embree's ranges therefore only
-/// select candidates: RayScene recomputes all faces within the factor kReach of the nearest hit.
+/// RayScene therefore recomputes all faces within the factor kReach of the nearest hit that Embree reports.
 constexpr float kReach = 1.0f + 4e-6f;
 
 struct MeshLabel {
@@ -53,8 +51,7 @@ struct MeshLabel {
   }
 };
 
-/// CastContext contains the data for the callback functions, which receive the address of its first member from Embree.
-/// The id of a ray is the index of its lane.
+/// Embree passes only the address of the first member to callback functions.
 struct CastContext {
   RTCIntersectContext embree;
   const std::vector<MeshLabel>* meshes;
@@ -71,7 +68,6 @@ float searched_to(double range_m) {
 
 /// Combines pairs of triangles (a, b, c), (a, c, d), as in a height field, into quads (b, c, d, a), which Embree cuts
 /// along the diagonal of the pair. With quads, building the scene takes half the time, and casting takes 10 % less.
-/// Returns an empty list if the triangles do not form pairs.
 std::vector<std::array<std::uint32_t, 4>> paired(const std::vector<std::array<std::uint32_t, 3>>& triangles) {
   std::vector<std::array<std::uint32_t, 4>> quads;
   if (triangles.size() % 2 != 0) return quads;
@@ -85,7 +81,6 @@ std::vector<std::array<std::uint32_t, 4>> paired(const std::vector<std::array<st
   return quads;
 }
 
-/// Computes the axis-aligned box of a bounded shape, slightly enlarged because Embree rounds to float.
 void shape_bounds(const RTCBoundsFunctionArguments* args) {
   const Shape& shape = static_cast<const SceneShape*>(args->geometryUserPtr)[args->primID].shape;
   const Vector3d half = shape.R_FS.cwiseAbs() * half_extent(shape);
@@ -104,16 +99,12 @@ Ray ray_at(RTCRayN* rays, unsigned int count, unsigned int i) {
           Vector3d(RTCRayN_dir_x(rays, count, i), RTCRayN_dir_y(rays, count, i), RTCRayN_dir_z(rays, count, i))};
 }
 
-/// Computes the range at which a ray meets the plane of a face that Embree reported, and a normal of the plane (of any
-/// length). For a quad, `second_half` selects the half through which the ray passes. Embree's approximate reciprocal is
-/// accurate enough for this selection, because the two halves are adjacent.
 double meet_face(const MeshLabel& mesh, unsigned int face, const Ray& ray, bool second_half, Vector3d& normal) {
-  // Corners are relative to the ray's origin; double represents the differences of floats exactly.
   const auto corner = [&](std::uint32_t i) -> Vector3d { return mesh.corner(face, i).cast<double>() - ray.origin; };
   Vector3d a = corner(0), b = corner(1), c = corner(2);
   if (mesh.as_quads) {
     const Vector3d d = corner(3);
-    // For the quad (b, c, d, a) of the pair (a, b, c), (a, c, d), corners 1 and 3 are the ends of the diagonal.
+    // For the quad (b, c, d, a) of the triangles (a, b, c) and (a, c, d), corners 1 and 3 are the ends of the diagonal.
     const Vector3d across = b.cross(d);
     const bool beside_first = across.dot(a) >= 0.0, beside_second = across.dot(c) >= 0.0;
     const bool in_second =
@@ -127,8 +118,6 @@ double meet_face(const MeshLabel& mesh, unsigned int face, const Ray& ray, bool 
   return normal.dot(a) / normal.dot(ray.direction);
 }
 
-/// Keeps the nearest hit of each ray. Embree calls this filter for every hit within the range of a ray, in unspecified
-/// order.
 void keep_nearest(const RTCFilterFunctionNArguments* args) {
   CastContext& cast = cast_context(args->context);
   for (unsigned int i = 0; i < args->N; ++i) {
@@ -147,7 +136,6 @@ void keep_nearest(const RTCFilterFunctionNArguments* args) {
   }
 }
 
-/// Intersects eight rays with one shape. Embree always passes eight rays; some rays may be inactive.
 void intersect_shape(const RTCIntersectFunctionNArguments* args) {
   const Shape& shape = static_cast<const SceneShape*>(args->geometryUserPtr)[args->primID].shape;
   CastContext& cast = cast_context(args->context);
@@ -247,7 +235,7 @@ RayScene::RayScene(const SceneGeometry& geometry) : impl_(std::make_unique<Impl>
   }
   for (const SceneMesh& part : geometry.meshes) impl_->add_mesh(part);
   impl_->add_shapes();
-  // The arena has one thread, because building must not use threads that the caller did not provide.
+  // The task arena has one thread, because building the scene must not use threads that the caller did not provide.
   tbb::task_arena(1).execute([this] { rtcCommitScene(impl_->scene.get()); });
   const RTCError error = rtcGetDeviceError(impl_->device.get());
   if (error != RTC_ERROR_NONE) throw std::runtime_error("lidar: Embree error " + std::to_string(error));
@@ -281,7 +269,6 @@ void RayScene::Impl::cast_lanes(const RayPacket& packet, int first, CastContext&
   RTCRayHit8 rays;
   alignas(32) int valid[kKernelLanes];
   for (int i = 0; i < kKernelLanes; ++i) {
-    // An unused lane repeats the first lane with an empty range, so that its input is defined.
     const bool used = first + i < packet.count;
     const int lane = used ? first + i : first;
     valid[i] = used ? -1 : 0;
@@ -308,7 +295,6 @@ void RayScene::cast(RayPacket& packet) const {
   if (impl_->bounded.empty() && impl_->meshes.empty()) return;
   CastContext cast{{}, &impl_->meshes, NearestHits(packet)};
   rtcInitIntersectContext(&cast.embree);
-  // The rays of one channel have similar directions.
   cast.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   for (int first = 0; first < packet.count; first += kKernelLanes) impl_->cast_lanes(packet, first, cast);
   cast.nearest.write(packet);

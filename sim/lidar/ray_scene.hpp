@@ -9,16 +9,14 @@
 
 namespace tumble::sim {
 
-/// kLanes is the number of rays that are cast together. The rays belong to one lidar channel at successive times, and
-/// have similar directions.
+/// The rays that are cast together belong to one lidar channel at successive times, and have similar directions.
 inline constexpr int kLanes = 16;
 
-/// RayPacket contains sixteen rays and their hits. Only lanes with index below `count` are cast.
 struct RayPacket {
   int count = kLanes;
   alignas(64) float origin_x[kLanes], origin_y[kLanes], origin_z[kLanes];
   alignas(64) float direction_x[kLanes], direction_y[kLanes], direction_z[kLanes];  ///< unit vectors
-  /// Input: maximum range of the ray. Output: range of the hit; without a hit, the range is unchanged.
+  /// Input: maximum range of the ray; output: range of the hit, or unchanged without a hit
   alignas(64) float range[kLanes];
   alignas(64) float cosine[kLanes];  ///< cosine of the angle of incidence, 0..1
   alignas(64) float reflectivity[kLanes];
@@ -27,12 +25,8 @@ struct RayPacket {
 
 inline constexpr std::int32_t kNothing = -1;
 
-/// RayScene casts rays on a fixed geometry (Embree, plus infinite planes), and computes distances to it. The
-/// construction takes about 0.07 s for 320 000 triangles; the cost of a cast grows with the logarithm of their number.
 /// Several threads may call const members. The coordinates are float: at 50 m from the origin, a hit is accurate to
-/// about 1e-5 m. Embree selects the surface with its AVX2 kernel on every CPU; RayScene then computes the hit on the
-/// surface in double precision. The results are therefore bit-identical on every x86-64 CPU with AVX2 and FMA. Throws
-/// std::runtime_error on other CPUs.
+/// about 1e-5 m. The results are bit-identical on every x86-64 CPU with AVX2 and FMA.
 class RayScene {
  public:
   explicit RayScene(const SceneGeometry& geometry);
@@ -41,9 +35,7 @@ class RayScene {
   RayScene& operator=(RayScene&&) noexcept;
 
   bool empty() const;
-  /// Finds the nearest hit of each ray in the packet.
   void cast(RayPacket& packet) const;
-  /// Returns the distance from a point to the nearest surface [m], at most `limit_m`.
   float distance(const Eigen::Vector3f& point_m, float limit_m) const;
 
  private:

@@ -18,7 +18,6 @@ bool is_seen(const mjModel& model, int geom) {
   return (model.geom_contype[geom] != 0 || model.geom_conaffinity[geom] != 0) && alpha != 0.0f;
 }
 
-/// HeightField provides the vertices of a height field in the axes of its geom. Each row of grid nodes is along x.
 class HeightField {
  public:
   HeightField(const mjModel& model, int geom)
@@ -42,8 +41,8 @@ class HeightField {
   const float* data_;
 };
 
-/// Returns the upper surface of a height field. As in MuJoCo, each cell of the grid consists of two triangles, cut
-/// along the diagonal from (row, column) to (row + 1, column + 1).
+/// As in MuJoCo, each cell of the height field consists of two triangles, cut along the diagonal from (row, column) to
+/// (row + 1, column + 1).
 TriangleMesh height_field_top(const HeightField& field, const Isometry3d& T_FS) {
   TriangleMesh mesh;
   mesh.vertices_F_m.reserve(static_cast<std::size_t>(field.rows()) * field.columns());
@@ -64,8 +63,6 @@ TriangleMesh height_field_top(const HeightField& field, const Isometry3d& T_FS) 
   return mesh;
 }
 
-/// Adds a vertical wall from an edge of the height field down to height zero. The edge consists of the nodes `row`,
-/// `column` plus multiples of `row_step`, `column_step`.
 void append_wall(const HeightField& field, const Isometry3d& T_FS, int row, int column, int row_step, int column_step,
                  TriangleMesh& mesh) {
   const int count = row_step != 0 ? field.rows() : field.columns();
@@ -116,7 +113,6 @@ TriangleMesh geom_mesh(const mjModel& model, int geom, const Isometry3d& T_FS) {
   return mesh;
 }
 
-/// Converts a geom type of MuJoCo to a kind of shape. Returns false if the geom is not a primitive.
 bool primitive_kind(int type, ShapeKind& kind) {
   switch (type) {
     case mjGEOM_PLANE:

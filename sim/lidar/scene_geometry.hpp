@@ -10,11 +10,9 @@
 #include "sim/engine/model.hpp"
 #include "sim/lidar/shape.hpp"
 
-/// scene_geometry.hpp extracts from a compiled model the surfaces that rays can hit.
 namespace tumble::sim {
 
-/// kOwnCage is the surface id of a return from the robot's own struts. Surface ids of 0 or more are indices of
-/// engine::World::surfaces.
+/// Surface id of a return from the robot's own struts; ids of 0 or more are indices of engine::World::surfaces
 inline constexpr std::int32_t kOwnCage = -2;
 
 struct TriangleMesh {
@@ -22,7 +20,6 @@ struct TriangleMesh {
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-/// SceneShape is a primitive shape with its surface id and diffuse reflectivity (0..1).
 struct SceneShape {
   Shape shape;
   std::int32_t surface_id;
@@ -39,29 +36,26 @@ struct SceneGeometry {
   std::vector<SceneMesh> meshes;
 };
 
-/// HeightFieldSides selects the surfaces of a height field: `open` is only the top; `closed` adds the side walls and
-/// the base, which mj_ray also hits.
+/// `open` selects only the top of a height field; `closed` adds the side walls and the base, which mj_ray also hits.
 enum class HeightFieldSides { open, closed };
 
-/// Returns the geoms of engine::World::surface_geom in world axes. The surface id of a geom is its index in
-/// surface_geom. Visual geoms (contype and conaffinity zero) and invisible geoms (alpha zero, as in mj_ray) are
-/// omitted. Throws InvalidSituation for a geom type whose surface is not supported (SDF).
+/// Returns the geoms of engine::World::surface_geom in world axes, each with its index in surface_geom as surface id.
+/// Visual geoms (contype and conaffinity zero) and invisible geoms (alpha zero, as in mj_ray) are omitted. Throws
+/// InvalidSituation for a geom type whose surface is not supported (SDF).
 SceneGeometry static_geometry(const engine::World& world, HeightFieldSides sides);
 
-/// Returns the robot's colliding geoms in the axes of a lidar mounted at `T_BL`, with id kOwnCage. Primitives that
-/// contain the origin of L (housing of the lidar, or a shell around it) are transparent, and therefore omitted.
+/// Primitives that contain the origin of L (the housing of the lidar, or a shell around it) are omitted, because they
+/// are transparent.
 SceneGeometry cage_geometry(const engine::World& world, const Eigen::Isometry3d& T_BL);
 
-/// Returns the pose of a geom in W from the current state in `data`.
 Eigen::Isometry3d geom_pose(const mjData& data, int geom);
 
-/// Adds the surface of one geom. `T_FS` converts geom axes S to the frame F. Throws InvalidSituation for a geom type
-/// whose surface is not supported (SDF).
+/// Throws InvalidSituation for a geom type whose surface is not supported (SDF).
 void append_geom(const mjModel& model, int geom, const Eigen::Isometry3d& T_FS, std::int32_t surface_id,
                  HeightFieldSides sides, SceneGeometry& scene);
 
-/// Returns the diffuse reflectivity of a geom: the luminance (ITU-R BT.709) of its colour times the mean colour of its
-/// texture, limited to 0.05..0.95. Real surfaces have other reflectivities at 905 nm than for visible light.
+/// Returns the luminance (ITU-R BT.709) of the geom's colour times the mean colour of its texture, limited to
+/// 0.05..0.95.
 float geom_reflectivity(const mjModel& model, int geom);
 
 }  // namespace tumble::sim

@@ -16,8 +16,6 @@ struct Roots {
   double first, second;
 };
 
-/// Returns the solutions of a x^2 + 2 b x + c = 0 in increasing order. Without real solutions, the result is NaN, so
-/// that comparisons are false.
 Roots solve_quadratic(double a, double b, double c) {
   const double discriminant = b * b - a * c;
   if (!(discriminant > 0.0) || !(a > 0.0)) return {std::nan(""), std::nan("")};
@@ -47,7 +45,6 @@ double cast_sphere(double radius, const Vector3d& o, const Vector3d& d, Vector3d
 }
 
 double cast_ellipsoid(const Vector3d& size, const Vector3d& o, const Vector3d& d, Vector3d& normal) {
-  // The ellipsoid is scaled to the unit sphere; the ray parameter remains the distance in F.
   const Vector3d so = o.cwiseQuotient(size), sd = d.cwiseQuotient(size);
   const double x = first_ahead(solve_quadratic(sd.squaredNorm(), so.dot(sd), so.squaredNorm() - 1.0));
   if (x < kNone) normal = (so + x * sd).cwiseQuotient(size).normalized();
@@ -131,7 +128,6 @@ double cast_box(const Vector3d& half, const Vector3d& o, const Vector3d& d, Vect
   return outside ? enter : leave;
 }
 
-/// Returns the signed distance of a point to a box of any dimension; negative inside.
 template <typename Vector>
 double signed_box_distance(const Vector& point, const Vector& half) {
   const Vector beyond = point.cwiseAbs() - half;
@@ -139,9 +135,7 @@ double signed_box_distance(const Vector& point, const Vector& half) {
   return outside > 0.0 ? outside : beyond.maxCoeff();
 }
 
-/// Returns the distance of a point y from an ellipsoid with the semi-axes a_i (Eberly, Distance from a point to an
-/// ellipsoid). The nearest point follows from the root of sum (a_i y_i / (t + a_i^2))^2 = 1 for t > -min a_i^2.
-/// Bisection finds the root, because the sum decreases monotonically for t > -min a_i^2.
+/// The nearest point follows from the root of sum (a_i y_i / (t + a_i^2))^2 = 1 for t > -min a_i^2.
 double ellipsoid_distance(const Vector3d& size, const Vector3d& point) {
   const double scale = size.maxCoeff();
   const Vector3d a = size / scale, y = point.cwiseAbs() / scale;
@@ -155,7 +149,8 @@ double ellipsoid_distance(const Vector3d& size, const Vector3d& point) {
     (outside(middle) > 0.0 ? low : high) = middle;
   }
   Vector3d nearest = a2.cwiseProduct(y).cwiseQuotient(a2 + Vector3d::Constant(high));
-  // For a point on a plane of symmetry near the centre, the surface determines the coordinate along the shortest axis.
+  // For a point on a plane of symmetry near the centre, the ellipsoid's surface determines the coordinate along the
+  // shortest axis.
   int shortest = 0;
   a.minCoeff(&shortest);
   if (y[shortest] < 1e-12) {

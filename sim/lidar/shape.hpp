@@ -4,14 +4,12 @@
 #include <Eigen/Core>
 #include <cstdint>
 
-/// shape.hpp computes rays and distances for MuJoCo's primitive shapes.
 namespace tumble::sim {
 
 enum class ShapeKind : std::uint8_t { plane, sphere, capsule, ellipsoid, cylinder, box };
 
-/// Shape is a primitive with its pose in a frame F (world or body). The shape's axes S and its size `size_m` are
-/// defined as in MuJoCo. A plane has half sizes x, y (0: infinite) and the normal z. A sphere has a radius. A capsule
-/// and a cylinder have a radius and a half length along z. An ellipsoid has semi-axes, and a box has half sizes.
+/// A plane has half sizes x, y (0: infinite) and the normal z. A capsule and a cylinder have a radius and a half length
+/// along z.
 struct Shape {
   ShapeKind kind = ShapeKind::sphere;
   Eigen::Vector3d size_m = Eigen::Vector3d::Zero();
@@ -19,21 +17,15 @@ struct Shape {
   Eigen::Vector3d p_FS_m = Eigen::Vector3d::Zero();
 };
 
-/// Returns the distance along the unit vector `direction_F` to the first crossing of the surface, from outside or
-/// inside, or infinity without a crossing. A ray hits a plane only from its front, as in mj_ray. `normal_F` is the
-/// outward unit normal at the hit.
+/// A ray hits a plane only from its front, as in mj_ray.
 double cast_ray(const Shape& shape, const Eigen::Vector3d& origin_F_m, const Eigen::Vector3d& direction_F,
                 Eigen::Vector3d& normal_F);
 
-/// Returns the distance of a point, inside or outside, from the surface [m]. The relative error is at most 1e-9 (for an
-/// ellipsoid).
+/// Returns the distance of a point, inside or outside, from the surface [m], with a relative error of at most 1e-9.
 double surface_distance(const Shape& shape, const Eigen::Vector3d& point_F_m);
 
-/// Returns whether a point is inside the shape; always false for a plane.
 bool contains(const Shape& shape, const Eigen::Vector3d& point_F_m);
 
-/// Returns the half sizes of the shape's bounding box along its axes S. The half sizes along an unbounded plane are
-/// infinite.
 Eigen::Vector3d half_extent(const Shape& shape);
 
 }  // namespace tumble::sim

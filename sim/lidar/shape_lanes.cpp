@@ -11,7 +11,6 @@ namespace {
 using Eigen::Vector3d;
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
-/// LocalRays contains eight rays in the axes of a shape.
 struct LocalRays {
   alignas(64) double origin[3][kShapeLanes], direction[3][kShapeLanes];
 };
@@ -45,8 +44,8 @@ struct LocalRays {
   }
 }
 
-/// Computes the hits on a box by the slab method (Kay and Kajiya, SIGGRAPH 1986). A ray hits the last slab that it
-/// enters or, from inside, the first slab that it leaves.
+/// The method is the slab method (Kay and Kajiya, SIGGRAPH 1986): a ray hits the last slab that it enters or, from
+/// inside, the first slab that it leaves.
 [[gnu::target("avx2")]] void cast_on_box(const Shape& shape, const LocalRays& rays, ShapeHits& hits) {
   // Axis numbers are doubles like the ranges, so that the compiler uses equal vector masks for both.
   alignas(64) double enter[kShapeLanes], enter_axis[kShapeLanes], enter_sign[kShapeLanes];

@@ -20,7 +20,6 @@ bool any_hit(const RayPacket& rays) {
   return any;
 }
 
-/// ChannelReturns contains the returns of one channel from a block of slots.
 struct ChannelReturns {
   alignas(64) float position_x[kLanes], position_y[kLanes], position_z[kLanes];  ///< in L
   Returns returns;

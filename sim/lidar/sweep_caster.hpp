@@ -16,8 +16,6 @@
 
 namespace tumble::sim {
 
-/// SweepPoints contains the returns of one sweep in order of time. The buffers have the size of all firings of a sweep,
-/// and are reused for all sweeps.
 struct SweepPoints {
   std::vector<Eigen::Vector3f> position_L_m, hit_W_m;
   std::vector<float> range_m, intensity;
@@ -29,22 +27,18 @@ struct SweepPoints {
   void make_room(std::size_t points);
 };
 
-/// SweepCaster casts the sweeps of one lidar: one block of slots at a time, one packet of rays per channel. All member
-/// functions are const, so several threads may cast sweeps.
+/// All member functions are const, so several threads may cast sweeps.
 class SweepCaster {
  public:
-  /// Builds the ray scene of the world (about 0.07 s for a height field of 400 x 400 cells). Throws InvalidSituation.
+  /// The construction takes about 0.07 s for a height field of 400 x 400 cells. Throws InvalidSituation.
   SweepCaster(const engine::World& world, const SensorSpec& sensor, const Eigen::Isometry3d& T_BL,
               const MotionTrack& motion, std::uint64_t seed);
 
   const BeamPattern& pattern() const { return *pattern_; }
   std::size_t firings(std::int64_t sweep) const;
-  /// Casts sweep `number` of the recording. The result depends only on the motion and the seed. The function allocates
-  /// memory only if `points` is too small.
   void cast_sweep(std::int64_t number, SweepPoints& points) const;
 
  private:
-  /// Workspace contains the buffers for a block of slots, so that casting allocates no memory.
   struct Workspace;
 
   void cast_channel(const FiringBlock& block, const BlockPoses& poses, int channel, bool meets_cage,

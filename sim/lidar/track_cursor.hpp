@@ -11,19 +11,16 @@
 
 namespace tumble::sim {
 
-/// Pose34 is rotation and position as one matrix: T_WL is [R_WL, p_WL].
 using Pose34 = Eigen::Matrix<double, 3, 4>;
 
-/// TrackCursor interpolates the true pose of a lidar between the samples of the body's motion. Between samples, the
-/// body's position is linear in time, and the attitude rotates at a constant rate about a fixed axis. With samples 0.5
-/// ms apart, the error is a dt^2 / 8 = 3e-8 s^2 times the acceleration a: 13 um at 400 m/s^2. After the last motion
-/// sample, TrackCursor extrapolates the last interval. TrackCursor stores the current interval, so calls with ascending
-/// times are fast.
+/// TrackCursor interpolates the true pose of a lidar between the samples of the body's motion: position linearly,
+/// attitude at a constant rate about a fixed axis. With samples 0.5 ms apart, the error is a dt^2 / 8 = 3e-8 s^2 times
+/// the acceleration a: 13 um at 400 m/s^2.
 class TrackCursor {
  public:
-  /// Interval is the time between two samples of the motion. At the fraction `x` of the interval, the body has rotated
-  /// by the angle a = x |turn| [rad]. The pose is start + first turned + second rotated_twice + x step_m, with first =
-  /// x sin(a)/a and second = x^2 (1 - cos(a))/a^2 (Rodrigues: exp(x K) = I + first K + second K^2).
+  /// At the fraction `x` of the interval between two motion samples, the body has rotated by the angle a = x |turn|
+  /// [rad]. The pose is start + first turned + second rotated_twice + x step_m, with first = x sin(a)/a and second =
+  /// x^2 (1 - cos(a))/a^2 (Rodrigues: exp(x K) = I + first K + second K^2).
   struct Interval {
     std::int64_t start_ns = 0, end_ns = 0;
     double per_ns = 0.0, per_s = 0.0;
@@ -35,8 +32,8 @@ class TrackCursor {
     double share(std::int64_t time_ns) const { return static_cast<double>(time_ns - start_ns) * per_ns; }
   };
 
-  /// Below the squared angle kSmall2, the series of sin(a)/a and (1 - cos(a))/a^2 are accurate to 1e-16. The constant
-  /// kSmall2 is the square of 0.02 rad, which is 40 rad/s over 0.5 ms.
+  /// Below the squared angle kSmall2, the series of sin(a)/a and (1 - cos(a))/a^2 are accurate to 1e-16; 0.02 rad is 40
+  /// rad/s over 0.5 ms.
   static constexpr double kSmall2 = 4e-4;
   static double sinc_of_small(double angle2) {
     return 1.0 - angle2 / 6.0 * (1.0 - angle2 / 20.0 * (1.0 - angle2 / 42.0));
@@ -52,13 +49,12 @@ class TrackCursor {
     T_BL_ << T_BL.linear(), T_BL.translation();
   }
 
-  /// Returns the interval that contains a time. The reference is valid until the next call.
+  /// The returned reference is valid until the next call.
   const Interval& interval(std::int64_t time_ns) {
     if (!now_.holds(time_ns)) enter_interval(time_ns);
     return now_;
   }
 
-  /// Returns the pose of the lidar at a given time.
   Pose34 at(std::int64_t time_ns) {
     const Interval& now = interval(time_ns);
     const double share = now.share(time_ns), angle2 = share * share * now.angle2;

@@ -7,8 +7,6 @@ namespace tumble::sim {
 
 namespace {
 
-/// Returns the rotation vector from one attitude to another. The rotation vector has equal coordinates in the axes of
-/// both attitudes.
 Eigen::Vector3d turn(const Eigen::Quaterniond& from, const Eigen::Quaterniond& to) {
   const Eigen::AngleAxisd turned(from.conjugate() * to);
   return turned.angle() * turned.axis();
@@ -19,8 +17,7 @@ Eigen::Vector3d turn(const Eigen::Quaterniond& from, const Eigen::Quaterniond& t
 Wrench carry_along(const HoldingHand& hand, const Eigen::Matrix3d& inertia_B_kg_m2, const BodyState& state,
                    const HandHeldPath& path) {
   constexpr double kDifference_s = 1e-3;  // time step of the numerical derivatives of the path
-  // Natural frequency of spring and damper. The natural frequency is high, because the hand's tremor is part of the
-  // path.
+  // The natural frequency of spring and damper is high, because the hand's tremor is part of the path.
   constexpr double kFrequency_rad_s = 60.0;
   constexpr double kStiffness_1_s2 = kFrequency_rad_s * kFrequency_rad_s, kDamping_1_s = 2.0 * kFrequency_rad_s;
   const HandHeldPose before = path(state.time_s - kDifference_s), now = path(state.time_s),
@@ -34,7 +31,6 @@ Wrench carry_along(const HoldingHand& hand, const Eigen::Matrix3d& inertia_B_kg_
   Wrench out;
   out.force_W_n = hand.weight_n() + hand.mass_kg() * (a_m_s2 + kStiffness_1_s2 * (now.p_m - state.p_WB_m) +
                                                       kDamping_1_s * (v_m_s - state.v_WB_m_s));
-  // Angular acceleration of the path plus that of spring and damper, in body axes.
   const Eigen::Vector3d aim_rad_s2 =
       alpha_rad_s2 + kStiffness_1_s2 * turn(state.q_WB, now.q) + kDamping_1_s * (w_rad_s - state.w_WB_B_rad_s);
   out.torque_W_nm =

@@ -24,7 +24,6 @@ Eigen::Quaterniond attitude(const Values& values) {
          Eigen::AngleAxisd(values.at("roll_rad"), Eigen::Vector3d::UnitX());
 }
 
-/// In the motion Drop, a stiff hand holds the robot and releases it without a push.
 class Drop : public Motion {
  public:
   Drop(const Values& values, const engine::World& world)

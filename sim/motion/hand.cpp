@@ -10,11 +10,10 @@ namespace tumble::sim {
 namespace {
 
 constexpr double kTremorLow_hz = 0.7, kTremorHigh_hz = 9.0;
-// A waiting hand is steady. At or above kFullTremor_m_s, the tremor has its full amplitude.
+// From this speed on, the hand's tremor has its full amplitude.
 constexpr double kFullTremor_m_s = 0.1;
 
-/// Returns the smallest rotation that turns the unit vector `from` upwards, or a half turn about x if `from` points
-/// downwards. Eigen's setFromTwoVectors would take 6 s to compile.
+/// Eigen's setFromTwoVectors would take 6 s to compile.
 Eigen::Quaterniond turn_up(const Eigen::Vector3d& from) {
   const double cosine = from.z();
   if (cosine < -1.0 + 1e-12) return {0.0, 1.0, 0.0, 0.0};
@@ -57,7 +56,7 @@ Wrench Hand::wrench(const BodyState& state, const Reference& reference) {
   const double unsteady = std::min(reference.v_m_s.norm() / kFullTremor_m_s, 1.0);
 
   Wrench out;
-  // The effective mass of a rolling sphere is mass + inertia / radius^2. The spring corrects the remaining error.
+  // The effective mass of a rolling sphere is mass + inertia / radius^2.
   const double rolling_mass_kg = mass_kg_ + inertia_kg_m2_ / (radius_m_ * radius_m_);
   out.force_W_n = values_.at("stiffness_n_m") * (reference.p_m - p_G) +
                   values_.at("damping_n_s_m") * (reference.v_m_s - v_G) + rolling_mass_kg * reference.a_m_s2;
@@ -70,8 +69,7 @@ Wrench Hand::wrench(const BodyState& state, const Reference& reference) {
   return out;
 }
 
-/// Returns the torque of a burst. A burst spins the sphere faster or slower than rolling while the sphere touches a
-/// friction patch.
+/// A burst of torque spins the sphere faster or slower than rolling while the sphere touches a friction patch.
 Eigen::Vector3d Hand::burst(double time_s, const Eigen::Vector3d& p_G_m, const Eigen::Vector3d& v_m_s,
                             const Eigen::Vector3d& w_W_rad_s) {
   for (std::size_t i = 0; i < std::min(world_.patches.size(), kHandPatches); ++i) {

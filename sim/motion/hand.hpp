@@ -10,12 +10,10 @@
 
 namespace tumble::sim {
 
-/// Reference is the position to which the hand pulls the geometric centre of a sphere.
 struct Reference {
   Eigen::Vector3d p_m = Eigen::Vector3d::Zero(), v_m_s = Eigen::Vector3d::Zero(), a_m_s2 = Eigen::Vector3d::Zero();
 };
 
-/// kHandParameters lists the parameters that every hand motion has.
 inline constexpr std::array kHandParameters = {
     Parameter{"stiffness_n_m", 400.0, 1.0, 5000.0, "N/m",
               "horizontal stiffness with which the hand keeps the robot on its path; assumed"},
@@ -45,7 +43,6 @@ inline constexpr std::array kHandParameters = {
 };
 inline constexpr std::size_t kHandPatches = 3;
 
-/// Concatenates the parameters of the hand and of a motion in one table.
 template <std::size_t N>
 constexpr std::array<Parameter, kHandParameters.size() + N> with_hand(const std::array<Parameter, N>& own) {
   std::array<Parameter, kHandParameters.size() + N> all{};
@@ -54,20 +51,17 @@ constexpr std::array<Parameter, kHandParameters.size() + N> with_hand(const std:
   return all;
 }
 
-/// Hand moves a sphere with a horizontal force at the sphere's centre. The force pulls the sphere to a moving reference
-/// position (spring, damper, and feed-forward force of rolling), with tremor. On floor patches with different friction,
-/// the hand adds bursts of torque. The hand applies no vertical force, and has no body in the simulation.
+/// Hand moves a sphere with a horizontal force at the sphere's centre: a spring and a damper to a moving reference
+/// position, the feed-forward force of rolling, and tremor. On floor patches with different friction, the hand adds
+/// bursts of torque.
 class Hand {
  public:
-  /// Constructs the hand of a motion. Error messages start with the name `motion`. Throws InvalidSituation if the robot
-  /// is not a sphere. `world` must outlive the hand.
+  /// `world` must outlive the hand.
   Hand(const std::string& motion, const Values& values, const engine::World& world);
 
   double radius_m() const { return radius_m_; }
-  /// Returns the state at rest with the centre at `p_G_m`. The heavy side points down, so the sphere is in equilibrium.
   BodyState at_rest(const Eigen::Vector3d& p_G_m) const;
-  /// Returns the wrench that the hand applies to a sphere in `state`. The function stores when a burst began, so times
-  /// must increase between calls.
+  /// Times must increase between calls of wrench(), because the function stores when a burst of torque began.
   Wrench wrench(const BodyState& state, const Reference& reference);
 
  private:

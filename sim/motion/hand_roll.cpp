@@ -28,7 +28,6 @@ class Leg {
       : along_m_(along_m), start_s_(start_s), length_s_(1.875 * along_m.norm() / speed_m_s) {}
   double end_s() const { return start_s_ + length_s_; }
 
-  /// Adds to `reference` the part of the path that is covered at `time_s`.
   void add_to(double time_s, Reference& reference) const {
     if (length_s_ <= 0.0) return;
     const double u = std::clamp((time_s - start_s_) / length_s_, 0.0, 1.0);

@@ -9,12 +9,11 @@
 
 namespace tumble::sim {
 
-/// HoldingHand holds a robot still in the air, with critically damped springs for position and attitude, and a force
-/// that carries the weight. The force acts at the centre of mass.
+/// HoldingHand holds a robot still in the air, with critically damped springs for position and attitude, and a force at
+/// the centre of mass that carries the weight.
 class HoldingHand {
  public:
-  /// Holds the robot with attitude `q_WB` at `offset_W_m` from the world's start. The lowest point of the robot is
-  /// `height_m` above the ground at the start. Throws InvalidSituation for a height of 0 or less.
+  /// The lowest point of the robot is `height_m` above the ground at the start.
   HoldingHand(const engine::World& world, const Eigen::Quaterniond& q_WB, const Eigen::Vector3d& offset_W_m,
               double height_m);
 
@@ -22,10 +21,7 @@ class HoldingHand {
   Wrench hold(const BodyState& state) const;
   Eigen::Vector3d weight_n() const { return weight_n_; }  ///< force that carries the robot
   double mass_kg() const { return mass_kg_; }
-  const Eigen::Matrix3d& inertia_W_kg_m2() const {
-    return inertia_W_kg_m2_;
-    /// moment of inertia for the attitude in which the robot is held
-  }
+  const Eigen::Matrix3d& inertia_W_kg_m2() const { return inertia_W_kg_m2_; }
 
  private:
   BodyState start_;

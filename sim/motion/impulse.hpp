@@ -8,7 +8,6 @@
 
 namespace tumble::sim {
 
-/// kImpulseParameters lists the parameters of an initial impulse: its direction and the resulting spin.
 inline constexpr std::array kImpulseParameters = {
     Parameter{"direction_rad", 0.0, -3.2, 3.2, "rad",
               "direction of the push, as a rotation about z; 0: down the slope"},
@@ -22,8 +21,7 @@ inline constexpr std::array kImpulseParameters = {
               "change of the angular velocity about the vertical, caused by the push (angular impulse over inertia)"},
 };
 
-/// Returns the linear and angular impulse in world axes [N s, N m s] that starts the motion of a body at rest. The
-/// motion has the horizontal velocity `velocity_m_s`, the upward velocity `lift_m_s`, and the three spins in `values`.
+/// Returns the linear and angular impulse in world axes [N s, N m s] that starts the motion of a body at rest.
 Wrench whole_impulse(const Values& values, double mass_kg, const Eigen::Matrix3d& inertia_W_kg_m2);
 
 }  // namespace tumble::sim

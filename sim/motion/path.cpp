@@ -37,8 +37,6 @@ Nodes corner(const PathPlan& plan, int count) {
   return nodes;
 }
 
-/// Returns nodes of Gerono's lemniscate, starting at its crossing point. The caller must scale the nodes to the
-/// requested length.
 Nodes eight(int count) {
   Nodes nodes;
   for (int i = 0; i <= count; ++i) {
@@ -48,8 +46,7 @@ Nodes eight(int count) {
   return nodes;
 }
 
-/// Returns a random path whose heading is a sum of slow sinusoids. The path bends to both sides, and the shortest
-/// wavelength limits its curvature.
+/// The heading of the random path is a sum of slow sinusoids, so the path bends to both sides.
 Nodes free_path(const PathPlan& plan, int count, Stream& stream) {
   struct Bend {
     double turns, phase_rad, amplitude_rad;

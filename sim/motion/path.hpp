@@ -8,7 +8,6 @@
 
 namespace tumble::sim {
 
-/// PathShape lists the shapes of a horizontal path. Scenarios select a shape by number.
 enum class PathShape {
   line,   ///< straight along +x, with an optional lateral sway
   l,      ///< two equal legs with a corner to the left
@@ -21,13 +20,12 @@ struct PathPlan {
   PathShape shape = PathShape::line;
   double length_m = 1.0;     ///< length along the path; for a line, without its sway
   double heading_rad = 0.0;  ///< rotation of the path about the vertical
-  /// Line only: amplitude of the lateral sway, which fades over the first and last half metre.
+  /// Line only: amplitude of the lateral sway, which fades over the first and last half metre
   double sway_m = 0.0;
   double sway_length_m = 4.0;  ///< line only: wavelength of the lateral sway
 };
 
-/// Returns nodes of the path about 5 mm apart. The centre of their bounding box is at the origin. Only the free path
-/// draws random numbers from `stream`. Cost: O(length of the path).
+/// Only the free path draws random numbers from `stream`.
 std::vector<Eigen::Vector2d> plan_path(const PathPlan& plan, Stream& stream);
 
 }  // namespace tumble::sim

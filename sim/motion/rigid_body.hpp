@@ -9,13 +9,12 @@
 namespace tumble::sim {
 
 /// Returns the height of the centre of mass at which a body with attitude `q_WB` is `gap_m` above horizontal ground at
-/// height 0. The body's capsules and spheres that can touch the ground determine the height.
+/// height 0.
 double clearance_m(const mjModel& model, int body, const Eigen::Quaterniond& q_WB, double gap_m);
 
-/// Returns the moment of inertia about the centre of mass, in world axes, of a body with attitude `q_WB` [kg m^2].
+/// Returns the moment of inertia about the centre of mass, in world axes [kg m^2].
 Eigen::Matrix3d inertia_W_kg_m2(const mjModel& model, int body, const Eigen::Quaterniond& q_WB);
 
-/// Returns the value of a raised-cosine pulse over [0, 1] with integral 1. The pulse is 0 outside of [0, 1].
 double raised_cosine(double share);
 
 }  // namespace tumble::sim

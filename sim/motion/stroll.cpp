@@ -60,8 +60,6 @@ class Stroll : public Motion {
   }
 
  private:
-  /// Returns the phase along the figure of eight [rad]. The phase rate rises smoothly from zero, and falls to zero at
-  /// the end.
   double phase_rad(double walked_s) const {
     const auto begun_s = [this](double t_s) {  // integral of `eased` up to a time within the first `ease_s`
       const double u = std::clamp(t_s / ease_s_, 0.0, 1.0);
@@ -73,7 +71,6 @@ class Stroll : public Motion {
     return phase_rate_rad_s_ * (walk_s_ - ease_s_ - begun_s(walk_s_ - t_s));
   }
 
-  /// Returns the attitude of the robot, which faces along the path, at a phase.
   Eigen::Quaterniond heading(double phase_rad) const {
     const double yaw_rad =
         std::atan2(2.0 * half_width_m_ * std::cos(2.0 * phase_rad), half_length_m_ * std::cos(phase_rad));
@@ -82,7 +79,7 @@ class Stroll : public Motion {
 
   HandHeldPose path(double time_s) const {
     const double walked_s = time_s - values_.at("rest_s"), phase = phase_rad(walked_s);
-    // The tremor starts and ends within a second, with continuous acceleration.
+    // The tremor of the hand starts and ends within a second, with continuous acceleration.
     const double share = eased(walked_s) * eased(walk_s_ - walked_s);
     const double step_rad = 2.0 * std::numbers::pi * values_.at("step_hz") * walked_s;
     const Eigen::Vector3d eight_m(half_length_m_ * std::sin(phase), half_width_m_ * std::sin(2.0 * phase),

@@ -32,7 +32,6 @@ constexpr std::array kSwingParameters = {
 
 constexpr double kSwingLongest_s = 3600.0;
 
-/// Lift is one swing: the hand grips the robot, leads it aside, holds it and releases it.
 struct Lift {
   double start_s;
   Eigen::Vector3d lift_W_m;
@@ -56,14 +55,13 @@ std::vector<Lift> plan_lifts(const Values& values, Stream& stream) {
   return lifts;
 }
 
-/// Returns a smooth step from 0 to 1 with zero velocity and acceleration at its ends.
 double smooth(double share) {
   const double u = std::clamp(share, 0.0, 1.0);
   return u * u * u * (10.0 + u * (-15.0 + 6.0 * u));
 }
 
-/// In the motion Swing, a hand grips the lowest segment of the pendulum at the segment's centre of mass. A spring and a
-/// damper pull the lowest segment to a moving target. The hand applies no torque, and has no body in the simulation.
+/// In the motion Swing, a hand grips the lowest segment of the pendulum at the segment's centre of mass, and pulls it
+/// to a moving target by a spring and a damper.
 class Swing : public Motion {
  public:
   Swing(const Values& values, const engine::World& world)
@@ -87,7 +85,7 @@ class Swing : public Motion {
     const Lift& lift = *std::prev(after);
     const double since_s = state.time_s - lift.start_s;
     constexpr double kGrip_s = 0.3;  // time in which the fingers close
-    // Natural frequency of the spring with the hanging mass, typical of an arm.
+    // Natural frequency of the spring with the hanging mass, typical of an arm
     constexpr double kFrequency_rad_s = 15.0;
     const double grip = smooth(since_s / kGrip_s) * (1.0 - smooth((since_s - lift_s_ - hold_s_) / release_s_));
     if (grip <= 0.0) return {};

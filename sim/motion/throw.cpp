@@ -21,7 +21,6 @@ constexpr std::array kOwnThrowParameters = {
 };
 constexpr std::array kThrowParameters = joined(kOwnThrowParameters, kImpulseParameters);
 
-/// In the motion Throw, a stiff hand holds the robot, swings it and releases it.
 class Throw : public Motion {
  public:
   Throw(const Values& values, const engine::World& world)
@@ -37,7 +36,6 @@ class Throw : public Motion {
     if (state.time_s < rest_s_) return hand_.hold(state);
     const double share = (state.time_s - rest_s_) / throw_s_;
     if (share >= 1.0) return {};
-    // The hand carries the weight of the robot until the release.
     const double rate_1_s = raised_cosine(share) / throw_s_;
     return {hand_.weight_n() + impulse_.force_W_n * rate_1_s, impulse_.torque_W_nm * rate_1_s};
   }

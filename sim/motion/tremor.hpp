@@ -8,8 +8,7 @@
 namespace tumble::sim {
 
 /// Tremor is the random unsteadiness of a hand as a smooth function of time: a sum of sinusoids of random phase. The
-/// frequencies are log-uniform between two limits, and the amplitudes are inversely proportional to the frequency. The
-/// caller states the limits and the root mean square over a long time.
+/// frequencies are log-uniform between two limits, and the amplitudes are inversely proportional to the frequency.
 class Tremor {
  public:
   Tremor(Stream& stream, double rms, double lowest_hz, double highest_hz);

@@ -43,12 +43,10 @@ constexpr std::array kTwirlParameters = {
 constexpr double kTwirlSwayLow_hz = 0.3, kTwirlSwayHigh_hz = 4.0;
 constexpr double kTwirlLongest_s = 120.0;
 
-/// Stroke is one twist of the wrist or the fingers, from rest to rest. The rate has the form of a sin^2 pulse.
 struct Stroke {
   static constexpr double kRise = 1.0 / 3.0;
   double start_s, length_s, peak_rad_s;
 
-  /// Returns the angle by which the twist has rotated the robot at `time_s`.
   double angle_rad(double time_s) const {
     constexpr double kFall = 1.0 - kRise;
     const double u = std::clamp((time_s - start_s) / length_s, 0.0, 1.0);
@@ -72,9 +70,7 @@ std::vector<Stroke> plan_strokes(const Values& values, Stream& stream) {
   return strokes;
 }
 
-/// In the motion Twirl, a hand holds the robot at one point and twirls it about x, stroke by stroke. The forces of the
-/// hand cause the path's acceleration; a spring and a damper correct deviations. The hand has no body in the
-/// simulation.
+/// In the motion Twirl, a hand holds the robot at one point and twirls it about x, stroke by stroke.
 class Twirl : public Motion {
  public:
   Twirl(const Values& values, const engine::World& world)
@@ -106,7 +102,6 @@ class Twirl : public Motion {
       if (time_s <= stroke.start_s) break;
       spun_rad += stroke.angle_rad(time_s);
     }
-    // The tremor starts within a second, with continuous acceleration.
     const double share = eased(time_s - rest_s_);
     const Eigen::Vector3d sway_m(positions_[0].at(time_s), positions_[1].at(time_s), positions_[2].at(time_s));
     const BodyState start = hand_.start();

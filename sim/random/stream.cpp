@@ -19,7 +19,6 @@ std::uint64_t fnv1a(std::string_view text) {
   return hash;
 }
 
-/// Converts the upper 53 bits to a number in [0, 1).
 double unit(std::uint64_t bits) {
   return static_cast<double>(bits >> 11) * 0x1.0p-53;
 }
@@ -31,8 +30,7 @@ std::uint64_t join(std::uint32_t low, std::uint32_t high) {
 }  // namespace
 
 Stream::Stream(std::uint64_t seed, std::string_view name) {
-  // The Philox key has 64 bits, but the seed and the hash of the name have 128 bits. One Philox block combines seed and
-  // hash, so that similar seeds and names give unrelated keys.
+  // One Philox block combines seed and hash of the stream's name, so that similar seeds and names give unrelated keys.
   const std::uint64_t hash = fnv1a(name);
   const auto folded = philox4x32_10({static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32), 0, 0},
                                     {static_cast<std::uint32_t>(hash), static_cast<std::uint32_t>(hash >> 32)});
@@ -47,7 +45,7 @@ std::array<std::uint32_t, 4> Stream::block(std::uint64_t index) const {
 
 std::array<double, 2> Stream::normal_pair(std::uint64_t index) const {
   const auto b = block(index);
-  // Box and Muller 1958; 1 - u is in (0, 1], so the logarithm is finite
+  // The normal numbers follow Box and Muller (1958); 1 - u is in (0, 1], so the logarithm is finite.
   const double radius = std::sqrt(-2.0 * std::log(1.0 - unit(join(b[0], b[1]))));
   const double angle = 2.0 * std::numbers::pi * unit(join(b[2], b[3]));
   return {radius * std::cos(angle), radius * std::sin(angle)};

@@ -7,19 +7,16 @@
 
 namespace tumble::sim {
 
-/// Stream is a named, independent stream of random numbers: `Stream(seed, "imu.noise")`. The stream is counter-based
-/// (Philox 4x32-10, Salmon et al., SC 2011): each number depends only on its index, not on threads and order. Stream
-/// has its own implementation of distributions, because standard libraries have different ones.
+/// The stream is counter-based (Philox 4x32-10, Salmon et al., SC 2011): each number depends only on its index, not on
+/// threads and order. Stream has its own implementation of distributions, because standard libraries have different
+/// ones.
 class Stream {
  public:
   Stream(std::uint64_t seed, std::string_view name);
 
-  /// Returns 128 bits that depend only on (seed, name, index).
   std::array<std::uint32_t, 4> block(std::uint64_t index) const;
-  /// Returns two standard normal numbers that depend only on (seed, name, index).
   std::array<double, 2> normal_pair(std::uint64_t index) const;
 
-  /// Returns the next number of the random sequence.
   std::uint64_t bits();
   double uniform();  ///< in [0, 1)
   double uniform(double low, double high);

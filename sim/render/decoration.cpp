@@ -47,8 +47,6 @@ double field_height_m(const mjModel& model, int field, double x_m, double y_m) {
          ((1 - b) * ((1 - a) * data[0] + a * data[1]) + b * ((1 - a) * data[columns] + a * data[columns + 1]));
 }
 
-/// Calls `line(from, to)` for every segment of grid lines along both axes of a rectangle, at `height(x, y)` above its
-/// plane.
 template <typename Height, typename Line>
 void drape(double half_x_m, double half_y_m, double grid_m, double step_m, const Height& height, const Line& line) {
   for (const int axis : {0, 1}) {
@@ -113,7 +111,6 @@ void add_paths(const View& view, mjvScene& scene) {
         from = &to;
         continue;
       }
-      // Path samples closer than the line's width are skipped to save time.
       if ((to - *from).norm() < path.width_m && &to != &path.points_W_m.back()) continue;
       if (mjvGeom* geom = next_geom(scene, mjGEOM_CAPSULE, path.rgba.data())) {
         mjv_connector(geom, mjGEOM_CAPSULE, 0.5 * path.width_m, from->data(), to.data());

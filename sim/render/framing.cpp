@@ -10,7 +10,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Paths are kept in the picture if they are within kNear_m plus a quarter of the robots' extent.
+// Paths are kept in the picture if their distance from the robots is below kNear_m plus a quarter of the robots'
+// extent.
 constexpr double kNear_m = 1.0;
 
 struct Ball {
@@ -37,7 +38,8 @@ std::vector<Ball> content(const View& view, double robot_radius_m) {
       if (near.isEmpty() || near.contains(p)) balls.push_back({p, path.width_m});
     }
   }
-  // Maps (point clouds) are much larger than the motion, so they count only in a view without robots and paths.
+  // Maps (point clouds) are much larger than the motion, so the camera frames them only in a view without robots and
+  // paths.
   if (balls.empty()) {
     for (const DrawnPoints& cloud : view.points) {
       for (const Vector3d& p : cloud.points_W_m) balls.push_back({p, cloud.radius_m});

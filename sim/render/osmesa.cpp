@@ -10,7 +10,6 @@ namespace tumble::sim {
 
 namespace {
 
-/// Shared library whose binary interface matches OSMesa's header.
 constexpr const char* kLibrary = "libOSMesa.so.8";
 
 [[noreturn]] void fail() {

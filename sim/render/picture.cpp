@@ -63,7 +63,6 @@ std::vector<std::uint8_t> png_bytes(const Picture& picture) {
     png_destroy_write_struct(&png, nullptr);
     throw std::bad_alloc();
   }
-  // libpng reports an error by a jump back to the call of setjmp.
   if (setjmp(png_jmpbuf(png)) != 0) {
     png_destroy_write_struct(&png, &info);
     throw std::runtime_error("PNG: encoding failed");

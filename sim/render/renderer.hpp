@@ -14,30 +14,25 @@
 
 namespace tumble::sim {
 
-/// Picture contains RGB pixels, row by row from the top.
 struct Picture {
   int width = 0;
   int height = 0;
   std::vector<std::uint8_t> rgb;
 };
 
-/// DrawnPath is a line in the scene.
 struct DrawnPath {
   std::vector<Eigen::Vector3d> points_W_m;
   std::array<float, 4> rgba = {1, 1, 1, 1};
   double width_m = 0.02;
 };
 
-/// DrawnPoints contains points that are drawn as small spheres, each with its own colour, for example map points
-/// coloured by error.
 struct DrawnPoints {
   std::vector<Eigen::Vector3d> points_W_m;
   std::vector<std::array<float, 4>> rgba;
   double radius_m = 0.02;
 };
 
-/// View describes the content of a picture. The camera looks at the point `look_at_W_m`. If `look_at_W_m` is NaN, the
-/// camera frames the robots and nearby paths (all paths if there is no robot).
+/// The camera looks at the point `look_at_W_m`; if this point is NaN, the camera frames the robots and nearby paths.
 struct View {
   std::vector<Eigen::Isometry3d> robots_T_WB;  ///< poses at which the robot is drawn
   std::vector<DrawnPath> paths;
@@ -50,11 +45,9 @@ struct View {
   double elevation_rad = -0.45;
 };
 
-/// Renderer renders pictures of a situation's world without a display (OSMesa).
 class Renderer {
  public:
-  /// Prepares a copy of the world for rendering. The shadow map has `shadow_pixels` per side; the rendering cost grows
-  /// with the square of `shadow_pixels`. Throws std::runtime_error if no OSMesa context can be created.
+  /// The shadow map has `shadow_pixels` per side; the rendering cost grows with the square of `shadow_pixels`.
   explicit Renderer(const BuiltSituation& built, int shadow_pixels = 4096);
   ~Renderer();
   Renderer(Renderer&&) noexcept;
@@ -67,10 +60,8 @@ class Renderer {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Arranges pictures of equal size in rows of `columns` pictures (a film strip).
 Picture film_strip(std::span<const Picture> pictures, int columns);
 
-/// Returns the picture as a PNG file.
 std::vector<std::uint8_t> png_bytes(const Picture& picture);
 
 }  // namespace tumble::sim

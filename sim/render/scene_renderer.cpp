@@ -23,7 +23,6 @@ struct ContextDeleter {
 };
 using ContextPtr = std::unique_ptr<osmesa_context, ContextDeleter>;
 
-/// Current makes an OSMesa context current during the object's lifetime.
 class Current {
  public:
   explicit Current(OSMesaContext context) {
@@ -36,7 +35,6 @@ class Current {
   Current& operator=(const Current&) = delete;
 
  private:
-  // Pictures are drawn into a frame buffer object, so the buffer of the context is unused.
   static constexpr int kSide = 16;
   unsigned char pixels_[4 * kSide * kSide];
 };
@@ -56,7 +54,7 @@ class Scene {
   mjvScene scene_;
 };
 
-/// Halves a picture in both directions, and flips it vertically, because OpenGL's rows start at the bottom.
+/// The picture is flipped vertically, because OpenGL's rows start at the bottom.
 Picture averaged(const std::vector<std::uint8_t>& large, int width, int height) {
   Picture picture{width, height,
                   std::vector<std::uint8_t>(3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height))};
@@ -85,7 +83,6 @@ void set_look(mjModel& model, int shadow_pixels) {
   model.vis.quality.offsamples = 0;
   model.vis.quality.numslices = 24;
   model.vis.quality.numstacks = 14;
-  // Soft light from the camera brightens the sun's shadows.
   for (int c = 0; c < 3; ++c) {
     model.vis.headlight.ambient[c] = 0.28f;
     model.vis.headlight.diffuse[c] = 0.30f;
@@ -93,8 +90,7 @@ void set_look(mjModel& model, int shadow_pixels) {
   }
 }
 
-/// Restricts the shadow map to the visible area, because a smaller area gives sharper shadows. By default, MuJoCo uses
-/// one shadow map for the whole world.
+/// The shadow map is restricted to the visible area, because a smaller area gives sharper shadows.
 void aim_sun(const Framing& framing, mjvScene& scene, mjrContext& engine) {
   const double reach_m = 2.0 + framing.distance_m;
   engine.shadowClip = static_cast<float>(reach_m);
@@ -167,7 +163,7 @@ void SceneRenderer::Impl::add_robots(const View& view, const mjvOption& option, 
   if (world.robot_body < 0) return;
   if (!world.free) {
     for (const Eigen::Isometry3d& T_WB : view.robots_T_WB) {
-      // Starts from the previous pose, because neighbouring poses of a film strip are similar.
+      // The joint search starts from the previous pose, because neighbouring poses of a film strip are similar.
       engine::reach(world, T_WB, *data);
       mjv_addGeoms(&model, data.get(), &option, nullptr, mjCAT_DYNAMIC, &scene);
     }

@@ -10,7 +10,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Ring is a ring of vertices about the axis, or a pole if the radius is 0.
 struct Ring {
   double radius_x_m, radius_y_m, z_m;
 };
@@ -26,7 +25,6 @@ std::uint32_t add_ring(const Shape& shape, const Ring& ring, int segments, Tesse
   return first;
 }
 
-/// Adds the band of triangles between two rings, the lower ring first.
 void add_band(std::uint32_t low, bool low_is_pole, std::uint32_t high, bool high_is_pole, int segments,
               Tessellation& out) {
   const auto count = static_cast<std::uint32_t>(segments);
@@ -37,7 +35,6 @@ void add_band(std::uint32_t low, bool low_is_pole, std::uint32_t high, bool high
   }
 }
 
-/// Adds rings from the lower pole to the upper pole as one smooth surface.
 void add_round(const Shape& shape, const std::vector<Ring>& rings, int segments, Tessellation& out) {
   std::uint32_t below = add_ring(shape, rings.front(), segments, out);
   for (std::size_t k = 1; k < rings.size(); ++k) {
@@ -47,8 +44,6 @@ void add_round(const Shape& shape, const std::vector<Ring>& rings, int segments,
   }
 }
 
-/// Adds an ellipsoid with the semi-axes `semi_m`. For a capsule, a tube of half length `half_m` separates the two
-/// halves of the ellipsoid.
 void add_ellipsoid(const Shape& shape, const Vector3d& semi_m, double half_m, int segments, Tessellation& out) {
   const int steps = segments / 2;
   std::vector<Ring> rings;
@@ -71,7 +66,6 @@ void add_cylinder(const Shape& shape, double radius_m, double half_m, int segmen
   add_round(shape, {high, {0.0, 0.0, half_m}}, segments, out);
 }
 
-/// Adds a quadrilateral whose corners are anticlockwise seen from outside.
 void add_face(const Shape& shape, const std::array<Vector3d, 4>& corners_S_m, Tessellation& out) {
   const auto first = static_cast<std::uint32_t>(out.vertices_F_m.size());
   for (const Vector3d& corner : corners_S_m)

@@ -8,19 +8,16 @@
 
 #include "sim/lidar/shape.hpp"
 
-/// tessellation.hpp converts primitive shapes to triangles.
 namespace tumble::sim {
 
-/// Tessellation contains triangles, whose corners are anticlockwise seen from outside. Triangles that share a vertex
-/// form one smooth surface; sharp edges have two vertices at one position.
+/// Triangles that share a vertex form one smooth surface; sharp edges have two vertices at one position.
 struct Tessellation {
   std::vector<Eigen::Vector3f> vertices_F_m;
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-/// Returns the surface of a primitive shape in frame F. Round primitives have `segments` pieces about their axis (even,
-/// at least 4), with all vertices on the shape. A plane becomes a rectangle; the half width of an unbounded side is
-/// `unbounded_m`.
+/// Round primitives have `segments` pieces about their axis (even, at least 4), with all vertices on the shape. A plane
+/// becomes a rectangle; the half width of an unbounded side is `unbounded_m`.
 Tessellation tessellate(const Shape& shape, int segments, double unbounded_m);
 
 }  // namespace tumble::sim

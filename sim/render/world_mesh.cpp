@@ -21,7 +21,6 @@ std::array<float, 4> colour_of(const mjModel& model, int geom) {
   return {rgba[0], rgba[1], rgba[2], rgba[3]};
 }
 
-/// Converts a plane to the smallest height field: four nodes and one cell.
 MeshPart as_field(const Tessellation& plane, MeshPart part) {
   const auto& corners = plane.vertices_F_m;  // anticlockwise around the plane
   part.vertices_m = {corners[0], corners[1], corners[3], corners[2]};
@@ -52,7 +51,6 @@ MeshPart part_of(const mjModel& model, int geom, const Eigen::Isometry3d& T_FS, 
   return part;
 }
 
-/// Returns the visible geoms of one body in a frame F. `T_FW` converts world coordinates to F.
 std::vector<MeshPart> body_mesh(const mjModel& model, const mjData& data, int body, const Eigen::Isometry3d& T_FW,
                                 int segments) {
   std::vector<MeshPart> parts;

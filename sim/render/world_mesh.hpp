@@ -10,25 +10,21 @@
 
 namespace tumble::sim {
 
-/// MeshPart is a part of a world or a robot as triangles, for drawing without Renderer. The triangles are anticlockwise
-/// seen from outside; triangles that share a vertex form a smooth surface.
+/// Triangles that share a vertex form a smooth surface; corners are anticlockwise seen from outside.
 struct MeshPart {
   std::array<float, 4> rgba = {1, 1, 1, 1};
   std::vector<Eigen::Vector3f> vertices_m;
   std::vector<std::array<std::uint32_t, 3>> triangles;
-  /// Grid size of a height field, or of a plane as a field with one cell; 0 for other parts. The grid nodes are in
-  /// `vertices_m` row by row; x increases along a row, and y increases from row to row. For a grid, `triangles` is
-  /// empty: each cell is two triangles, cut from (row, column) to (row + 1, column + 1).
+  /// The grid nodes are in `vertices_m` row by row; x increases along a row, and y increases from row to row. For a
+  /// grid, `triangles` is empty: each cell is two triangles, cut from (row, column) to (row + 1, column + 1).
   int rows = 0, columns = 0;
 };
 
-/// Returns the visible parts of the world in frame W: surfaces and marks, without ceilings and near walls that would
-/// hide the inside. Round parts have `segments` pieces about their axis, capsules half as many. Throws InvalidSituation
-/// for a geom without a surface.
+/// Returns the visible parts of the world in frame W, without ceilings and near walls that would hide the inside. Round
+/// parts have `segments` pieces about their axis, capsules half as many. Throws InvalidSituation for a geom without a
+/// surface.
 std::vector<MeshPart> world_mesh(const BuiltSituation& built, int segments = 12);
 
-/// Returns the visible parts of the body that carries the sensors, in frame B. For a robot on joints (pendulum), the
-/// sensors are on the last segment. The list of parts is empty without a robot.
 std::vector<MeshPart> robot_mesh(const BuiltSituation& built, int segments = 20);
 
 }  // namespace tumble::sim

@@ -22,7 +22,6 @@ constexpr std::array kPendulumParameters = {
     Parameter{"play_damping_nm_s", 0.1, 0.0, 10.0, "N m s", "damping of the support; assumed"},
 };
 
-// Half thickness of a bar with its load, for the moment of inertia about the bar's length.
 constexpr double kBarHalfThickness_m = 0.02;
 constexpr int kSegments = 3;
 
@@ -30,7 +29,6 @@ mjsJoint* joint(mjSpec* spec, const std::string& name) {
   return mjs_asJoint(mjs_findElement(spec, mjOBJ_JOINT, name.c_str()));
 }
 
-/// Sets the shape of a pendulum segment: a slim bar whose origin is its middle, and whose upper end is attached.
 void shape_segment(mjSpec* spec, const Values& values, int number) {
   const std::string name = "segment_" + std::to_string(number);
   const double length_m = values.at("segment_m"), mass_kg = values.at("segment_mass_kg");

@@ -37,7 +37,6 @@ constexpr std::array kRigParameters = {
     Parameter{"com_z_m", 0.0, -0.1, 0.1, "m", "the same along z"},
 };
 
-/// Returns the name of the parameter with the contact damping ratio of a strut. `strut` is its name in rig.xml.
 const char* contact_ratio_of(std::string_view strut) {
   if (strut.starts_with("strut_lower_")) return "lower_contact_ratio";
   if (strut.starts_with("strut_upper_")) return "upper_contact_ratio";

@@ -23,8 +23,6 @@ constexpr auto kBarometerParameters = joined(
         Parameter{"air_temperature_k", 288.15, 150.0, 400.0, "K", "air temperature, which is the same at every height"},
     });
 
-/// Adds a barometer to the recording. The model excludes wind, pressure caused by the robot's own motion, and lag of
-/// the housing.
 void add_barometer(const SensorContext& context, Recording& recording) {
   const Values& values = context.sensor.values;
   const auto pressure_pa = [&truth = recording.truth, &context, ground_pa = values.at("ground_pressure_pa"),

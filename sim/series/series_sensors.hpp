@@ -3,10 +3,8 @@
 
 #include "sim/sensor_type.hpp"
 
-/// series_sensors.hpp declares sensors that deliver series of numbers. Each sensor has one source file.
 namespace tumble::sim {
 
-/// Returns the barometer, which measures air pressure. The pressure decreases with height.
 const SensorType& barometer_sensor();
 
 /// Returns the pressure of isothermal air at a height above the world's origin [Pa]: p0 exp(-g M h / (R T)). The source

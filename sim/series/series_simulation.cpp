@@ -25,7 +25,6 @@ std::size_t steps_in_window(const SensorSpec& sensor, std::int64_t step_ns) {
   throw InvalidSituation(text.str());
 }
 
-/// Reader converts a true quantity to the readings of a sensor.
 class Reader {
  public:
   Reader(const Measured& measured, std::uint64_t seed, const std::string& stream)

@@ -14,7 +14,6 @@
 
 namespace tumble::sim {
 
-/// kSeriesParameters lists the parameters of every series sensor: output rate, time stamps and losses.
 inline constexpr std::array kSeriesParameters = {
     Parameter{"output_rate_hz", 50.0, 0.1, 2000.0, "Hz",
               "samples per second; must divide the physics rate of 2000 Hz; each sample is the mean since the previous "
@@ -30,18 +29,16 @@ inline constexpr std::array kSeriesParameters = {
               "recording"},
 };
 
-/// ReadingErrors contains the sizes of the errors of a reading, relative to the true mean over the averaging window. A
-/// size of 0 switches an error off.
+/// Sizes of the errors of a reading, relative to the true mean over the averaging window; 0 switches an error off
 struct ReadingErrors {
   double noise = 0.0;  ///< standard deviation of the white noise of each reading
-  /// Standard deviation of an error that is constant over a recording.
+  /// Standard deviation of an error that is constant over a recording
   double bias = 0.0;
   double low = -std::numeric_limits<double>::infinity();  ///< limits of the output range
   double high = std::numeric_limits<double>::infinity();
   double quantum = 0.0;  ///< resolution of the output
 };
 
-/// Measured is a quantity that a sensor measures.
 struct Measured {
   std::string name;  ///< ends in its unit: "pressure_pa"
   std::string unit;
@@ -49,12 +46,10 @@ struct Measured {
   std::function<double(std::size_t k)> exact;  ///< true value at physics sample k of the truth
 };
 
-/// Adds a series of `quantities` to a recording that contains the body's truth. A reading is the mean over an averaging
-/// window with bias, white noise, range, quantum, time stamps and losses (imu/time_stamps.hpp). kSeriesParameters lists
-/// the parameters. If every error is 0, the reading equals the true mean, bit for bit. A sample that the device loses
-/// is also missing in the truth. `constants` are the names of the sensor's numbers that estimators receive with the
-/// recording. Throws InvalidSituation if the output period is not a whole number of physics steps. The model excludes
-/// temperature errors, drift, and any bandwidth limit except the averaging window.
+/// A reading is the mean over an averaging window with bias, white noise, range, quantum, time stamps and losses. A
+/// sample that the device loses is also missing in the truth. Throws InvalidSituation if the output period is not a
+/// whole number of physics steps. The model excludes temperature errors, drift, and any bandwidth limit except the
+/// averaging window.
 void simulate_series(const SensorContext& context, const std::vector<Measured>& quantities,
                      const std::vector<std::string>& constants, Recording& recording);
 

@@ -19,7 +19,6 @@ constexpr double kReach_m = 1e4;
 /// If two surfaces have coincident faces (the end of a wall within a door's reveal), a ray may hit either surface.
 constexpr double kCoincident_m = 1e-4;
 
-/// EngineRays casts rays of MuJoCo (mj_ray) against the static part of a world.
 class EngineRays {
  public:
   explicit EngineRays(const engine::World& world) : world_(world), data_(mj_makeData(world.model.get())) {
@@ -37,7 +36,6 @@ class EngineRays {
     return {range_m, geom};
   }
 
-  /// Returns the range of a ray to a geom; negative if the ray misses the geom.
   double range_to(int geom, const Vector3d& origin_m, const Vector3d& direction) const {
     const mjModel* model = world_.model.get();
     const int type = model->geom_type[geom];
@@ -53,7 +51,6 @@ class EngineRays {
   engine::DataPtr data_;
 };
 
-/// TrialRay is a ray with its hit according to MuJoCo.
 struct TrialRay {
   Vector3d origin_m, direction;
   EngineRays::Hit expected;
@@ -63,7 +60,6 @@ Vector3d as_float(const Vector3d& v) {
   return v.cast<float>().cast<double>();  // rounded to float, so that the ray scene and MuJoCo use the same origin
 }
 
-/// Returns the origin of a ray, above the surface at a random position of the inner world.
 Vector3d origin_above_ground(const EngineRays& rays, double half_extent_m, Stream& stream) {
   constexpr double kAbove_m = 50.0;
   const double reach_m = 0.85 * half_extent_m;
@@ -75,7 +71,6 @@ Vector3d origin_above_ground(const EngineRays& rays, double half_extent_m, Strea
   return as_float(origin);
 }
 
-/// Returns the origin of a ray near the robot's start, below the ceiling if there is one.
 Vector3d origin_near_start(const Vector3d& start_W_m, Stream& stream) {
   const double z_m = stream.uniform(0.1, 1.5), y_m = stream.uniform(-1.5, 1.5), x_m = stream.uniform(-1.5, 1.5);
   return as_float(start_W_m + Vector3d(x_m, y_m, z_m));

@@ -7,11 +7,10 @@
 
 namespace tumble::sim {
 
-/// RayDisagreement compares the lidar's ray scene with MuJoCo's rays (mj_ray).
 struct RayDisagreement {
   std::int64_t rays = 0;
   std::int64_t hits = 0;  ///< number of hits of the engine's rays
-  /// Number of rays for which the two hits are on different surfaces, or only one of the two rays has a hit.
+  /// Number of rays for which the lidar and MuJoCo hit different surfaces, or only one of them has a hit
   std::int64_t other_surface = 0;
   double largest_difference_m = 0.0;  ///< largest difference of ranges on the same surface
 };
@@ -19,14 +18,14 @@ struct RayDisagreement {
 struct RayTrialOptions {
   int rays = 2000;
   std::uint64_t seed = 1;
-  /// Displacement of the rays of the ray scene; a deliberate error that the comparison must detect.
+  /// Displacement of the lidar's rays: a deliberate error that the comparison with MuJoCo's rays must detect
   double mirror_shift_m = 0.0;
   int surface_shift = 0;  ///< number added to the surface ids of the ray scene; another deliberate error
 };
 
 /// Casts random rays in all directions with the lidar's ray scene and with MuJoCo, without the robot. Half of the rays
-/// start 0.2 to 3 m above the surface at random positions of the world, half near the robot's start. A ray of MuJoCo
-/// takes up to 0.3 ms on a height field. Throws InvalidSituation for a geom without a surface.
+/// start 0.2 to 3 m above the surface at random positions of the world, half near the robot's start. Throws
+/// InvalidSituation for a geom without a surface.
 RayDisagreement compare_rays(const BuiltSituation& built, const RayTrialOptions& options);
 
 }  // namespace tumble::sim

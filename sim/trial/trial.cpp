@@ -21,7 +21,6 @@ int engine_integrator(Integrator integrator) {
   throw InvalidSituation("trial: unknown integrator");
 }
 
-/// Applies the options to the model before MuJoCo creates its state from the model.
 engine::World world_for(const BuiltSituation& built, const TrialOptions& options) {
   if (!(options.step_s >= 0.0 && options.step_s <= 0.1)) {
     throw InvalidSituation("trial: step_s is " + std::to_string(options.step_s) + " s; it must be within [0, 0.1]");

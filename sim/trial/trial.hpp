@@ -12,8 +12,7 @@
 
 namespace tumble::sim {
 
-/// Integrator selects the integrator of MuJoCo. The simulation uses `runge_kutta_4`; `euler` and `implicit` demonstrate
-/// the errors of other integrators.
+/// The simulation uses `runge_kutta_4`; `euler` and `implicit` demonstrate the errors of other integrators.
 enum class Integrator { runge_kutta_4, euler, implicit };
 
 struct TrialOptions {
@@ -22,10 +21,10 @@ struct TrialOptions {
 };
 
 /// Trial simulates a robot in its world step by step for measurements, with the model and engine of simulate(). The
-/// robot starts without settling. The motion and sensors of the situation are ignored.
+/// robot starts without settling; the motion and sensors of the situation are ignored.
 class Trial {
  public:
-  /// Constructs a trial with a copy of the world. Throws InvalidSituation if the time step is outside its limits.
+  /// Throws InvalidSituation if the time step is outside its limits.
   explicit Trial(const BuiltSituation& built, const TrialOptions& options = {});
   ~Trial();
   Trial(Trial&&) noexcept;
@@ -39,17 +38,13 @@ class Trial {
   double half_extent_m() const;             ///< the robot has left its world beyond this |x| or |y|
 
   BodyState state() const;  ///< state of the body that carries the sensors
-  /// Sets the state of a free robot. Throws InvalidSituation for a robot on joints.
+  /// Throws InvalidSituation for a robot on joints.
   void set_state(const BodyState& state);
-  /// Return angle and angular velocity of the hinge with the given name, for a robot on joints. Throw InvalidSituation
-  /// for an unknown name.
+  /// Throws InvalidSituation for an unknown hinge.
   double joint_rad(const std::string& name) const;
   double joint_rate_rad_s(const std::string& name) const;
   void set_joint(const std::string& name, double angle_rad, double rate_rad_s);
-  /// Advances the trial by one step under gravity, contacts and `wrench`. Throws SimulationFailure like Physics::step.
   void step(const Wrench& wrench = {});
-  /// Returns the contacts at the end of the last step. The time of a contact is the time of the state, rounded to
-  /// nanoseconds.
   std::vector<ContactTruth> contacts() const;
 
  private:

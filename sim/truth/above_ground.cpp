@@ -15,7 +15,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Terrain is a static height field of the world.
 struct Terrain {
   engine::Field field;
   Eigen::Isometry3d T_WF;
@@ -36,7 +35,6 @@ std::vector<Terrain> terrains(const engine::World& world) {
   return found;
 }
 
-/// Spell is a time interval below the ground.
 struct Spell {
   std::size_t steps = 0;
   double deepest_m = 0.0;

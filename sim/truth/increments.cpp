@@ -7,7 +7,6 @@ namespace tumble::sim {
 
 namespace {
 
-/// Returns the rotation vector of a unit quaternion. The rotation vector is also exact for small angles.
 Eigen::Vector3d log_rotation(Eigen::Quaterniond q) {
   if (q.w() < 0.0) q.coeffs() = -q.coeffs();
   const double sine = q.vec().norm();

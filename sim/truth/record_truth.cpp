@@ -15,8 +15,7 @@ constexpr double kSettle_s = 1.0;
 constexpr double kRestSpeed_m_s = 0.005;
 constexpr double kLeastDistance_m = 0.05;
 
-/// Lets the robot settle into its contacts under gravity. An artificial drag, which ends before the recording starts,
-/// damps the motion.
+/// An artificial drag, which ends before the recording starts, damps the settling motion.
 void settle(engine::Physics& physics, const mjModel& model, int body, Motion& motion) {
   BodyState start = motion.start();
   start.time_s = -kSettle_s;
@@ -75,7 +74,7 @@ Truth record_truth(engine::World& world, Motion& motion, double duration_s) {
   if (distance_m < kLeastDistance_m)
     throw SimulationFailure("the robot did not move until the end of the simulation at " + std::to_string(duration_s) +
                             " s");
-  // No step ends at time 0. The robot is then at rest, so the specific force of the first step applies.
+  // No simulation step ends at time 0, when the robot is at rest, so the specific force of the first step applies.
   truth.f_B_m_s2.insert(truth.f_B_m_s2.begin(), truth.f_B_m_s2.front());
   truth.label = label_contacts(truth);
   return truth;

@@ -9,31 +9,26 @@
 
 namespace tumble::sim {
 
-/// Lets the robot settle at the motion's start, then simulates `duration_s`. Records the true motion at every step:
-/// pose, velocity, rate, specific force, contacts and their labels. The sensor parts of Truth stay empty. Throws
-/// SimulationFailure like Physics::step, and if the robot does not come to rest before the start or never moves.
+/// Throws SimulationFailure like Physics::step, and if the robot does not come to rest before the start or never moves.
 Truth record_truth(engine::World& world, Motion& motion, double duration_s);
 
 /// Returns the mean specific force at a body-fixed point over one step, in the axes of the attitude halfway: R_mid^T
-/// ((v1 - v0)/dt - g). `p_BP_m` is the position of the point in frame B. The sum of R_mid f dt + g dt over all steps is
-/// exactly the change of the point's velocity.
+/// ((v1 - v0)/dt - g). The sum of R_mid f dt + g dt over all steps is exactly the change of the point's velocity.
 Eigen::Vector3d specific_force_B(const BodyState& before, const BodyState& after, const Eigen::Vector3d& p_BP_m,
                                  double gravity_m_s2);
 
-/// Returns the mean rate over one step: the rotation between the two attitudes divided by the time. The mean rate has
-/// no discretisation error if the body turns by less than pi in the step.
+/// The mean rate has no discretisation error if the body turns by less than pi in the step.
 Eigen::Vector3d mean_rate_B(const BodyState& before, const BodyState& after);
 
 /// Labels every physics sample by the contacts within 10 ms, because contacts are interrupted: at low friction, a third
 /// of the steps has no contact.
 /// - `air`: no contact.
 /// - `grip`: mean slip speed, weighted by normal force, below 0.02 m/s.
-/// - `slip`: the rotation is too fast for the motion of the geometric centre. The criterion is the mean of the
-///   rotation's speed minus the centre's speed along the ground, weighted by normal force.
+/// - `slip`: the rotation is too fast for the motion of the geometric centre.
 /// - `slide`: the rotation is too slow for the motion of the geometric centre.
-/// The labels show touchdown 10 ms too early and take-off 10 ms too late. The boundary between slide and grip agrees
-/// with Coulomb's law within 4 ms. For a body other than a sphere, the labels refer to the centre of mass instead of
-/// the geometric centre.
+///
+/// The labels show touchdown 10 ms too early and take-off 10 ms too late. For a body other than a sphere, the labels
+/// refer to the centre of mass instead of the geometric centre.
 std::vector<ContactLabel> label_contacts(const Truth& truth);
 
 }  // namespace tumble::sim

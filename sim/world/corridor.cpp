@@ -30,7 +30,6 @@ constexpr Colour kWall = {0.85f, 0.84f, 0.8f, 1.0f}, kDoor = {0.45f, 0.3f, 0.2f,
                  kFrame = {0.3f, 0.34f, 0.4f, 1.0f}, kPillar = {0.6f, 0.62f, 0.66f, 1.0f},
                  kLocker = {0.35f, 0.5f, 0.55f, 1.0f};
 
-/// Side builds one long wall of the corridor, from back to front. `side` is +1 for the left wall.
 class Side {
  public:
   Side(mjSpec* spec, engine::World& world, const Values& values, int side, Stream& stream)
@@ -64,7 +63,6 @@ class Side {
   }
 
  private:
-  /// Adds a box at the wall, from `near_m` to `far_m` beyond the wall's face.
   void add(const char* what, double from_m, double to_m, double near_m, double far_m, double top_m,
            const Colour& colour) {
     const double half_m = values_.at("half_width_m");
@@ -81,7 +79,6 @@ class Side {
     at_m_ = to_m;
   }
 
-  /// Adds a door between its posts, or a niche. Some niches contain a locker.
   void add_recess(double width_m, double depth_m, const Colour& colour, bool door) {
     const double to_m = at_m_ + width_m, top_m = values_.at("wall_height_m");
     add(door ? "door_" : "niche_", at_m_, to_m, depth_m, depth_m + 2 * kHalfWall_m, top_m, colour);

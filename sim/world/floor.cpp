@@ -69,12 +69,10 @@ void add_patches(mjSpec* spec, engine::World& world, const Values& values) {
   }
 }
 
-/// Adds a horizontal cylinder across the path, whose top is `height_m` above the floor.
 mjsGeom* add_bar(mjSpec* spec, engine::World& world, const std::string& name, const Eigen::Vector2d& at_m,
                  double yaw_rad, double height_m, const Colour& colour) {
   mjsGeom* geom = add_surface(spec, world, name, mjGEOM_CYLINDER, {at_m.x(), at_m.y(), height_m - kBarRadius_m},
                               {kBarRadius_m, kObstacleHalfWidth_m, 0.0}, 0.0, colour);
-  // Rotates the cylinder's z axis to -y, then by the yaw: q = q_z(yaw) * q_x(90 deg).
   const double half = std::sqrt(0.5), c = std::cos(yaw_rad / 2) * half, s = std::sin(yaw_rad / 2) * half;
   const double q[4] = {c, c, s, s};
   std::copy(q, q + 4, geom->quat);

@@ -13,30 +13,23 @@ namespace tumble::sim {
 
 using Colour = std::array<float, 4>;
 
-/// Adds a static geom that a robot touches and a lidar sees, and registers it as a surface of `world`. `size_m` is
-/// MuJoCo's size for the geom type (half widths, radius and half height); `yaw_rad` is about z. The caller may set
-/// further properties of the returned geom.
+/// `size_m` is MuJoCo's size for the geom type (half widths, radius and half height); `yaw_rad` is about z.
 mjsGeom* add_surface(mjSpec* spec, engine::World& world, const std::string& name, mjtGeom type,
                      const Eigen::Vector3d& position_W_m, const Eigen::Vector3d& size_m, double yaw_rad,
                      const Colour& colour);
 
-/// HeightGrid contains heights over a rectangle centred on the origin: `rows` nodes along y by `columns` along x, row
-/// by row.
 struct HeightGrid {
   int rows, columns;
   double half_x_m, half_y_m;
   std::span<const double> heights_m;  ///< rows * columns values
 };
 
-/// Adds a height field as the surface `name`. The ground is solid down to `common_position_m` below the lowest node.
 /// MuJoCo requires a height field with some relief, so its height range is at least `least_span_m`.
 mjsGeom* add_height_field(mjSpec* spec, engine::World& world, const std::string& name, const HeightGrid& grid,
                           double common_position_m, double least_span_m, const Colour& colour);
 
-/// Adds a flat mark on the floor for pictures only. The mark has no contact, and is not a surface.
 void add_mark(mjSpec* spec, const engine::FrictionPatch& patch, const Colour& colour);
 
-/// Adds the sun, and the sky of pictures.
 void add_daylight(mjSpec* spec);
 
 }  // namespace tumble::sim

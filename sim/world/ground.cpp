@@ -45,7 +45,6 @@ void set_ground_contact(mjsGeom* geom, const Values& values) {
   geom->condim = 4;
   geom->friction[0] = values.at("friction");
   geom->friction[1] = values.at("spin_friction_m");
-  // Weight of the ground when MuJoCo mixes the softness of two geoms: zero for hard ground, dominant for soft ground.
   geom->solmix = soft_s > 0.0 ? 1e6 : 0.0;
   if (soft_s <= 0.0) return;
   geom->solref[0] = soft_s;

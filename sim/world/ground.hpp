@@ -9,7 +9,6 @@
 
 namespace tumble::sim {
 
-/// kGroundParameters lists the parameters of the ground on which a sphere rolls.
 inline constexpr std::array kGroundParameters = {
     Parameter{"friction", 0.6, 0.0, 2.0, "1", "sliding friction coefficient of the floor outside the patches"},
     Parameter{"spin_friction_m", 0.0005, 0.0, 0.1, "m",
@@ -25,14 +24,11 @@ inline constexpr std::array kGroundParameters = {
               "longest wavelength of the unevenness; the height of a wave is proportional to its wavelength"},
 };
 
-/// Sets friction and softness of the ground geom. MuJoCo uses the larger friction of two touching geoms, and the sphere
-/// has no friction. A contact has the softness of the robot on hard ground, and the softness of the ground on soft
-/// ground.
+/// MuJoCo uses the larger friction of two touching geoms, and the sphere has no friction.
 void set_ground_contact(mjsGeom* geom, const Values& values);
 
-/// Adds the surface "floor" over |x| <= half_x_m, |y| <= half_y_m. The floor is a plane at height 0, or a height field
-/// (nodes 5 cm apart) if it is rough or has a `profile_m` (height over x, y; may be empty). The unevenness never rises
-/// above the profile, so that no object starts inside the ground. Returns false if the floor is a plane.
+/// The unevenness never rises above the profile, so that no object starts inside the ground. Returns false if the floor
+/// is a plane.
 bool add_ground(mjSpec* spec, engine::World& world, const Values& values, double half_x_m, double half_y_m,
                 const std::function<double(double, double)>& profile_m, const Colour& colour, Stream& stream);
 

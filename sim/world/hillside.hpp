@@ -8,20 +8,16 @@
 #include "sim/parameters.hpp"
 #include "sim/world/terrain/ground.hpp"
 
-/// hillside.hpp contains common parts of the rig's outdoor worlds: a square of 40 by 40 m whose top is level for x <
-/// kEdge_m, with relief, rocks, trunks and blocks.
 namespace tumble::sim::hillside {
 
 inline constexpr double kHalfExtent_m = 20.0;
-/// The height field has kSide nodes per side, with cells of 20 cm. With cells of 10 cm, a strut would stay wedged for
-/// seconds after an impact has pushed it some centimetres into the ground.
+/// With cells of 10 cm instead of 20 cm, a strut would stay wedged for seconds after an impact has pushed it some
+/// centimetres into the ground.
 inline constexpr int kSide = 201;
 inline constexpr double kEdge_m = -8.0;    ///< x of the upper edge
 inline constexpr double kSetBack_m = 0.8;  ///< distance of the robot's start behind the edge
 inline constexpr double kStart_x_m = kEdge_m - kSetBack_m;
 
-/// kCoverParameters lists the parameters of relief, rocks, trunks and blocks. In the table of a world, the parameters
-/// of the world precede kCoverParameters.
 inline constexpr std::array kCoverParameters = {
     Parameter{"relief_m", 0.12, 0.0, 1.0, "m", "root mean square height of the relief; 0: none"},
     Parameter{"relief_shortest_m", 2.5, 0.5, 20.0, "m", "shortest wavelength of the relief"},
@@ -47,12 +43,8 @@ inline constexpr std::array kCoverParameters = {
 /// Share returns the fraction of the relief's height that applies at a position, within [0, 1].
 using Share = std::function<double(double x_m, double y_m)>;
 
-/// Adds relief and bumps (streams "terrain.relief" and "terrain.bumps"). Relief and bumps fade around the start, so
-/// that the robot can rest there, and according to `share`.
 void roughen(Ground& ground, const Values& values, std::uint64_t seed, const Share& share);
 
-/// Adds the ground, rocks, trunks and blocks to the world, and sets the world's start and extent (streams
-/// "terrain.rocks" and "terrain.trunks"). Rocks are between `rocks_from_x_m` and `rocks_to_x_m` along the fall line.
 void cover(mjSpec* spec, engine::World& world, const Ground& ground, const Values& values, std::uint64_t seed,
            double rocks_from_x_m, double rocks_to_x_m);
 

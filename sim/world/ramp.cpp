@@ -23,7 +23,6 @@ constexpr std::array kRampParameters = joined(joined(kGroundParameters, kRoomPar
 constexpr double kHalfWidth_m = 1.5;
 constexpr double kHalfThickness_m = 0.15;
 
-/// Adds a slab whose upper face extends from (from_x, from_z) to (to_x, to_z) in the plane y = 0.
 void add_slab(mjSpec* spec, engine::World& world, const Values& values, const std::string& name,
               const Eigen::Vector2d& from_m, const Eigen::Vector2d& to_m) {
   const Eigen::Vector2d along = (to_m - from_m).normalized();

@@ -8,7 +8,6 @@
 
 namespace tumble::sim {
 
-/// kRoomParameters lists the parameters of the square room around a level floor. The room gives the lidar features.
 inline constexpr std::array kRoomParameters = {
     Parameter{"room_half_m", 5.0, 2.5, 30.0, "m", "half width of the square room"},
     Parameter{"wall_height_m", 2.5, 0.2, 10.0, "m", "height of the four walls"},
@@ -20,13 +19,11 @@ inline constexpr std::array kRoomParameters = {
     Parameter{"clear_radius_m", 2.4, 0.5, 20.0, "m", "minimum distance of pillars and boxes from the middle"},
 };
 
-/// Adds walls, ceiling, pillars, boxes and cupboards, and sets the world's extent. Random numbers come from `stream`.
 void add_room(mjSpec* spec, engine::World& world, const Values& values, Stream& stream);
 
-/// Adds a ceiling at `height_m` that is transparent in pictures.
 void add_ceiling(mjSpec* spec, engine::World& world, double half_x_m, double half_y_m, double height_m);
 
-/// kUnseenInPictures is the group of geoms that a lidar sees and pictures omit.
+/// Group of geoms that a lidar sees and pictures omit
 inline constexpr int kUnseenInPictures = 3;
 
 }  // namespace tumble::sim

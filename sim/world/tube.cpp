@@ -31,7 +31,6 @@ constexpr std::array kTubeParameters = joined(kGroundParameters, kOwnTubeParamet
 constexpr Colour kRock = {0.42f, 0.36f, 0.33f, 1.0f};
 constexpr double kOver_m = 0.5;  // the ground extends beyond the walls, so that there is no gap
 
-/// Returns the y coordinate of the tube's middle line at `x_m`.
 double middle_m(const Values& values, double x_m) {
   return values.at("bend_m") * std::sin(2.0 * std::numbers::pi * x_m / values.at("bend_length_m"));
 }
@@ -41,8 +40,8 @@ double ground_m(const Values& values, double x_m, double y_m) {
   return values.at("gutter_m") * u * u;
 }
 
-/// Adds half of the shell: rings along x, from the foot of one wall to the crown. The shell has no contacts, because
-/// MuJoCo would use the convex hull of its mesh. The ground and the ends keep the robot inside.
+/// The shell of the tube has no contacts, because MuJoCo would use the convex hull of its mesh; the ground and the ends
+/// keep the robot inside.
 void add_shell(mjSpec* spec, engine::World& world, const Values& values, int side, const Relief& rough) {
   constexpr double kRing_m = 0.1;
   constexpr int kSteps = 28;
@@ -53,7 +52,7 @@ void add_shell(mjSpec* spec, engine::World& world, const Values& values, int sid
     const double x_m = values.at("length_m") * (static_cast<double>(ring) / rings - 0.5);
     for (int step = 0; step <= kSteps; ++step) {
       const double angle = -kBelow_rad + (std::numbers::pi / 2 + kBelow_rad) * step / kSteps;
-      // Second coordinate of the unevenness: the arc length from the crown, where both halves meet.
+      // The coordinate across the tube is the arc length from the crown, where both halves meet.
       const double arc_m = side * (std::numbers::pi / 2 - angle) * values.at("half_width_m");
       const double scale = 1.0 + rough.height_m(x_m, arc_m) / values.at("half_width_m");
       vertices.push_back(static_cast<float>(x_m));
@@ -88,7 +87,6 @@ void add_shell(mjSpec* spec, engine::World& world, const Values& values, int sid
 void add_ends(mjSpec* spec, engine::World& world, const Values& values, double half_y_m) {
   const double half_height_m = 0.75 * values.at("height_m"), x_m = values.at("length_m") / 2;
   for (const int sign : {1, -1}) {
-    // The box at the end of the tube closes it, and is slightly rotated like debris.
     add_surface(spec, world, sign > 0 ? "end_front" : "end_back", mjGEOM_BOX, {sign * (x_m + 0.05), 0, half_height_m},
                 {0.2, half_y_m, half_height_m}, 0.1, kRock);
   }

@@ -95,7 +95,7 @@ TEST(Compare, RefusesWithOneLine) {
       {{"--margin", "0.1"}, "no metric is named; add --metric"},
       {{"--metric", "ate"}, "no metric 'ate'"},
       {{"--risk", "2"}, "must be from"},
-      {{"--method", "raw"}, "no draw of this database has results of two of the named methods"}};
+      {{"--method", "raw"}, "no simulated run of this database has results of two of the named methods"}};
   for (const auto& [words, said] : wrongs) {
     std::vector<std::string> arguments = {"compare", database};
     arguments.insert(arguments.end(), words.begin(), words.end());

@@ -138,7 +138,7 @@ TEST(Triage, OfASuiteSaysWhichInputMattersMost) {
                                    "rate_error_free_median_rad_s", "--limit", "0.0001", "--jobs", "2", "--json"});
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_THAT(ended.err, HasSubstr("gyro_exact"));
-  EXPECT_THAT(ended.err, HasSubstr("has the strongest influence: its truth cures 2 of 2 failures"));
+  EXPECT_THAT(ended.err, HasSubstr("has the strongest influence: its true value prevents 2 of 2 failures"));
   const json triage = json_of(ended);
   EXPECT_EQ(triage["draws"].size(), 2u);
   EXPECT_EQ(triage["inputs"][0]["share_cured"]["value"], 1.0);

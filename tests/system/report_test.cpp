@@ -91,7 +91,7 @@ TEST(Report, IsAFunctionOfWhatASweepHasLeft) {
   EXPECT_THAT(own_part(page), HasSubstr("tumble sweep roll --seeds 1..2 --method rate/raw --method rolling --db "))
       << "it says what makes them";
   EXPECT_THAT(own_part(page), HasSubstr("r.db --examples 3")) << "so few draws get none unless told";
-  EXPECT_THAT(ended.err, HasSubstr("no pictures of single draws"));
+  EXPECT_THAT(ended.err, HasSubstr("no pictures of single simulated runs"));
 
   // results of another build would reject a sweep of this build: the page names the other build instead
   {
@@ -117,10 +117,10 @@ TEST(Report, IsAFunctionOfWhatASweepHasLeft) {
   ended = run_shortened(sweep_arguments(database, "1..2", "1"));
   ASSERT_EQ(ended.status, 0) << ended.err;
   EXPECT_EQ(json_of(ended)["outcomes"], 0);
-  EXPECT_THAT(ended.err, HasSubstr("runs this draw again to create its pictures"));
+  EXPECT_THAT(ended.err, HasSubstr("simulates this run again to create its pictures"));
   const std::string left = read_file(list);
   ended = run_shortened(sweep_arguments(database, "1..2", "1"));
-  EXPECT_THAT(ended.err, Not(HasSubstr("runs this draw again"))) << "they are there already";
+  EXPECT_THAT(ended.err, Not(HasSubstr("simulates this run again"))) << "they are there already";
   EXPECT_EQ(read_file(list), left);
 
   ASSERT_EQ(run_shortened(report).status, 0);
@@ -221,7 +221,7 @@ TEST(Sweep, StoppedAtItsPicturesSaysSoAndLeavesNone) {
   const Ended stopped = running.wait();
   EXPECT_EQ(stopped.status, 1) << stopped.err;
   EXPECT_EQ(json_of(stopped)["draws_done"], 2);
-  EXPECT_THAT(stopped.err, HasSubstr("stopped: all draws are stored, but their pictures are missing"));
+  EXPECT_THAT(stopped.err, HasSubstr("stopped: all simulated runs are stored, but their pictures are missing"));
   EXPECT_FALSE(fs::exists(files)) << "nothing came into it";
 }
 
@@ -232,7 +232,7 @@ TEST(Sweep, KeepsItsTableWhenPicturesCannotBeLeft) {
   const Ended ended = run_shortened(sweep_arguments(database, "1..2", "1"));
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_EQ(json_of(ended)["draws_done"], 2);
-  EXPECT_THAT(ended.err, HasSubstr("tumble: the pictures of single draws could not be created: "));
+  EXPECT_THAT(ended.err, HasSubstr("tumble: the pictures of single simulated runs could not be created: "));
 }
 
 TEST(Report, AFullDiskLeavesNeitherPageNorBadge) {

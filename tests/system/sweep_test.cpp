@@ -53,7 +53,7 @@ TEST(Sweep, InterruptedKeepsWhatIsDoneAndGoesOn) {
   const Ended stopped = running.wait();
   EXPECT_EQ(stopped.status, 1) << stopped.err;
   EXPECT_THAT(stopped.err, HasSubstr("stopped: "));
-  EXPECT_THAT(stopped.err, HasSubstr(" of 500 draws are stored; run again to continue"));
+  EXPECT_THAT(stopped.err, HasSubstr(" of 500 simulated runs are stored; run again to continue"));
 
   const std::int64_t kept = report_json(database)["draws"]["roll"];
   ASSERT_GE(kept, 1);
@@ -88,7 +88,7 @@ TEST(Sweep, ASignalStopsItAndTheLockIsLetGo) {
     if (number == SIGHUP) running.signal(number);
     const Ended stopped = running.wait();
     EXPECT_EQ(stopped.status, 1) << stopped.err;
-    EXPECT_THAT(stopped.err, HasSubstr(" of 500 draws are stored; run again to continue"));
+    EXPECT_THAT(stopped.err, HasSubstr(" of 500 simulated runs are stored; run again to continue"));
     EXPECT_GE(report_json(database)["draws"]["roll"], 1);
     EXPECT_FALSE(fs::exists(lock));
   }
@@ -221,7 +221,7 @@ TEST(Sweep, NamedDrawsAreNoSeedsInARow) {
     const Ended ended = run_shortened(arguments);
     EXPECT_EQ(ended.status, 2) << what;
     EXPECT_THAT(ended.err, HasSubstr(what));
-    EXPECT_THAT(ended.err, HasSubstr("names its draws"));
+    EXPECT_THAT(ended.err, HasSubstr("lists its simulated runs"));
   };
   const std::string database = (folder / "x.db").string();
   refused({"sweep", suite.string(), "--db", database, "--until", "rate/raw:rate/saave:rate_error_clipped_median_rad_s"},
@@ -248,7 +248,7 @@ TEST(Sweep, RefusesWhatItCannotKeepOrAsk) {
   refused({"--until", "rate/raw:rate/tumble"}, "write A:B:METRIC");
   refused({"--until", "rate/raw:rate/tumble:rate_error_clipped_median_rad_s"}, "method of the suite");
   refused({"--until", "rate/raw:rate/raw:rate_error_clipped_median_rad_s", "--shard", "1/2"},
-          "a shard contains only a part of the draws");
+          "a shard contains only a part of the simulated runs");
   // the sweep detects this error after opening the database: a database that the sweep made is removed
   refused({"--again", "ok"}, "runs with status 'ok' cannot be repeated");
   refused({}, "split the range of seeds into parts", "1..20000000");

@@ -120,7 +120,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"a point beyond its bound", {"run", "hill", "--seed", "1", "--vary", "world.rock_count=-1"}, "within"},
         Wrong{"triage of one draw by results",
               {"triage", "hill", "--seed", "1", "--method", "rate/raw", "--db", "x.db"},
-              "single draw"},
+              "single simulated run"},
         Wrong{"a case's gate against another", {"gate", "regressions", "--against", "x.yaml"}, "its own expectations"},
         Wrong{"triage of many methods", {"triage", "hill", "--seed", "1", "--method", "tumble"}, "rate/tumble"},
         Wrong{"metric of a triage",

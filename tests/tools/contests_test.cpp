@@ -101,7 +101,7 @@ TEST(Contests, OfFewDrawsSayThatTheIntervalAloneSpeaks) {
   EXPECT_FALSE(all[0].won() || all[0].lost()) << "the better of two, by an interval of its own";
   EXPECT_EQ(tally(all).open, 1u);
   EXPECT_EQ(tally_text(tally(all)),
-            "tumble is ahead of the baseline in 1 of 1 contest, but there are too few draws for certainty");
+            "tumble is ahead of the baseline in 1 of 1 contest, but there are too few simulated runs for certainty");
   EXPECT_THAT(certainty_text(all[0], 2), HasSubstr("not significant after correction"));
 }
 
@@ -112,7 +112,7 @@ TEST(Contests, OfThreeDrawsThatAllSayTheSameIsAheadAndUnsure) {
   ASSERT_EQ(all.size(), 1u);
   EXPECT_EQ(all[0].certainty, Certainty::open);
   EXPECT_EQ(tally_text(tally(all)),
-            "saave is ahead of the baseline in 1 of 1 contest, but there are too few draws for certainty");
+            "saave is ahead of the baseline in 1 of 1 contest, but there are too few simulated runs for certainty");
   const std::vector<ContestResult> worse =
       contests_of(summary_of({method("raw", {1, 1, 1}), method("saave", {2, 3, 4})}));
   EXPECT_THAT(tally_text(tally(worse)), HasSubstr("No method is significantly better"));
@@ -126,9 +126,10 @@ TEST(Contests, NameTheOneThatIsAheadAndNotOneOfSeveral) {
     return contests_of(summary_of({method("raw", {2, 3, 4}), method(name, {1, 1, 1})})).front();
   };
   EXPECT_EQ(tally_text(tally({ahead("tumble"), ahead("tumble")})),
-            "tumble is ahead of the baseline in 2 of 2 contests, but there are too few draws for certainty");
+            "tumble is ahead of the baseline in 2 of 2 contests, but there are too few simulated runs for certainty");
   EXPECT_EQ(tally_text(tally({ahead("tumble"), ahead("saave"), ahead("tumble")})),
-            "The best methods are ahead of the baseline in 3 of 3 contests, but there are too few draws for certainty");
+            "The best methods are ahead of the baseline in 3 of 3 contests, but there are too few simulated runs for "
+            "certainty");
 }
 
 TEST(Contests, SayNoShareWhereHalfOfTheBaselineFailed) {

@@ -57,7 +57,7 @@ TEST(MotionSpreads, PoolsTheClippedSamplesOfAllDraws) {
   const std::vector<Spread> spreads = motion_spreads(draws());
   const auto pooled = std::find_if(spreads.begin(), spreads.end(), [](const Spread& spread) {
     return spread.scenario == "hill" &&
-           spread.quantity == "share of the clipped samples with at least two clipped axes, over all draws";
+           spread.quantity == "share of the clipped samples with at least two clipped axes, over all simulated runs";
   });
   ASSERT_NE(pooled, spreads.end());
   // there are 10, 20, 30 and 40 samples with shares of 0.2, 0.3, 0.4 and 0.5
@@ -82,10 +82,10 @@ TEST(DistributionFigures, SayWhereTheyAreThinned) {
   std::vector<scenarios::DrawValues> many;
   for (std::uint64_t seed = 1; seed <= kBoxPoints; ++seed)
     many.push_back({"hill", seed, {{"motion_peak_rate_rad_s", 10.0}}});
-  EXPECT_THAT(distribution_figures(motion_spreads(many)).at(0).caption, Not(HasSubstr("more draws")));
+  EXPECT_THAT(distribution_figures(motion_spreads(many)).at(0).caption, Not(HasSubstr("more simulated runs")));
   many.push_back({"hill", kBoxPoints + 1, {{"motion_peak_rate_rad_s", 10.0}}});
   EXPECT_THAT(distribution_figures(motion_spreads(many)).at(0).caption,
-              HasSubstr("For scenarios with more draws, the plot shows only 1000"));
+              HasSubstr("For scenarios with more simulated runs, the plot shows only 1000"));
 }
 
 TEST(DistributionsHtml, ShowsThePublishedFiguresAndIsEmptyWithoutDraws) {

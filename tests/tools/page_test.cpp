@@ -127,7 +127,7 @@ TEST(Page, SaysWhichOfTheTwoFailed) {
   raw.seeds.clear();
   raw.values.clear();
   content.comparison = scenarios::compare(content.summary, {});
-  EXPECT_THAT(page_html(content, ""), HasSubstr("raw failed on at least half of the draws"));
+  EXPECT_THAT(page_html(content, ""), HasSubstr("raw failed on at least half of the simulated runs"));
   EXPECT_THAT(page_html(content, ""), Not(HasSubstr("saave failed")));
 }
 
@@ -211,10 +211,10 @@ TEST(Page, DrawsAScoreOverTheRangeOfWhatBreaksIt) {
 
 TEST(Page, SaysHowManyDrawsMoreTellWhatBreaksAMethod) {
   EXPECT_EQ(draws_needed_text({{"hill", 24}, {"roll", 500}}), "");
-  EXPECT_EQ(
-      draws_needed_text({{"hill", 5}, {"roll", 500}, {"slip", 23}}),
-      "A scenario needs 12 draws to compute the influence of its parameters, and 24 draws for a plot of the score over "
-      "a parameter. These scenarios need more draws: hill 7, and 19 for the plot; slip 1 for the plot. ");
+  EXPECT_EQ(draws_needed_text({{"hill", 5}, {"roll", 500}, {"slip", 23}}),
+            "A scenario needs 12 simulated runs to compute the influence of its parameters, and 24 simulated runs for "
+            "a plot of the score over a parameter. These scenarios need more runs: hill 7, and 19 for the plot; slip 1 "
+            "for the plot. ");
 }
 
 TEST(Page, MovesByItselfAndStandsStillForWhoeverAsks) {

@@ -17,8 +17,6 @@ using scenarios::Kind;
 
 constexpr std::size_t kPathPointsMax = 600;
 
-/// Returns the index of the gyro axis with the most clipped samples according to the estimates; -1 if no sample is
-/// clipped.
 int most_clipped_axis(const std::vector<RateState>& rates) {
   std::array<int, 3> count = {0, 0, 0};
   for (const RateState& rate : rates) {
@@ -140,7 +138,6 @@ Plot rate_plot(const scenarios::RunResult& run) {
     plot.lines.push_back(estimated_rate(run.methods[i]->info, run.estimates[i].rates, axis, span));
     plot.lines.back().colour = colour++;
   }
-  // Without a baseline of kind rate, the recorded gyro shows the clipping.
   if (!gyro) {
     plot.lines.push_back(sampled_rate("gyro reading", 1.6, imu.time_ns, imu.gyro_rad_s, axis, span));
     plot.lines.back().colour = colour;

@@ -9,15 +9,11 @@
 #include "tools/examples/example.hpp"
 #include "tools/pictures/paths.hpp"
 
-/// draw_plots.hpp plots one simulated run of any robot.
 namespace tumble::tools {
 
-/// Returns the indices of the methods to plot, in increasing order. If there are more methods than colours, methods
-/// marked `first` have priority.
 std::vector<std::size_t> drawn_of(const std::vector<bool>& first);
 
-/// RunPaths contains the estimated paths in the pictures of a run. Paths of methods with truth would hide the true path
-/// and are omitted. If there are more paths than colours, the baseline and the methods of tumble have priority.
+/// Paths of methods with access to the truth would hide the true path and are omitted.
 struct RunPaths {
   std::vector<std::string> methods;  ///< for example "slam/icp"
   std::vector<Path> paths;           ///< parallel to `methods`
@@ -26,14 +22,11 @@ struct RunPaths {
 };
 RunPaths paths_of(const scenarios::RunResult& run);
 
-/// Rounds a number to five significant digits: finer than a plot can show, and the page stays small.
 double significant(double value);
 
-/// Plots the rate about the sensor axis that clips most during motion: the truth, the gyro and each rate method.
 /// Without clipped samples, the plot has no lines.
 Plot rate_plot(const scenarios::RunResult& run);
 
-/// Plots the true path and each estimated path from above, with equal scales on both axes.
 Plot path_plot(const scenarios::RunResult& run, const RunPaths& paths);
 
 }  // namespace tumble::tools

@@ -7,14 +7,13 @@
 #include <utility>
 #include <vector>
 
-/// An example is one simulated run with pictures and plots. A sweep (many simulated runs) creates examples next to its
-/// results database, and the report displays them.
+/// An example is one simulated run with pictures and plots, which a sweep (many simulated runs) creates next to its
+/// results database.
 namespace tumble::tools {
 
-/// Colour index of the truth; other indices select the colour of a method (pictures/colours.hpp).
 inline constexpr int kTruthColour = -1;
 
-/// PlotLine is one line of a plot. `x` and `y` are parallel; NaN marks a gap.
+/// `x` and `y` are parallel; NaN marks a gap in the line.
 struct PlotLine {
   std::string name;
   int colour = kTruthColour;
@@ -59,25 +58,20 @@ struct Example {
   std::string replay_page;           ///< HTML of the replay page; written only
 };
 
-/// Returns the folder for the examples of a results database: FILE.db.files.
 std::filesystem::path examples_folder(const std::filesystem::path& database);
 
-/// Converts the example to JSON. README.md describes the file names of the pictures.
 std::string to_json(const Example& example);
 
-/// Writes the files of an example to FOLDER/.unfinished: pictures SCENARIO-SEED-NAME.png, the animation
-/// SCENARIO-SEED-moving.webp and the replay SCENARIO-SEED-replay.html. `write_examples` later moves them to FOLDER.
-/// Throws BadInput if a file cannot be written.
+/// Writes the pictures, animation and replay of an example to FOLDER/.unfinished; `write_examples` later moves them to
+/// FOLDER. Throws BadInput if a file cannot be written.
 void write_pictures(const std::filesystem::path& folder, const Example& example);
 
-/// Removes the files in FOLDER/.unfinished.
 void discard_unfinished(const std::filesystem::path& folder);
 
-/// Returns the file name of the replay of an example.
 std::string replay_file(const Example& example);
 
-/// Writes the list of examples, from their JSON texts, and moves their files from FOLDER/.unfinished to FOLDER. Then
-/// removes files that only the previous list names. Throws BadInput if a file cannot be written.
+/// Writes the list of examples, and moves their files from FOLDER/.unfinished to FOLDER. Files that only the previous
+/// list names are removed. Throws BadInput if a file cannot be written.
 void write_examples(const std::filesystem::path& folder, const std::vector<std::string>& examples);
 
 enum class Pictures { read, left_out };
@@ -85,12 +79,10 @@ struct FoundExamples {
   std::vector<Example> examples;        ///< in the order of the list
   std::vector<std::string> unreadable;  ///< path and reason for each unreadable part of the list
 };
-/// Reads the examples of a folder; empty if the folder has no list. An unreadable example does not affect other
-/// examples. Errors are a list with a wrong format or without its end, a missing picture, or a file name outside the
-/// folder.
+/// An unreadable example does not affect other examples.
 FoundExamples read_examples(const std::filesystem::path& folder, Pictures pictures);
 
-/// Copies a damaged list to examples.json.damaged, so that the next list does not overwrite it. Returns the path of the
+/// Copies a damaged list to examples.json.damaged, so that the next list does not overwrite it; returns the path of the
 /// copy.
 std::filesystem::path set_damaged_aside(const std::filesystem::path& folder);
 

@@ -32,7 +32,6 @@ std::vector<double> read_numbers(const nlohmann::json& values) {
 
 }  // namespace
 
-// nlohmann::json finds this overload by argument-dependent lookup.
 static void to_json(nlohmann::json& out, const PlotLine& line) {
   out = {{"name", line.name},     {"colour", line.colour}, {"width", line.width}, {"dotted", line.dotted},
          {"hidden", line.hidden}, {"x", numbers(line.x)},  {"y", numbers(line.y)}};
@@ -64,7 +63,7 @@ fs::path list_file(const fs::path& folder) {
   return folder / "examples.json";
 }
 
-/// Replaces "/" in the scenario's name, so that the file stays in its folder.
+/// The "/" in the scenario's name is replaced, so that the file stays in its folder.
 std::string file_of(const Example& example, const std::string& ending) {
   std::string name = example.scenario + "-" + std::to_string(example.seed) + "-" + ending;
   for (char& c : name) {
@@ -77,7 +76,6 @@ std::string picture_file(const Example& example, const ExamplePicture& picture) 
   return file_of(example, picture.name + ".png");
 }
 
-/// Folder for files that no list names yet.
 fs::path unfinished(const fs::path& folder) {
   return folder / ".unfinished";
 }
@@ -92,7 +90,7 @@ std::vector<std::uint8_t> read_bytes(const fs::path& path) {
   }
 }
 
-/// Returns a file name from the list. The list may be untrusted, so only files in its folder are read or removed.
+/// The list of examples may be untrusted, so only files in its folder are read or removed.
 std::string file_name(const std::string& name, const char* ending, const char* what) {
   if (name.empty() || fs::path(name).filename() != name || name.starts_with('.') || !name.ends_with(ending))
     throw BadInput(fmt::format("'{}' must be the name of a {} in the same folder", name, what));
@@ -103,7 +101,6 @@ std::string file_name(const json& picture) {
   return file_name(picture.at("file"), ".png", "picture");
 }
 
-/// Returns the file name of the replay; empty without a replay, for example in a list of an earlier version.
 std::string replay_name(const json& example) {
   const std::string name = example.value("replay", "");
   return name.empty() ? name : file_name(name, ".html", "replay");
@@ -111,7 +108,6 @@ std::string replay_name(const json& example) {
 
 constexpr const char* kMovingEnding = "moving.webp";
 
-/// Returns the file name of the animation; empty without an animation, for example in a list of an earlier version.
 std::string moving_name(const json& example) {
   if (!example.contains("moving")) return "";
   return file_name(example.at("moving").at("file"), ".webp", "moving picture");
@@ -151,7 +147,6 @@ Example read_example(const fs::path& folder, const json& from, Pictures pictures
   return example;
 }
 
-/// Reads the list of examples; returns null if there is no list.
 json read_list(const fs::path& folder) {
   const fs::path path = list_file(folder);
   std::error_code error;
@@ -162,7 +157,6 @@ json read_list(const fs::path& folder) {
   return list;
 }
 
-/// Returns the complete examples in a truncated list.
 json whole_examples(const fs::path& folder) {
   constexpr int kDepth = 2;  // nesting depth: list, array, example
   json whole = json::array();
@@ -171,7 +165,6 @@ json whole_examples(const fs::path& folder) {
       if (depth == kDepth && event == json::parse_event_t::object_end) whole.push_back(parsed);
       return true;
     };
-    // The JSON is complete, so the list was rejected for its format.
     if (!json::parse(read_bytes(list_file(folder)), keep, false).is_discarded()) return json::array();
   } catch (const BadInput&) {  // the path is a folder
   }
@@ -189,7 +182,6 @@ std::set<std::string> files_of(const json& examples) {
   return files;
 }
 
-/// Returns the files that the list names; empty if the list is damaged, because its copy still names them.
 std::set<std::string> files_before(const fs::path& folder) {
   try {
     const json list = read_list(folder);

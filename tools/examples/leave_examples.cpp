@@ -22,16 +22,14 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kPollMs = 200;
-/// Time limit for simulation and rendering, in addition to the methods, in time limits of one method.
+/// Time limit for simulation and rendering, in addition to the methods, in time limits of one method
 constexpr double kOtherTimeouts = 3.0;
-constexpr const char* kTypical = "The draw with the median score of its scenario";
-constexpr const char* kFailed = "The draw on which most methods failed";
-constexpr const char* kAlsoFailed = "A draw on which methods failed";
+constexpr const char* kTypical = "The simulated run with the median score of its scenario";
+constexpr const char* kFailed = "The simulated run on which most methods failed";
+constexpr const char* kAlsoFailed = "A simulated run on which methods failed";
 
 enum class Extent { whole, of_failure };
 
-/// Making is an example that a process generates. Only the first example has an animation, because a report shows only
-/// one. `text` is the output of the process so far, or the text of an existing example.
 struct Making {
   scenarios::ExampleDraw draw;
   scenarios::Scenario scenario;
@@ -45,7 +43,6 @@ struct Making {
   bool done = false;
 };
 
-/// Returns the methods of this build in the order of the registry, then the external methods of the suite.
 std::vector<scenarios::MethodPointer> methods_of(const std::vector<scenarios::Outcome>& rows,
                                                  const scenarios::Suite& suite) {
   std::vector<scenarios::MethodPointer> all, found;
@@ -62,13 +59,11 @@ std::vector<scenarios::MethodPointer> methods_of(const std::vector<scenarios::Ou
   return found;
 }
 
-/// Returns the rows to show for a run with failures: the failed methods, and tumble's methods of the same kinds.
 std::vector<scenarios::Outcome> rows_of_failure(std::vector<scenarios::Outcome> rows) {
   std::set<scenarios::Kind> kinds;
   for (const scenarios::Outcome& row : rows) {
     if (row.status != scenarios::OutcomeStatus::ok) kinds.insert(row.kind);
   }
-  // In each kind, the method of tumble is called `tumble` (docs/design.md, "Methods and scores").
   std::erase_if(rows, [&](const scenarios::Outcome& row) {
     return row.status == scenarios::OutcomeStatus::ok && (row.method != "tumble" || !kinds.contains(row.kind));
   });
@@ -88,7 +83,6 @@ std::vector<Making> plan(const scenarios::DataRoot& data, const scenarios::Suite
   const auto add = [&](const scenarios::ExampleDraw& draw, const char* choice, Extent extent) {
     if (std::any_of(makings.begin(), makings.end(), [&](const Making& making) { return making.draw == draw; })) return;
     std::vector<scenarios::Outcome> rows = scenarios::rows_to_show(results, draw);
-    // Lidars are simulated only if the sweep simulated them; the digest of the recording then agrees with the rows.
     const bool lidars = std::ranges::any_of(rows, [](const auto& row) { return row.kind != scenarios::Kind::rate; });
     if (extent == Extent::of_failure) rows = rows_of_failure(std::move(rows));
     const auto scenario = std::find_if(all.begin(), all.end(), [&](const auto& s) { return s.name == draw.scenario; });
@@ -113,9 +107,7 @@ std::vector<Making> plan(const scenarios::DataRoot& data, const scenarios::Suite
   return makings;
 }
 
-/// Keeps existing examples that show the rows of the results. Returns the text of examples of scenarios outside the
-/// suite, which come from other sweeps in this database. Reports unreadable examples; those of the suite are generated
-/// again.
+/// Examples of scenarios outside the suite come from other sweeps in this database and are kept.
 std::vector<std::string> keep_known(const scenarios::DataRoot& data, const fs::path& folder,
                                     const scenarios::Suite& suite, const LeaveOptions& options,
                                     std::vector<Making>& makings) {
@@ -144,8 +136,6 @@ std::vector<std::string> keep_known(const scenarios::DataRoot& data, const fs::p
   return others;
 }
 
-/// Generates the example in a separate process, so that a crash affects only this example. Writes the example, or the
-/// reason of the failure, to `fd`.
 void make(const scenarios::DataRoot& data, const fs::path& folder, const Making& making, int fd) {
   try {
     const scenarios::RunResult run =
@@ -165,7 +155,6 @@ class Makers {
   Makers(const scenarios::DataRoot& data, const fs::path& folder, double timeout_s, const LeaveOptions& options)
       : data_(data), folder_(folder), timeout_s_(timeout_s), options_(options) {}
 
-  /// Generates the examples in parallel. Returns false if the generation was stopped.
   bool run(std::vector<Making>& makings) {
     auto next = makings.begin();
     while (true) {
@@ -188,8 +177,8 @@ class Makers {
   };
 
   void start(Making& making) {
-    say(fmt::format("{}, seed {}: the program runs this draw again to create its pictures", making.draw.scenario,
-                    making.draw.seed));
+    say(fmt::format("scenario {}, seed {}: the program simulates this run again to create its pictures",
+                    making.draw.scenario, making.draw.seed));
     const double limit_s = timeout_s_ * (static_cast<double>(making.methods.size()) + kOtherTimeouts);
     try {
       scenarios::Process process([&](int fd) { make(data_, folder_, making, fd); }, true);
@@ -206,7 +195,6 @@ class Makers {
     poll(waiting.data(), waiting.size(), kPollMs);
   }
 
-  /// Reads the output of a worker. Returns true if the worker has ended.
   bool serve(Worker& worker) {
     const bool open = worker.process.read_available(worker.making->text);
     const bool late = open && scenarios::now_s() > worker.deadline_s;
@@ -214,7 +202,7 @@ class Makers {
     if (late) worker.process.kill();
     const scenarios::Process::End end = worker.process.wait();
     worker.making->done = !late && end.normal && worker.making->text.starts_with('{');
-    if (late) worker.making->text = "the run exceeded its time limit";
+    if (late) worker.making->text = "the simulated run exceeded its time limit";
     if (!late && !end.normal) worker.making->text = "its process " + end.describe();
     if (!worker.making->done) say_failed(*worker.making);
     return true;
@@ -225,8 +213,8 @@ class Makers {
   }
 
   void say_failed(const Making& making) const {
-    say(fmt::format("the pictures of {}, seed {} could not be created: {}", making.draw.scenario, making.draw.seed,
-                    making.text));
+    say(fmt::format("the pictures of scenario {}, seed {} could not be created: {}", making.draw.scenario,
+                    making.draw.seed, making.text));
   }
 
   const scenarios::DataRoot& data_;
@@ -236,7 +224,6 @@ class Makers {
   std::list<Worker> workers_;
 };
 
-/// Unfinished removes unfinished files, and then their folder if it is empty.
 class Unfinished {
  public:
   explicit Unfinished(const fs::path& folder) : folder_(folder) { discard_unfinished(folder_); }

@@ -23,7 +23,6 @@ bool is_sphere(const scenarios::RunResult& run) {
   return run.recording.sensors.sphere_radius_m > 0.0;
 }
 
-/// Adds the map of the first method with a map for which `wanted` is true, if there is one.
 void add_map(const scenarios::RunResult& run, const sim::Surface& surface, bool (*wanted)(const scenarios::MethodInfo&),
              std::vector<ErrorMap>& maps) {
   for (std::size_t i = 0; i < run.methods.size(); ++i) {
@@ -36,7 +35,6 @@ void add_map(const scenarios::RunResult& run, const sim::Surface& surface, bool 
   }
 }
 
-/// Adds the maps of the baseline and of tumble's method, next to each other.
 void add_maps(const scenarios::RunResult& run, Example& example) {
   if (!run.surface) return;
   std::vector<ErrorMap> maps;
@@ -60,7 +58,6 @@ void add_maps(const scenarios::RunResult& run, Example& example) {
        sim::png_bytes(map_picture(maps, run.recording.truth, 640, 480))});
 }
 
-/// Length of the animation [s]: long enough to see the robot turn, and a few hundred kB.
 constexpr double kMoving_s = 2.0;
 
 void add_moving(const Scene& scene, Example& example) {
@@ -71,7 +68,7 @@ void add_moving(const Scene& scene, Example& example) {
   options.quality = 45.0f;
   const Span span = liveliest_span(*scene.truth, kMoving_s);
   example.moving = moving_picture(scene, span, options);
-  example.moving_caption = fmt::format("{:.1f} s of the draw at half speed, where the robot turns fastest",
+  example.moving_caption = fmt::format("{:.1f} s of the simulated run at half speed, where the robot turns fastest",
                                        1e-9 * static_cast<double>(span.end_ns - span.begin_ns));
 }
 
@@ -109,7 +106,6 @@ void add_plot(Plot plot, Example& example) {
   if (!plot.lines.empty()) example.plots.push_back(std::move(plot));
 }
 
-/// Sets the fields that every example has, and generates the replay.
 Example replayed(const scenarios::RunResult& run) {
   Example example;
   example.scenario = run.scenario;

@@ -41,8 +41,8 @@ struct ShownPath {
   Path path;
 };
 
-/// Returns the true path, and for each value of MethodInfo::source the path of the first position method without truth;
-/// more paths would hide each other. A path ends where it leaves the surroundings of the truth.
+/// For each value of MethodInfo::source, only the path of the first position method without truth is shown, because
+/// more paths would hide each other.
 std::vector<ShownPath> shown_paths(const scenarios::RunResult& run) {
   const sim::Recording& recording = run.recording;
   std::vector<ShownPath> all = {{"truth", kTruthColour, 3.5, true_path(recording.sensors, recording.truth, 4)}};
@@ -62,7 +62,6 @@ std::size_t stride_of(const Path& path) {
   return path.points_W_m.size() / kPointsMax + 1;
 }
 
-/// Returns the intervals [s] with true slip or slide.
 std::vector<std::pair<double, double>> slip_spells(const sim::Truth& truth) {
   std::vector<std::pair<double, double>> spells;
   std::int64_t begin_ns = -1, end_ns = -1;
@@ -91,7 +90,6 @@ Plot plot_of(const char* name, const char* caption, const char* x_title, const c
   return plot;
 }
 
-/// Returns the longest interval in which the body is at rest.
 std::optional<Span> longest_rest(const scenarios::TruthTrack& track, std::int64_t step_ns) {
   std::optional<Span> longest;
   std::optional<Span> now;
@@ -107,7 +105,6 @@ std::optional<Span> longest_rest(const scenarios::TruthTrack& track, std::int64_
   return longest;
 }
 
-/// Returns the direction in which the unit vectors vary most about their mean.
 Eigen::Vector3d liveliest(const std::vector<std::pair<std::int64_t, Eigen::Vector3d>>& up,
                           const Eigen::Vector3d& mean) {
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
@@ -118,7 +115,6 @@ Eigen::Vector3d liveliest(const std::vector<std::pair<std::int64_t, Eigen::Vecto
   return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(2);
 }
 
-/// Adds the tilt of attitudes relative to their mean [degrees], along the direction in which the tilt varies most.
 void add_tilt(const std::vector<AttitudeState>& attitudes, const Span& span, PlotLine& line) {
   std::vector<std::pair<std::int64_t, Eigen::Vector3d>> up;
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();

@@ -8,9 +8,7 @@ namespace tumble::tools {
 namespace {
 
 // Any two of these colours, and the colour of the truth, differ by at least 30 in CIELAB, for normal vision and for
-// protan, deutan and tritan deficiency. Colours of similar hue therefore differ in lightness. All colours are visible
-// on light and dark pages. The colours were optimised over hues from amber to blue, one colour at a time. The test
-// palette_test.cpp checks the distances.
+// protan, deutan and tritan deficiency (palette_test.cpp).
 constexpr std::array<const char*, kMethodColours> kMethodHex = {"#ffbb22", "#8800ff", "#44ddff",
                                                                 "#bb0000", "#224499", "#bbcc77"};
 constexpr const char* kTruthHex = "#449977";

@@ -21,7 +21,6 @@ constexpr int kScaleHeight = 14, kPictureMargin = 6;
 constexpr double kFocal = 1.7;  ///< focal length in half smaller sides of the picture: about 60 degrees of view
 constexpr double kElevation_rad = 0.6;
 
-/// Camera looks at the middle of the true path, across the direction of travel.
 class Camera {
  public:
   Camera(const sim::Truth& truth, int width, int height) : width_(width), height_(height) {
@@ -40,8 +39,6 @@ class Camera {
     distance_m_ = 1.25 * reach_m_;
   }
 
-  /// Projects a point to column, row and depth. Returns false for points outside the picture, behind the camera, or too
-  /// far from the path.
   bool project(const Vector3f& point_W_m, int& column, int& row, double& depth_m) const {
     const Vector3d from_centre = point_W_m.cast<double>() - centre_;
     if (!(from_centre.norm() <= 1.6 * reach_m_)) return false;
@@ -67,7 +64,6 @@ void set_pixel(sim::Picture& picture, int column, int row, const std::array<std:
   std::copy(colour.begin(), colour.end(), picture.rgb.begin() + static_cast<std::ptrdiff_t>(at));
 }
 
-/// Draws each point as a square of 2 by 2 pixels.
 void draw_map(const ErrorMap& map, const Camera& camera, int left, int width, int height, sim::Picture& picture) {
   std::vector<double> nearest_m(static_cast<std::size_t>(width) * static_cast<std::size_t>(height),
                                 std::numeric_limits<double>::infinity());
@@ -134,7 +130,7 @@ std::array<std::uint8_t, 3> error_colour(float error_m) {
 
 sim::Picture map_picture(const std::vector<ErrorMap>& maps, const sim::Truth& truth, int width, int height) {
   if (maps.empty() || truth.p_WB_m.empty() || width < 1 || height < 1) {
-    throw std::invalid_argument("map_picture needs at least one map, a true path and a positive size");
+    throw std::invalid_argument("a picture of maps needs at least one map, a true path and a positive size");
   }
   sim::Picture picture;
   const auto count = static_cast<int>(maps.size());

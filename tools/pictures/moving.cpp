@@ -15,7 +15,6 @@ namespace {
 /// The camera looks at the robot's mean position over kFollow_s, so it follows without shaking at impacts.
 constexpr double kFollow_s = 0.4;
 constexpr int kFollowSamples = 9;
-/// Duration of the last frame before the animation restarts.
 constexpr int kPause_ms = 700;
 
 double step_ns(const MovingOptions& options) {

@@ -9,7 +9,6 @@
 #include "tools/pictures/paths.hpp"
 #include "tools/pictures/pictures.hpp"
 
-/// moving.hpp renders animations of a motion: the camera follows the robot, and copies of the robot mark its path.
 namespace tumble::tools {
 
 struct MovingOptions {
@@ -18,18 +17,15 @@ struct MovingOptions {
   double speed = 0.5;  ///< seconds of motion per second of playback
   int strobe = 6;      ///< number of robots along the path, equally far apart; 0: none
   float quality = 60.0f;
-  std::function<void(std::size_t frames)> drawn;  ///< called after each frame with the number of finished frames; may
-                                                  ///< be empty
+  std::function<void(std::size_t frames)> drawn;  ///< called after each frame with the number of finished frames
 };
 
 /// Returns the interval of `length_s` in which the body rotates most; the whole moving interval if it is shorter.
 Span liveliest_span(const sim::Truth& truth, double length_s);
 
-/// Returns the number of frames of an animation of the interval `span`.
 std::size_t frame_count(const Span& span, const MovingOptions& options);
 
-/// Renders the interval as an animated WebP that repeats, with `frames_per_s` frames per second of playback. Throws
-/// scenarios::BadInput if the scene has no truth. Equal scenes give equal bytes.
+/// Throws scenarios::BadInput if the scene has no truth.
 std::vector<std::uint8_t> moving_picture(const Scene& scene, const Span& span, const MovingOptions& options);
 
 }  // namespace tumble::tools

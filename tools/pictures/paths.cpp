@@ -14,7 +14,6 @@ using Eigen::Isometry3d;
 using Eigen::Vector3d;
 using scenarios::Frame;
 
-/// Returns the position, in the body frame B, of the point whose path is drawn.
 Vector3d drawn_point_B(const sim::Sensors& sensors, const sim::Truth& truth) {
   return sensors.sphere_radius_m > 0.0 ? truth.p_BG_m : Vector3d::Zero();
 }

@@ -9,26 +9,19 @@
 #include "scenarios/methods/method.hpp"
 #include "sim/recording.hpp"
 
-/// paths.hpp computes paths for pictures and plots.
 namespace tumble::tools {
 
-/// Path is the path of one point of the robot in world axes: the geometric centre of the sphere, or the centre of mass
-/// of another robot.
 struct Path {
   std::vector<std::int64_t> time_ns;
   std::vector<Eigen::Vector3d> points_W_m;
   bool empty() const { return points_W_m.empty(); }
 };
 
-/// Returns the pose of frame A in W, with the attitude normalised.
 Eigen::Isometry3d pose_of(const PoseState& state);
 
-/// Finds the calibrated mounting of the frame of an estimate's poses. Returns false if the recording or its truth lacks
-/// the sensor. `truth` may be null; the sphere's centre is then the origin of the body.
 bool given_mounting(scenarios::Frame frame, const sim::Sensors& sensors, const sim::Truth* truth,
                     Eigen::Isometry3d& T_BA);
 
-/// Returns the true path: every `stride`-th physics sample and the last sample.
 Path true_path(const sim::Sensors& sensors, const sim::Truth& truth, std::size_t stride);
 
 /// Returns the path of an estimate, aligned with the truth by position and yaw at its first pose, like the scores. The
@@ -40,8 +33,8 @@ Path estimated_path(const scenarios::Estimate& estimate, const sim::Sensors& sen
 /// by at least 1 m.
 Path near_truth(const Path& path, const Path& truth);
 
-/// Span contains the first and the last time at which the body moves (faster than 0.1 m/s or 0.2 rad/s). The interval
-/// is widened by `margin_s` on each side and limited to the time of the truth. Without motion, it is the whole truth.
+/// The interval is widened by `margin_s` on each side and limited to the time of the truth. Without motion, the
+/// interval is the whole truth.
 struct Span {
   std::int64_t begin_ns = 0, end_ns = 0;
 };

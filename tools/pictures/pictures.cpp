@@ -16,8 +16,7 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
-/// Shows the robot at the start of a simulated run. A rig is seen from below the slope, along the lane without trunks;
-/// a sphere is shown with the whole room.
+/// A rig is seen from below the slope, along the lane without trunks; a sphere is shown with the whole room.
 void show_start(const Scene& scene, sim::View& view) {
   const Isometry3d T_WB = sim::start_pose(*scene.built);
   view.robots_T_WB = {T_WB};
@@ -44,7 +43,6 @@ sim::Picture scene_picture(const Scene& scene, int robots, int width, int height
     for (const std::int64_t time_ns : instants_along(*scene.truth, robots))
       view.robots_T_WB.push_back(robot_pose(track, time_ns));
     view.azimuth_rad = azimuth_across_rad(*scene.truth);
-    // A path on level ground is best seen from above.
     if (is_sphere(scene)) view.elevation_rad = -0.85;
   } else {
     show_start(scene, view);

@@ -13,7 +13,6 @@
 
 namespace tumble::tools {
 
-/// Scene is the input of pictures. Only `built` is required.
 struct Scene {
   const sim::BuiltSituation* built = nullptr;
   const sim::Sensors* sensors = nullptr;  ///< needed with `truth` to draw the robot along the true path
@@ -21,15 +20,11 @@ struct Scene {
   std::vector<Path> estimates;  ///< estimate i has the colour method_colour(i)
 };
 
-/// Draws the whole path in one picture: the world, `robots` copies of the robot at equal distances along the path, and
-/// the true and estimated paths. Without truth, only the world and the estimated paths.
 sim::Picture scene_picture(const Scene& scene, int robots, int width, int height);
 
-/// Draws `frames` close-ups at equal distances along the path, in rows of `columns` pictures. The scene must have a
-/// truth.
 sim::Picture film_picture(const Scene& scene, int frames, int columns, int width, int height);
 
-/// Writes a PNG file. Throws scenarios::BadInput with the path if the file cannot be written.
+/// Throws scenarios::BadInput with the path if the file cannot be written.
 void save_picture(const std::filesystem::path& path, const sim::Picture& picture);
 
 }  // namespace tumble::tools

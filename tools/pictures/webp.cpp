@@ -20,16 +20,16 @@ struct WebpAnimation::Impl {
 
 namespace {
 
-/// WebpPicture is an RAII wrapper of libwebp's picture.
 class WebpPicture {
  public:
   explicit WebpPicture(const sim::Picture& picture) {
-    if (WebPPictureInit(&picture_) == 0) throw std::runtime_error("the version of libwebp differs from its headers");
+    if (WebPPictureInit(&picture_) == 0)
+      throw std::runtime_error("the loaded library libwebp has another version than the headers of this program");
     picture_.use_argb = 1;
     picture_.width = picture.width;
     picture_.height = picture.height;
     if (WebPPictureImportRGB(&picture_, picture.rgb.data(), 3 * picture.width) == 0)
-      throw std::runtime_error("there is too little memory for a picture");
+      throw std::runtime_error("there is too little memory for a picture of the animation");
   }
   ~WebpPicture() { WebPPictureFree(&picture_); }
   WebpPicture(const WebpPicture&) = delete;
@@ -47,13 +47,14 @@ WebpAnimation::WebpAnimation(int width, int height, float quality) : impl_(std::
     throw std::invalid_argument(fmt::format("a WebP picture has {} by {} pixels; width and height must be from 1 to {}",
                                             width, height, WEBP_MAX_DIMENSION));
   if (!(quality >= 0.0f && quality <= 100.0f))
-    throw std::invalid_argument(fmt::format("quality is {}; it must be within [0, 100]", std::to_string(quality)));
+    throw std::invalid_argument(
+        fmt::format("the quality of a WebP file is {}; it must be within [0, 100]", std::to_string(quality)));
   impl_->width = width;
   impl_->height = height;
   WebPAnimEncoderOptions options;
   if (WebPAnimEncoderOptionsInit(&options) == 0 || WebPConfigInit(&impl_->config) == 0)
-    throw std::runtime_error("the version of libwebp differs from its headers");
-  // One thread and no time limit, so that equal pictures give equal bytes.
+    throw std::runtime_error("the loaded library libwebp has another version than the headers of this program");
+  // Encoding with one thread and no time limit gives equal bytes for equal pictures.
   impl_->config.thread_level = 0;
   impl_->config.quality = quality;
   impl_->encoder = WebPAnimEncoderNew(width, height, &options);

@@ -9,21 +9,19 @@
 
 namespace tumble::tools {
 
-/// WebpAnimation encodes pictures as an animated WebP file that repeats (libwebp, lossy). Equal pictures give equal
-/// bytes.
+/// Equal pictures give equal bytes.
 class WebpAnimation {
  public:
-  /// `width` and `height` of each picture are 1 to 16383 pixels; `quality` is 0 (small file) to 100. Throws
-  /// std::invalid_argument for other values.
+  /// Throws std::invalid_argument unless width and height are 1 to 16383 pixels and `quality` is 0 (small file) to 100.
   WebpAnimation(int width, int height, float quality);
   ~WebpAnimation();
   WebpAnimation(WebpAnimation&&) noexcept;
 
-  /// Appends a picture that is shown for `duration_ms`. Throws std::invalid_argument if its size differs or the
-  /// duration is below 1 ms, and std::runtime_error if compression fails.
+  /// Throws std::invalid_argument if the size of the picture differs or the duration is below 1 ms, and
+  /// std::runtime_error if compression fails.
   void add(const sim::Picture& picture, int duration_ms);
 
-  /// Returns the WebP file; no picture may follow. Throws std::logic_error if there is no picture.
+  /// Throws std::logic_error if the animation has no picture; no picture may follow.
   std::vector<std::uint8_t> bytes();
 
  private:

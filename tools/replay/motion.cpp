@@ -31,8 +31,6 @@ bool is_finite_pose(const PoseState& state) {
   return state.p_WA_m.allFinite() && state.q_WA.coeffs().allFinite() && state.q_WA.norm() > 1e-6;
 }
 
-/// Returns the transform that aligns an estimate with the truth like the scores: in the frame of the estimate, by its
-/// true mounting.
 Isometry3d to_truth(const scenarios::Estimate& estimate, const sim::Truth& truth) {
   const TruthTrack track(truth, estimate.frame);
   for (const PoseState& state : estimate.poses) {

@@ -9,21 +9,19 @@
 #include "scenarios/methods/method.hpp"
 #include "sim/recording.hpp"
 
-/// Motion contains the motion of the body, from the truth or an estimate, in one common world frame.
 namespace tumble::tools {
 
-/// Motion contains poses of the body B in W at increasing times. Positions are interpolated linearly and attitudes by
-/// slerp. The pose is undefined outside the samples, and in gaps longer than half a second or four usual steps.
+/// Motion contains poses of the body B in the world, with positions interpolated linearly and attitudes by slerp. The
+/// pose is undefined outside the samples, and in gaps longer than half a second or four usual steps.
 class Motion {
  public:
   Motion() = default;
-  /// Drops poses that are not finite, not later than the preceding pose, or farther than 10 km from the first.
+  /// Poses that are not finite, not later than the preceding pose, or farther than 10 km from the first are dropped.
   Motion(const std::vector<std::int64_t>& time_ns, const std::vector<Eigen::Isometry3d>& T_WB);
 
   bool empty() const { return time_ns_.empty(); }
   std::int64_t begin_ns() const { return time_ns_.front(); }
   std::int64_t end_ns() const { return time_ns_.back(); }
-  /// Returns the interpolated pose. The cost is O(log N).
   std::optional<Eigen::Isometry3d> at(std::int64_t time_ns) const;
 
  private:
@@ -33,14 +31,10 @@ class Motion {
   std::int64_t gap_ns_ = 0;
 };
 
-/// Samples the truth at times `step_ns` apart. The result is empty if the truth has no positions. Throws BadInput if
-/// the truth is inconsistent.
 Motion true_motion(const sim::Truth& truth, std::int64_t step_ns);
 
-/// Converts an estimate to poses of the body, with the mounting that the estimator received. The motion is aligned with
-/// the truth, like the scores: position and heading at the first pose within the time of the truth. Without a truth
-/// (null), it is aligned with `reference`; without a common time, it is not moved. The result is empty without poses,
-/// or if the recording lacks the sensor of their frame.
+/// The motion is aligned with the truth like the scores, or without a truth (null) with `reference`. The result is
+/// empty without poses, or if the recording lacks the sensor of their frame.
 Motion estimated_motion(const scenarios::Estimate& estimate, const sim::Sensors& sensors, const sim::Truth* truth,
                         const Motion& reference);
 

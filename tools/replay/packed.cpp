@@ -23,7 +23,6 @@ constexpr int kErrorSteps = 254;
 constexpr std::uint8_t kNoError = 255;
 constexpr int kColourLevels = 64;
 
-/// Arrays appends arrays to the bytes, and describes each array in the head.
 class Arrays {
  public:
   template <typename Number>
@@ -53,7 +52,6 @@ std::int16_t whole(double value, double scale) {
   return static_cast<std::int16_t>(std::lround(std::clamp(value / scale, -kWhole, kWhole)));
 }
 
-/// Returns the quantisation step at which the largest value still fits.
 double scale_for(double largest) {
   return std::max(largest, 1e-6) / kWhole;
 }
@@ -81,7 +79,6 @@ void append(const Vector3d& v, double scale, std::vector<std::int16_t>& out) {
   for (int axis = 0; axis < 3; ++axis) out.push_back(whole(v[axis], scale));
 }
 
-/// Returns the origin of the page's positions: the middle of the first path, where float32 is precise.
 Vector3d origin_of(const Replay& replay) {
   for (const ReplayActor& actor : replay.actors) {
     for (const Vector3d& p : actor.track.p_WB_m) {
@@ -91,8 +88,6 @@ Vector3d origin_of(const Replay& replay) {
   return Vector3d::Zero();
 }
 
-/// Packs the parts of a world or a robot under `name`. Vertices are relative to `origin`. Corner indices count within
-/// each part.
 json pack_parts(const std::string& name, const std::vector<sim::MeshPart>& parts, const Vector3d& origin,
                 Arrays& arrays) {
   double largest = 0.0;
@@ -106,9 +101,7 @@ json pack_parts(const std::string& name, const std::vector<sim::MeshPart>& parts
   json list = json::array();
   for (const sim::MeshPart& part : parts) {
     const bool field = part.rows > 1 && part.columns > 1;
-    if (!field && part.vertices_m.size() > 65536)
-      continue;  // corner indices have 16 bits; our models have no larger
-                 // part
+    if (!field && part.vertices_m.size() > 65536) continue;  // corner indices have 16 bits
     for (const Vector3f& vertex : part.vertices_m) append(vertex.cast<double>() - origin, scale, vertices);
     for (const auto& triangle : part.triangles) {
       for (const std::uint32_t corner : triangle) corners.push_back(static_cast<std::uint16_t>(corner));
@@ -182,8 +175,6 @@ json pack_points(const ReplayPoints& points, Arrays& arrays) {
   return {{"shown", points.p_B_m.size()}, {"of", points.of}, {"scale_m", scale}};
 }
 
-/// Returns the scale of the rates of gyro and truth. Estimated rates are limited to twice the largest rate of gyro and
-/// truth.
 double rate_scale(const Replay& replay) {
   double largest = 0.0;
   const auto look = [&](const std::vector<Vector3f>& rates) {
@@ -231,7 +222,6 @@ json pack_strip(const ReplayStrip& strip, double scale, Arrays& arrays) {
           {"contacts_known", strip.contacts_known}};
 }
 
-/// Returns the colours of errors from 0 to kMapErrorMax_m, as in pictures of maps.
 json error_colours() {
   json out = json::array();
   for (int k = 0; k < kColourLevels; ++k) {

@@ -7,7 +7,6 @@
 
 #include "tools/replay/replay.hpp"
 
-/// `packed` converts a replay to the bytes of a page (fields: README.md).
 namespace tumble::tools {
 
 struct PackedReplay {
@@ -15,9 +14,9 @@ struct PackedReplay {
   std::vector<std::uint8_t> bytes;  ///< little endian; each array starts at a multiple of 4
 };
 
-/// Packs a replay as integers with scales. Positions of world and points are int16 (1/32767 of the farthest), attitudes
-/// are int16 (1/32767), and rates are int16. Times are uint32 microseconds, and errors are uint8 (255: unknown).
-/// Positions of tracks are float32, relative to the origin in the head.
+/// Packs a replay as integers with scales: int16 for positions of world and points, attitudes and rates; uint32
+/// microseconds for times; uint8 for errors (255: unknown). Positions of tracks are float32, relative to the origin in
+/// the head.
 PackedReplay packed(const Replay& replay);
 
 }  // namespace tumble::tools

@@ -13,7 +13,7 @@ namespace tumble::tools {
 
 namespace {
 
-/// Replaces each name in double braces in page.html by its text. Inserted texts are not searched.
+/// Each name in double braces in page.html is replaced by its text; inserted texts are not searched.
 std::string filled(std::string_view page, const std::array<std::pair<std::string_view, std::string>, 5>& texts) {
   std::string out;
   for (std::size_t at = 0; at < page.size();) {

@@ -22,7 +22,6 @@ bool is_own(const sim::LidarRecord& lidar, const sim::LidarTruth* truth, std::si
   return lidar.position_L_m[i].norm() < kOwn_m;
 }
 
-/// Return is a lidar return, not from the robot's own body, with its sweep.
 struct Return {
   std::size_t index;
   std::int64_t time_ns;

@@ -13,7 +13,6 @@
 #include "sim/recording.hpp"
 #include "sim/render/world_mesh.hpp"
 
-/// replay.hpp defines the content of a replay, independent of the page and its binary format.
 namespace tumble::tools {
 
 struct ReplayEstimate {
@@ -21,7 +20,7 @@ struct ReplayEstimate {
   const scenarios::Estimate* estimate = nullptr;
 };
 
-/// ReplayInput is the input of a replay. Only the sensors and one motion (truth or estimate) are required.
+/// Only the sensors and one motion (truth or estimate) are required.
 struct ReplayInput {
   std::string title;                                       ///< for example "hill, seed 6"
   std::vector<std::pair<std::string, std::string>> facts;  ///< pairs of name and value
@@ -32,13 +31,11 @@ struct ReplayInput {
   std::vector<ReplayEstimate> estimates;       ///< in the order of their colours
 };
 
-/// Shown states how many items are shown, and how many exist.
 struct Shown {
   std::size_t shown = 0, of = 0;
 };
 
-/// ReplayTrack contains poses of the body at multiples of `Replay::pose_step_ns` from time 0. Unknown positions are not
-/// finite.
+/// Poses of the body at multiples of `Replay::pose_step_ns` from time 0; unknown positions are not finite
 struct ReplayTrack {
   std::vector<Eigen::Vector3d> p_WB_m;
   std::vector<Eigen::Quaterniond> q_WB;
@@ -49,16 +46,13 @@ struct ReplayActor {
   std::string colour;
   bool is_truth = false;
   ReplayTrack track;  ///< empty if the actor has no positions
-  /// Transform from body axes of the estimator's calibration, in which the points are, to the actor's body axes. The
-  /// two axes differ for the truth, which has the true mounting of the lidar.
+  /// Transform from body axes of the estimator's calibration, in which the points are, to the actor's body axes; the
+  /// two axes differ for the truth
   Eigen::Isometry3d T_BB_given = Eigen::Isometry3d::Identity();
-  std::vector<float> error_m;               ///< error of each point as placed by this actor [m]; NaN if unknown; empty
-                                            ///< without a true surface
-  std::vector<Eigen::Vector3f> rate_rad_s;  ///< at the samples of the strip, in axes of the primary IMU; NaN if
-                                            ///< unknown; may be empty
+  std::vector<float> error_m;               ///< [m]; NaN if unknown; empty without a true surface
+  std::vector<Eigen::Vector3f> rate_rad_s;  ///< in axes of the primary IMU; NaN if unknown
 };
 
-/// ReplayPoints contains returns of the first lidar in order of time.
 struct ReplayPoints {
   std::vector<Eigen::Vector3f> p_B_m;  ///< in body axes of the estimator's calibration
   std::vector<std::int64_t> time_ns;
@@ -70,7 +64,6 @@ struct ContactSpan {
   sim::ContactLabel label = sim::ContactLabel::grip;
 };
 
-/// ReplayStrip contains readings of the primary gyro.
 struct ReplayStrip {
   std::vector<std::int64_t> time_ns;
   std::vector<Eigen::Vector3f> gyro_rad_s;
@@ -96,7 +89,6 @@ struct Replay {
   ReplayStrip strip;
 };
 
-/// ReplayLimits contains the maximum sizes of a replay.
 struct ReplayLimits {
   std::size_t bytes = 2'100'000;  ///< size of all arrays; points use the rest
   std::size_t points = 120'000;
@@ -105,9 +97,6 @@ struct ReplayLimits {
   std::size_t triangles = 60'000;  ///< triangles of the world
 };
 
-/// Builds a replay. Throws BadInput if neither the truth nor an estimate has positions, or if truth and sensors
-/// contradict each other. The cost is proportional to the number of points; errors cost some microseconds per point and
-/// actor.
 Replay replay_of(const ReplayInput& input, const ReplayLimits& limits = {});
 
 }  // namespace tumble::tools

@@ -20,7 +20,6 @@ std::vector<std::size_t> shown_methods(const scenarios::RunResult& run) {
   for (std::size_t i = 0; i < run.methods.size() && i < run.estimates.size(); ++i) {
     if (!can_be_shown(run, i)) continue;
     const scenarios::MethodInfo& info = run.methods[i]->info;
-    // In each kind, the method of tumble is called `tumble` (docs/design.md, "Methods and scores").
     const bool leads = info.baseline || info.name == "tumble";
     (leads ? first : run.estimates[i].poses.empty() ? rates : paths).push_back(i);
   }

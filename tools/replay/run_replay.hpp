@@ -9,14 +9,11 @@
 
 namespace tumble::tools {
 
-/// Maximum number of methods in a replay of a run: one per colour.
 inline constexpr std::size_t kRunReplayMethods = kMethodColours;
 
-/// Returns the indices, in increasing order, of the methods that the replay of a run shows: methods without truth that
-/// succeeded with poses or rates. The baseline and `tumble` of each kind have priority, then methods with poses.
+/// The baseline and `tumble` of each kind have priority, then methods with poses.
 std::vector<std::size_t> shown_methods(const scenarios::RunResult& run);
 
-/// Builds the replay of a completed run, with its truth.
 Replay replay_of_run(const scenarios::RunResult& run);
 
 }  // namespace tumble::tools

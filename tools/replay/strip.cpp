@@ -16,7 +16,6 @@ using Eigen::Vector3f;
 
 constexpr std::uint8_t kGyroFlags = 7;
 
-/// Keeps the fastest sample of each group of equal size.
 std::vector<std::size_t> kept_samples(const sim::ImuRecord& imu, std::size_t most) {
   const std::size_t count = std::min(imu.time_ns.size(), imu.gyro_rad_s.size());
   const std::size_t run = most == 0 ? count : (count + most - 1) / most;
@@ -36,7 +35,6 @@ bool truth_tells_clipping(const sim::Sensors& sensors, const sim::Truth* truth) 
   return truth->imus.front().rate_rad_s.size() == sensors.imus.front().time_ns.size();
 }
 
-/// Returns the rate in a sorted list that is nearest in time.
 std::size_t nearest(const std::vector<RateState>& rates, std::int64_t time_ns) {
   const auto after = std::lower_bound(rates.begin(), rates.end(), time_ns,
                                       [](const RateState& rate, std::int64_t t) { return rate.time_ns < t; });
@@ -72,7 +70,7 @@ void mark_clipping(const sim::Sensors& sensors, const sim::Truth* truth, const s
   }
 }
 
-/// For a rig, only contact is shown: slip and slide are defined for spheres.
+/// For a rig, only contact is shown, because slip and slide are defined for spheres.
 std::vector<ContactSpan> contact_spans(const sim::Sensors& sensors, const sim::Truth& truth) {
   std::vector<ContactSpan> spans;
   const auto label_at = [&](std::size_t k) {

@@ -14,8 +14,6 @@ using Eigen::AlignedBox3f;
 using Eigen::Vector3f;
 using sim::MeshPart;
 
-/// Selects nodes at increasing `positions`: all nodes from `low` to `high`; beyond, the step is `coarser` times one
-/// eighth of the distance. The first and the last node are kept.
 std::vector<int> kept_nodes(const std::vector<float>& positions, float low, float high, float coarser) {
   const auto away = [&](float node) { return std::max({0.0f, low - node, node - high}); };
   std::vector<int> kept = {0};
@@ -48,7 +46,6 @@ MeshPart thinned_field(const MeshPart& field, const AlignedBox3f& near, float co
   return out;
 }
 
-/// Reduces the resolution of a height field until it has at most `most` triangles.
 MeshPart fitting_field(const MeshPart& field, const AlignedBox3f& near, std::size_t most) {
   MeshPart out = thinned_field(field, near, 1.0f);
   for (float coarser = 1.5f; triangle_count(out) > most && coarser < 100.0f; coarser *= 1.5f)
@@ -62,7 +59,6 @@ AlignedBox3f box_of(const MeshPart& part) {
   return box;
 }
 
-/// Returns the apparent size of a part as seen from the robot.
 float prominence(const MeshPart& part, const AlignedBox3f& near) {
   const AlignedBox3f box = box_of(part);
   if (box.isEmpty()) return 0.0f;
@@ -89,7 +85,7 @@ std::vector<MeshPart> thinned_world(std::vector<MeshPart> parts, const AlignedBo
     triangles.of += triangle_count(part);
     if (is_field(part)) ++fields;
   }
-  // Three quarters of the triangles are for the ground, which is always visible.
+  // Three quarters of the page's triangles are for the ground, which is always visible.
   std::size_t left = most;
   for (MeshPart& part : parts) {
     if (!is_field(part)) continue;
@@ -140,7 +136,6 @@ std::vector<MeshPart> plain_body(double sphere_radius_m) {
     }
     return {body};
   }
-  // A roof-shaped nose shows the forward direction. Each face has its own vertices, so edges are visible.
   const Vector3f corners[] = {{-0.15f, -0.1f, -0.05f}, {0.1f, -0.1f, -0.05f},  {0.1f, 0.1f, -0.05f},
                               {-0.15f, 0.1f, -0.05f},  {-0.15f, -0.1f, 0.05f}, {0.1f, -0.1f, 0.05f},
                               {0.1f, 0.1f, 0.05f},     {-0.15f, 0.1f, 0.05f},  {0.18f, 0.0f, -0.05f},

@@ -6,20 +6,17 @@
 
 #include "tools/replay/replay.hpp"
 
-/// world.hpp reduces the world of a replay to a size that fits the page.
 namespace tumble::tools {
 
-/// Counts the triangles of a part, including those of a height field's cells.
 std::size_t triangle_count(const sim::MeshPart& part);
 
-/// Reduces `parts` to about `most` triangles. A height field keeps every node in the box `near`; outside, the step
-/// between nodes is one eighth of their distance from the box. Of the other parts, those with the largest apparent size
-/// are kept. `triangles` receives the kept and the total number.
+/// A height field keeps every node in the box `near`; outside, the step between nodes is one eighth of their distance
+/// from the box. Of the other parts, those with the largest apparent size are kept.
 std::vector<sim::MeshPart> thinned_world(std::vector<sim::MeshPart> parts, const Eigen::AlignedBox3f& near,
                                          std::size_t most, Shown& triangles);
 
-/// Returns a generic body for a recording without a known robot. The body is a sphere of this radius, or a box of 0.3 m
-/// by 0.2 m by 0.1 m with a nose along x.
+/// A recording without a known robot shows a sphere of this radius, or a box of 0.3 m by 0.2 m by 0.1 m with a nose
+/// along x.
 std::vector<sim::MeshPart> plain_body(double sphere_radius_m);
 
 }  // namespace tumble::tools

@@ -16,7 +16,6 @@ namespace {
 
 constexpr int kHeight_px = 20, kPad_px = 7;
 
-/// Returns the width of a text in 11 px Verdana. The SVG attribute `textLength` fits other fonts to this width.
 int width_px(const std::string& text) {
   return static_cast<int>(std::lround(6.6 * static_cast<double>(character_count(text))));
 }

@@ -27,7 +27,6 @@ bool is_of(const MetricComparison& row, const Section& section) {
   return row.contest.scenario == section.scenario && row.contest.kind == section.kind;
 }
 
-/// Returns the rows of the first headline metric that any method of the section has.
 std::vector<const MetricComparison*> rows_of(const Section& section, const scenarios::Comparison& comparison) {
   std::vector<const MetricComparison*> rows;
   for (const std::string& metric : scenarios::headline_metrics(section.kind)) {
@@ -40,7 +39,6 @@ std::vector<const MetricComparison*> rows_of(const Section& section, const scena
   return rows;
 }
 
-/// Returns the difference between method and baseline with a positive sign if the method is worse.
 double badness(const MetricInfo& info, double difference) {
   return info.sense == Sense::higher ? -difference : difference;
 }
@@ -68,7 +66,6 @@ ContestResult result_of(const MetricComparison& row) {
   return out;
 }
 
-/// Returns the row with the best median; the first row among equal medians.
 const MetricComparison* best_of(const std::vector<const MetricComparison*>& rows) {
   const MetricComparison* best = nullptr;
   for (const MetricComparison* row : rows) {
@@ -100,7 +97,7 @@ Tally tally(const std::vector<ContestResult>& results) {
     out.won += result.won();
     out.lost += result.lost();
     out.open += !result.won() && !result.lost();
-    // Few runs give no interval; but a difference with the same sign on all runs indicates which method is better.
+    // Few runs give no interval, but a difference with the same sign on all runs indicates which method is better.
     const bool on_every_draw = result.certainty == Certainty::open && result.row.better == result.row.pairs;
     if (result.better && (on_every_draw || result.certainty == Certainty::interval)) {
       const std::string& method = result.row.contest.method;
@@ -124,7 +121,7 @@ std::string tally_text(const Tally& tally) {
   if (tally.leader.empty() && tally.lost == tally.contests)
     return fmt::format("The baseline is better in all of {}", contests_text(tally.contests));
   if (tally.leader.empty() && tally.ahead > 0)
-    return fmt::format("{} ahead of the baseline in {} of {}, but there are too few draws for certainty",
+    return fmt::format("{} ahead of the baseline in {} of {}, but there are too few simulated runs for certainty",
                        tally.ahead_by.empty() ? "The best methods are" : tally.ahead_by + " is", tally.ahead,
                        contests_text(tally.contests));
   if (tally.leader.empty())
@@ -142,17 +139,20 @@ std::string tally_text(const Tally& tally) {
 std::string certainty_text(const ContestResult& result, std::size_t comparisons) {
   switch (result.certainty) {
     case Certainty::corrected:
-      return fmt::format("significantly {}, after correction for {} comparisons", result.better ? "better" : "worse",
-                         comparisons);
-    case Certainty::interval:
-      return fmt::format("{} according to the interval, but not significant after correction for {} comparisons",
+      return fmt::format("The method is significantly {}, after correction for {} comparisons",
                          result.better ? "better" : "worse", comparisons);
+    case Certainty::interval:
+      return fmt::format(
+          "The method is {} according to the interval, but the difference is not significant after correction for {} "
+          "comparisons",
+          result.better ? "better" : "worse", comparisons);
     case Certainty::open:
       break;
   }
   const double more = result.row.pairs_needed - static_cast<double>(result.row.pairs);
   if (more >= 1.0 && more < 1e6)
-    return fmt::format("not significant; about {:.0f} more draws are needed for a decision", std::ceil(more));
+    return fmt::format("The difference is not significant; about {:.0f} more simulated runs are needed for a decision",
+                       std::ceil(more));
   return "not significant";
 }
 

@@ -9,52 +9,41 @@
 #include "scenarios/summary/comparison.hpp"
 #include "scenarios/summary/summary.hpp"
 
-/// contests.hpp computes the headline of a report: the best method of each section, its margin, and the statistical
-/// certainty.
 namespace tumble::tools {
 
-/// Certainty is the statistical significance of a difference.
 enum class Certainty {
   corrected,  ///< significant in the signed-rank test, corrected for all comparisons of the page
   interval,   ///< the BCa interval of the difference excludes 0, but the corrected test is not significant
   open        ///< not significant by either criterion
 };
 
-/// ContestResult is the result of one section: the best method without truth, other than the baseline, paired with the
-/// baseline by the first headline metric that both have.
 struct ContestResult {
   scenarios::MetricComparison row;
   Certainty certainty = Certainty::open;
   bool better = false;  ///< the difference favours the method; if `certainty` is `open`, it may be chance
-  /// Difference in percent of the baseline's median, with its interval; NaN if this median is 0 or not finite, or if
-  /// the difference is not finite. An end is infinite if one run of a pair failed.
+  /// Difference in percent of the baseline's median, with its interval; an end is infinite if one run of a pair failed
   double percent = 0.0, percent_low = 0.0, percent_high = 0.0;
-  /// Baseline's median divided by the method's median if lower values are better; otherwise NaN.
   double times = std::numeric_limits<double>::quiet_NaN();
-  /// The interval alone does not decide: the method was chosen as the best of several methods on these runs.
+  /// The confidence interval alone does not decide, because the method was chosen as the best of several methods on
+  /// these runs.
   bool won() const { return better && certainty == Certainty::corrected; }
   bool lost() const { return !better && certainty == Certainty::corrected; }
 };
 
-/// Computes the contests (best method against baseline) in the order of the summary's sections. Attitude describes the
-/// motion least; it is included only if there is no other kind. Sections with only the baseline are omitted.
+/// Attitude describes the motion least, so it is included only if there is no other kind.
 std::vector<ContestResult> contests(const scenarios::Summary& summary, const scenarios::Comparison& comparison);
 
-/// Tally counts contests by result.
 struct Tally {
   std::size_t contests = 0, won = 0, lost = 0, open = 0;  ///< open: neither won nor lost
   std::size_t ahead = 0;       ///< open contests in which the method is better by its own interval or in every run
-  std::string ahead_by;        ///< the method that is ahead in all of these contests; empty if there are several or
-                               ///< none
+  std::string ahead_by;        ///< the method that is ahead in all of these contests; empty if several or none
   std::string leader;          ///< the method that wins most contests (first of equals); empty if no contest is won
   std::size_t leader_won = 0;  ///< number of contests that the leader wins
 };
 Tally tally(const std::vector<ContestResult>& results);
 
-/// Summarises the counts in one sentence: "tumble is better than the baseline in 3 of 4 contests".
 std::string tally_text(const Tally& tally);
 
-/// Describes the certainty of a contest: which method is better, and what is missing if the contest is open.
 std::string certainty_text(const ContestResult& result, std::size_t comparisons);
 
 }  // namespace tumble::tools

@@ -22,7 +22,6 @@ using scenarios::MetricStyle;
 
 constexpr double kMetricDomainLow = 0.36, kFailureDomainHigh = 0.24;
 
-/// Returns null for a non-finite value: a gap in the plot.
 json shown(double value) {
   return std::isfinite(value) ? json(five_digits(value)) : json();
 }
@@ -32,13 +31,11 @@ std::string transparent(const char* hex) {
   return fmt::format("rgba({:.0f},{:.0f},{:.0f},0.14)", 255 * colour[0], 255 * colour[1], 255 * colour[2]);
 }
 
-/// Returns properties of all traces of a method, by which one legend entry switches them together.
 json trace(const std::string& method, bool in_legend) {
   return {
       {"type", "scatter"}, {"name", plot_text(method)}, {"legendgroup", plot_text(method)}, {"showlegend", in_legend}};
 }
 
-/// Draws the band between the quartiles, as one polygon per range of points with finite quartiles.
 void add_bands(const CurveLine& line, double x_factor, double y_factor, const char* colour, json& data) {
   const auto finite = [](const CurvePoint& p) { return std::isfinite(p.quantile_25) && std::isfinite(p.quantile_75); };
   for (auto begin = line.points.begin(); begin != line.points.end();) {
@@ -122,12 +119,11 @@ json x_axis(const Curve& curve, const std::string& title) {
     axis["ticktext"].push_back(plot_text(curve.bins[k]));
   }
   axis["range"] = {0.5, static_cast<double>(curve.bins.size()) + 0.5};
-  // Plotly's automatic rotation would omit the last label.
+  // Plotly's automatic rotation of labels would omit the last label.
   if (curve.bins.size() > 4) axis["tickangle"] = -30;
   return axis;
 }
 
-/// Adds a point without values for each bin in which the method has no samples, so that the line has a gap.
 CurveLine with_gaps(const CurveLine& line, const std::vector<std::string>& bins) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   CurveLine out{line.method, {}};
@@ -153,12 +149,13 @@ std::string caption_of(const Curve& curve) {
   const std::string axis = curve.axis + (doc.empty() ? "" : " (" + doc + ")");
   switch (curve.source) {
     case Curve::Source::set:
-      return fmt::format("{}{} against {}, with each value applied to every draw.", what, curve.metric, axis);
+      return fmt::format("{}{} against {}, with each value applied to every simulated run.", what, curve.metric, axis);
     case Curve::Source::samples:
-      return fmt::format("{}{} over the clipped samples of a draw that lie in each bin of {}.", what, curve.metric,
-                         axis);
+      return fmt::format("{}{} over the clipped samples of a simulated run that lie in each bin of {}.", what,
+                         curve.metric, axis);
     case Curve::Source::draws:
-      return fmt::format("{}{} against {} of the draw, in bins with equal numbers of draws.", what, curve.metric, axis);
+      return fmt::format("{}{} against {} of the simulated run, in bins with equal numbers of runs.", what,
+                         curve.metric, axis);
   }
   return what;
 }
@@ -170,7 +167,6 @@ Figure curve_figure(const Curve& curve, const Palette& palette) {
   figure.id = "curve-" + curve.scenario + "-" + to_string(curve.kind) + "-" + curve.axis + "-" + curve.metric;
   figure.caption = caption_of(curve);
   const MetricStyle x_style = metric_style(curve.axis), y_style = metric_style(curve.metric);
-  // Bins are placed by rank and labelled in the metric's unit.
   const double x_factor = curve.source == Curve::Source::samples ? 1.0 : x_style.factor;
   json data = json::array(), lines = json::array();
   for (std::size_t i = 0; i < curve.lines.size(); ++i) {

@@ -16,11 +16,10 @@ using scenarios::Curve;
 using scenarios::CurveLine;
 using scenarios::CurvePoint;
 
-/// Returns one figure per curve. The upper plot shows the median, the band between the quartiles and the worst 5 %
-/// (dotted). The lower plot shows the fraction of failures.
+/// The upper plot shows the median, the band between the quartiles and the worst 5 % (dotted); the lower plot shows the
+/// fraction of failures.
 Figure curve_figure(const Curve& curve, const Palette& palette = {});
 std::string curves_html(std::span<const Curve> curves, std::vector<Figure>& figures, const Palette& palette = {});
-/// Returns a table with one row per method and point of the curve, in SI units.
 Table curve_table(const Curve& curve);
 nlohmann::json curves_json(std::span<const Curve> curves);
 

@@ -19,21 +19,19 @@ constexpr double kWidth = 150.0, kHeight = 44.0, kPlotMargin = 3.0;
 constexpr double kLeastWidth = 3.0;  // minimum width of a class, which may contain a single value
 constexpr double kDecade = 10.0;
 
-/// Axis maps values to pixels between two ends of the picture.
 struct Axis {
   double low = 0.0, high = 0.0;        ///< values, or their logarithms
   double at_low = 0.0, at_high = 0.0;  ///< pixels
   bool logarithmic = false;
 
   double place(double value) const {
-    const double scaled = logarithmic ? std::log10(value) : value;  // log10(0) is -infinity, which is drawn on the
-                                                                    // frame
+    const double scaled =
+        logarithmic ? std::log10(value) : value;  // log10(0) is -infinity, which is drawn on the frame
     const double share = high > low ? (scaled - low) / (high - low) : 0.5;
     return at_low + std::clamp(share, 0.0, 1.0) * (at_high - at_low);
   }
 };
 
-/// Returns an axis that covers the centres and the finite ends of their intervals.
 Axis height_axis(std::span<const DependenceClass> classes) {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   double least_centre = low, largest_centre = high;

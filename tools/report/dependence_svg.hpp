@@ -9,11 +9,8 @@
 
 namespace tumble::tools {
 
-/// Draws a score as a function of a scenario parameter. Each class of parameter values is one step from its smallest to
-/// its largest value, at the median or fraction, with its interval. Larger scores are higher. The scale is logarithmic
-/// if all centres are positive and span more than a decade. Infinite ends are drawn on the frame. Each class has a
-/// tooltip from `label_of`. Returns an SVG of about 150 by 44 pixels in the page's colours; empty if there are fewer
-/// than two classes or no finite centre.
+/// Each class of parameter values is one step from its smallest to its largest value, at the median or fraction, with
+/// its interval. The scale is logarithmic if all centres are positive and span more than a decade.
 std::string dependence_svg(std::span<const scenarios::DependenceClass> classes,
                            const std::function<std::string(const scenarios::DependenceClass&)>& label_of);
 

@@ -48,7 +48,6 @@ std::string row_html(const FailureComparison& row) {
          finding_cell(row.finding) + "</tr>\n";
 }
 
-/// Writes one folded table per section.
 template <class Row>
 std::string folded_tables(const std::vector<Row>& rows, const std::vector<std::string>& columns) {
   std::string out;

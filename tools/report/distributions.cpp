@@ -18,12 +18,12 @@ namespace {
 
 using nlohmann::json;
 
-/// Describes the values that a histogram omits; empty if it shows all values.
 std::string thinned_text(std::span<const Spread> spreads) {
   const auto is_thinned = [](const Spread& spread) { return spread.of_draws && spread.values.size() > kBoxPoints; };
   if (std::none_of(spreads.begin(), spreads.end(), is_thinned)) return "";
   return fmt::format(
-      " For scenarios with more draws, the plot shows only {} draws, evenly spaced in the sorted values.", kBoxPoints);
+      " For scenarios with more simulated runs, the plot shows only {} runs, evenly spaced in the sorted values.",
+      kBoxPoints);
 }
 
 json shaded(const Spread& spread) {
@@ -40,19 +40,17 @@ json shaded(const Spread& spread) {
           {"line", {{"width", is_line ? 2 : 0}, {"color", "rgba(128,128,128,0.8)"}, {"dash", "dash"}}}};
 }
 
-/// Returns the axes of a quantity, with the published range shaded.
 json layout_of(const Spread& spread) {
   json layout = {{"barmode", "overlay"},
                  {"xaxis", {{"title", {{"text", spread.quantity + " [" + spread.unit + "]"}}}}},
-                 {"yaxis", {{"title", {{"text", "share of the draws [%]"}}}}}};
+                 {"yaxis", {{"title", {{"text", "share of the simulated runs [%]"}}}}}};
   if (!std::isnan(spread.published_low)) layout["shapes"] = json::array({shaded(spread)});
   return layout;
 }
 
-/// Returns the caption of the histograms of one quantity.
 std::string caption_of(std::span<const Spread> spreads) {
   const Spread& spread = spreads.front();
-  std::string out = fmt::format("The histogram shows the distribution over the draws: {}.", spread.quantity);
+  std::string out = fmt::format("The histogram shows the distribution over the simulated runs: {}.", spread.quantity);
   if (!spread.published.empty())
     out += fmt::format(" Published value for the rig: {} {}.", spread.published, spread.unit);
   return out + thinned_text(spreads);
@@ -66,10 +64,8 @@ std::string text(const Spread& spread, double value) {
   return number_text(value * spread.factor);
 }
 
-/// Hatchings by the number of earlier scenarios with the same colour (`colour_round`).
 constexpr std::array kHatchings = {"", "/", "x", "."};
 
-/// Returns histograms of one quantity, one per scenario.
 Figure histograms(std::span<const Spread> spreads) {
   Figure figure;
   json traces = json::array();

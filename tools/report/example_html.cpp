@@ -33,7 +33,6 @@ std::string play_html(const ShownExample& shown) {
          "\">Open the replay</a>, which shows the robot, its paths, its lidar points and the gyro over time.";
 }
 
-/// Places each wide plot in its own line, and other plots two per line.
 std::string plots_html(const Example& example, const Palette& palette, std::vector<Figure>& figures) {
   std::string out;
   bool in_pair = false;
@@ -73,7 +72,7 @@ std::string moving_html(const ShownExample& shown) {
   const bool has_picture = !example.pictures.empty();
   const std::string still = has_picture ? html::png_address(example.pictures.front().png) : "";
   std::string out = "<figure class=\"moving\"><picture>";
-  // Without a script, the browser selects the still or the animated picture. If there is no still picture, it shows the
+  // Without a script, the browser selects the still or the animated picture; if there is no still picture, it shows the
   // animation.
   if (!example.moving.empty() && has_picture) {
     out += fmt::format("<source media=\"print, (prefers-reduced-motion: reduce)\" srcset=\"{}\">", still);

@@ -10,10 +10,8 @@
 #include "scenarios/summary/summary.hpp"
 #include "scenarios/sweep/results.hpp"
 
-/// failures.hpp lists the simulated runs on which methods failed, with commands to repeat them.
 namespace tumble::tools {
 
-/// Maximum number of failed runs on the page.
 inline constexpr std::size_t kFailedDrawsShown = 60;
 
 struct FailedRun {
@@ -23,7 +21,6 @@ struct FailedRun {
   std::string command;  ///< command that repeats the run (run_again.hpp)
 };
 
-/// FailedDraw is a simulated run with the methods that failed on it.
 struct FailedDraw {
   std::string scenario;
   std::uint64_t seed = 0;
@@ -36,8 +33,6 @@ struct FailedDraws {
   std::vector<FailedDraw> shown;  ///< runs with the most failed methods, at most `kFailedDrawsShown`
 };
 
-/// Finds the failed runs, and reads messages only for those that are shown. `database` is the path of the results; kept
-/// files are next to it.
 FailedDraws failed_draws(const scenarios::Results& results, const scenarios::Summary& summary,
                          const std::filesystem::path& database);
 

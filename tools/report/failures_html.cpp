@@ -15,7 +15,6 @@ namespace {
 
 using html::escaped;
 
-/// Number of failed runs that are open; further ones are folded.
 constexpr std::size_t kOpenDraws = 8;
 
 const ShownExample* example_of(const PageContent& content, const FailedDraw& draw) {
@@ -25,7 +24,6 @@ const ShownExample* example_of(const PageContent& content, const FailedDraw& dra
   return shown == content.examples.end() ? nullptr : &*shown;
 }
 
-/// Returns links to the example of the run and to the replay.
 std::string links_html(const ShownExample* shown) {
   if (shown == nullptr) return "";
   std::string out;
@@ -62,7 +60,9 @@ std::string draws_html(const PageContent& content) {
       "the most failed methods come first. The command below a run repeats the run. With <code>-o FOLDER</code>, "
       "<code>tumble run</code> writes recording, estimates, pictures and a replay.</p>\n",
       failed.draws, failed.draws == 1 ? "" : "s",
-      failed.shown.size() < failed.draws ? fmt::format("The page shows {} of these draws. ", failed.shown.size()) : "");
+      failed.shown.size() < failed.draws
+          ? fmt::format("The page shows {} of the simulated runs on which methods failed. ", failed.shown.size())
+          : "");
   out += "<ul class=\"failed\">" + open + "</ul>\n";
   if (!folded.empty())
     out += fmt::format("<details><summary>{} more</summary><ul class=\"failed\">{}</ul></details>\n",

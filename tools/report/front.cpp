@@ -21,12 +21,9 @@ using scenarios::Interval;
 using scenarios::Section;
 using scenarios::Summary;
 
-/// Number of contests that are open; further ones are folded.
 constexpr std::size_t kShownContests = 6;
-/// Maximum number of scenarios that the first sentence names.
 constexpr std::size_t kNamedScenarios = 4;
 
-/// Lists names, for example "hill, roll and slip"; returns only their number if there are many.
 std::string names_text(const std::vector<std::string>& all, const char* many) {
   if (all.size() > kNamedScenarios) return fmt::format("{} {}", all.size(), many);
   std::string names;
@@ -34,7 +31,6 @@ std::string names_text(const std::vector<std::string>& all, const char* many) {
   return names;
 }
 
-/// Describes the number of runs, for example "8 draws each of hill, roll and slip".
 std::string draws_text(const Summary& summary) {
   std::int64_t least = 0, most = 0;
   for (const auto& [scenario, draws] : summary.draws) {
@@ -47,7 +43,6 @@ std::string draws_text(const Summary& summary) {
                        : fmt::format("{} to {} draws each of {}", least, most, names);
 }
 
-/// Describes the sensor data that the methods receive, and the source of the truth.
 std::string data_text(const PageContent& content) {
   if (!content.recorded)
     return fmt::format("The data are {} from simulation with known truth. All methods received the same recordings.",
@@ -58,7 +53,6 @@ std::string data_text(const PageContent& content) {
       names_text(content.summary.scenarios, "of them"));
 }
 
-/// Describes the tasks of the methods in the contests.
 std::string tasks_text(const std::vector<ContestResult>& results) {
   using scenarios::Kind;
   const std::pair<Kind, const char*> tasks[] = {{Kind::rate, "rate (angular velocity)"},
@@ -73,7 +67,6 @@ std::string tasks_text(const std::vector<ContestResult>& results) {
   return out;
 }
 
-/// Counts the methods without truth.
 std::size_t method_count(const Summary& summary) {
   std::set<std::pair<scenarios::Kind, std::string>> names;
   for (const Section& section : summary.sections) {
@@ -84,7 +77,6 @@ std::size_t method_count(const Summary& summary) {
   return names.size();
 }
 
-/// Draws the interval on an axis from -100 % to +100 %, limited to this range.
 std::string bar_html(const ContestResult& result) {
   if (!std::isfinite(result.percent)) return "<span class=\"bar none\"></span>";
   const auto at = [](double percent) { return 50.0 + 0.5 * std::clamp(percent, -100.0, 100.0); };
@@ -101,19 +93,18 @@ std::string difference_text(const ContestResult& result) {
   const Interval& own = result.row.difference;
   if (!std::isfinite(own.value)) {
     const scenarios::MetricComparison& row = result.row;
-    if (!std::isfinite(row.median)) return fmt::format("{} failed on at least half of the draws", row.contest.method);
+    if (!std::isfinite(row.median))
+      return fmt::format("{} failed on at least half of the simulated runs", row.contest.method);
     if (!std::isfinite(row.against_median))
-      return fmt::format("{} failed on at least half of the draws", row.contest.against);
-    return "one of the two methods failed on at least half of the draws";
+      return fmt::format("{} failed on at least half of the simulated runs", row.contest.against);
+    return "one of the two methods failed on at least half of the simulated runs";
   }
   const std::string value = styled_value(result.row.metric, own.value, true);
   const std::string sign = own.value > 0.0 ? "+" : "";
-  // Intervals with two infinite ends are omitted.
   if (!std::isfinite(own.low) && !std::isfinite(own.high)) return sign + value;
   return sign + value + " " + styled_interval(result.row.metric, own);
 }
 
-/// Describes the baseline's value, for example "0.894 rad/s, 37 times as much".
 std::string baseline_text(const ContestResult& result) {
   const std::string value = styled_value(result.row.metric, result.row.against_median, true);
   if (!(result.times >= 1.5)) return value;
@@ -135,7 +126,6 @@ std::string contest_html(const ContestResult& result, std::size_t comparisons) {
       escaped(certainty_text(result, comparisons)));
 }
 
-/// Returns the folded descriptions of the methods.
 std::string methods_html(const std::vector<Fact>& methods) {
   if (methods.empty()) return "";
   std::string out = "<details class=\"methods\"><summary>Descriptions of the methods</summary><dl class=\"facts\">";
@@ -160,8 +150,7 @@ std::string contests_html(const std::vector<ContestResult>& results, std::size_t
   return out + "</section>\n";
 }
 
-/// Chooses an example by priority: typical before failed runs, examples of these before other results, animations
-/// before still pictures.
+/// Typical runs precede failed runs, examples of these results precede others, and animations precede still pictures.
 const ShownExample* example_to_show(const std::vector<ShownExample>& examples) {
   const ShownExample* best = nullptr;
   const auto rank = [](const ShownExample& shown) {

@@ -7,7 +7,6 @@
 
 namespace tumble::tools {
 
-/// Returns the first screen: the compared methods, the best methods with margin and certainty, and one animation.
 std::string front_html(const PageContent& content);
 
 }  // namespace tumble::tools

@@ -29,7 +29,6 @@ json density(const MotionMap& map) {
       each.push_back(five_digits(100.0 * map.share[row * MotionMap::kCells + i]));
     rows.push_back(std::move(each));
   }
-  // Values below the first contour are transparent.
   return {
       {"type", "contour"},
       {"name", "all draws"},
@@ -64,7 +63,6 @@ json points(const MotionCloud& cloud, std::size_t index) {
           {"y", std::move(y)}};
 }
 
-/// Returns an outline from the lower ends of the axes to the published maxima; a line if no rate is published.
 json outline(const PublishedExtreme& extreme, const MotionMap& map, bool dotted) {
   const double low_rate = map.rate_rad_s.front(), low_force = map.force_m_s2.front();
   json x = json::array({low_rate}), y = json::array({extreme.force_m_s2});
@@ -92,12 +90,12 @@ std::string caption_of(const MotionMap& map) {
     shown += cloud.points.size();
   }
   std::string out = fmt::format(
-      "Each point shows the largest rate of the body in one draw, and the largest specific force that an IMU without "
-      "saturation would have measured. The shaded area shows the density of all {} draws{}. The outlines show the "
-      "largest values in published campaigns",
-      draws, shown < draws ? fmt::format("; {} of the draws are shown as points", shown) : "");
+      "Each point shows the largest rate of the body in one simulated run, and the largest specific force that an IMU "
+      "without saturation would have measured. The shaded area shows the density of all {} runs{}. The outlines show "
+      "the largest values in published campaigns",
+      draws, shown < draws ? fmt::format("; {} of the simulated runs are shown as points", shown) : "");
   for (const PublishedExtreme& extreme : map.extremes) out += "; " + extreme.source;
-  return fmt::format("{}. The two maxima of a draw may occur at different instants.", out);
+  return fmt::format("{}. The two maxima of a simulated run may occur at different instants.", out);
 }
 
 }  // namespace

@@ -6,8 +6,7 @@
 
 namespace tumble::tools {
 
-/// Plots the density of all runs over rate and specific force (both logarithmic), the runs as points by scenario, and
-/// the published maxima as outlines. The figure is empty without runs.
+/// Plots the density of all runs over rate and specific force (both logarithmic), and the published maxima as outlines.
 Figure motion_figure(const scenarios::MotionMap& map);
 
 }  // namespace tumble::tools

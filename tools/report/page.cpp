@@ -25,7 +25,6 @@ using html::escaped;
 using scenarios::Section;
 using scenarios::Summary;
 
-/// Part is a section of the page with an entry in the table of contents.
 struct Part {
   const char* id;
   const char* title;
@@ -42,8 +41,7 @@ std::string draws_html(const Summary& summary) {
   return out + "</tbody></table></div>\n";
 }
 
-/// Lists the reasons why simulated runs were rejected. The time at the end of a reason is removed, so that equal
-/// reasons count together.
+/// The time at the end of a reason for rejection is removed, so that equal reasons count together.
 std::string rejected_html(const std::vector<scenarios::RejectedDraw>& rejected) {
   std::map<std::pair<std::string, std::string>, std::vector<std::uint64_t>> reasons;
   for (const scenarios::RejectedDraw& draw : rejected) {
@@ -58,7 +56,6 @@ std::string rejected_html(const std::vector<scenarios::RejectedDraw>& rejected) 
   return out.empty() ? "" : "<p>The simulation rejected draws for these reasons:</p><ul>" + out + "</ul>\n";
 }
 
-/// Appends the plots of the motions to the figures of the page.
 std::string motions_html(const PageContent& content, std::vector<Figure>& figures) {
   std::string out;
   Figure map = motion_figure(content.motion_map);
@@ -119,7 +116,6 @@ std::string commands_html(const std::vector<Fact>& commands) {
   return out;
 }
 
-/// Returns the non-empty sections in the order of the page.
 std::vector<Part> parts_of(const PageContent& content, std::vector<Figure>& figures) {
   std::vector<Part> parts;
   const auto add = [&](const char* id, const char* title, std::string html) {
@@ -154,7 +150,7 @@ std::string figures_json(const std::vector<Figure>& figures) {
   return html::script_json("[" + all + "]");
 }
 
-/// Allows only content that is embedded in the page: scripts, styles, and pictures as data.
+/// The policy allows only content that is embedded in the page: scripts, styles, and pictures as data.
 constexpr const char* kPolicy =
     "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data: blob:; style-src "
     "'unsafe-inline'; script-src 'unsafe-inline'\">";

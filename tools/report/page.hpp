@@ -21,15 +21,12 @@ namespace tumble::tools {
 
 struct ShownExample {
   Example example;
-  bool of_these_results = false;  ///< the database holds the rows that the example shows, and the digest of its
-                                  ///< recording agrees
+  bool of_these_results = false;  ///< rows and digest of the recording agree with the database
   std::string replay_address;     ///< URL relative to the page, escaped for an attribute; may be empty
 };
 
-/// Fact is a pair of name and value.
 using Fact = std::pair<std::string, std::string>;
 
-/// PageContent is the content of a report page; `page_html` adds only markup.
 struct PageContent {
   std::string title;
   bool recorded = false;  ///< results of recordings instead of simulated runs
@@ -55,8 +52,7 @@ struct PageContent {
 };
 
 /// Returns one self-contained page with styles, plots, pictures and the Plotly bundle inside. The Content Security
-/// Policy of the page forbids network access. The sections are first screen, motions, errors, paired differences,
-/// failures, sensitivity, cost, certificate, versions, commands. Texts are embedded as data, never as markup.
+/// Policy of the page forbids network access. Texts are embedded as data, never as markup.
 std::string page_html(const PageContent& content, const std::string& plotly_bundle);
 
 }  // namespace tumble::tools

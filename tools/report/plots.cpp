@@ -61,7 +61,6 @@ bool wants_log(const json& traces) {
   return low > 0.0 && high > 10.0 * low;
 }
 
-/// Boxes contains box plots of one metric: one box per method, in groups.
 class Boxes {
  public:
   Boxes(const std::string& metric, const Palette& palette)
@@ -83,7 +82,7 @@ class Boxes {
     }
   }
 
-  /// Uses a logarithmic axis if values are positive and span more than a decade. Otherwise, the axis starts at 0 if
+  /// The axis is logarithmic if values are positive and span more than a decade; otherwise, it starts at 0 if
   /// `from_zero` is set, or else at the smallest value.
   void put_into(Figure& figure, bool from_zero) {
     json data = json::array();
@@ -101,14 +100,13 @@ class Boxes {
   }
 
  private:
-  /// Failures contains the failed runs of one box.
   struct Failures {
     std::string method, group;
     std::size_t count;
   };
 
   void add_values(json& trace, const std::string& group, const std::vector<double>& values, std::size_t failed) {
-    // If not all runs are drawn, the drawn ones keep the ratio of values to failed runs.
+    // If not all runs are drawn, the drawn ones keep the ratio of successful to failed runs.
     const std::size_t all = values.size() + failed;
     const std::size_t shown_failed = all <= kBoxPoints ? failed : (failed * kBoxPoints + all - 1) / all;
     for (const double value : at_most(values, std::max<std::size_t>(2, std::min(all, kBoxPoints) - shown_failed))) {
@@ -118,7 +116,6 @@ class Boxes {
     if (shown_failed > 0) failures_.push_back({trace["name"], plot_text(group), shown_failed});
   }
 
-  /// Adds the failed runs beyond the worst value of the figure, and a line with the word "failed".
   void add_failed(bool log, json& data, json& layout) const {
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (const json& trace : data) {
@@ -176,7 +173,6 @@ bool holds_more_than_shown(const Summary& summary, Kind kind, const std::string&
   return false;
 }
 
-/// Shades an interval of x over the whole height, behind the lines.
 json shaded(double begin, double end) {
   return {{"type", "rect"},
           {"xref", "x"},
@@ -195,7 +191,6 @@ const char* dash_of(const PlotLine& line) {
   return dash_of_round(line.colour < 0 ? 0 : colour_round(static_cast<std::size_t>(line.colour)));
 }
 
-/// NaN marks a gap in the line.
 json coordinates(const std::vector<double>& values) {
   json out = json::array();
   for (const double value : values) out.push_back(std::isfinite(value) ? json(value) : json());
@@ -286,7 +281,8 @@ Figure box_figure(const Summary& summary, Kind kind, const std::string& metric, 
   figure.caption = caption;
   if (holds_more_than_shown(summary, kind, metric))
     figure.caption += fmt::format(
-        " A box of more than {0} draws shows {0} of them as points, evenly spaced in the sorted values.", kBoxPoints);
+        " A box of more than {0} simulated runs shows {0} of them as points, evenly spaced in the sorted values.",
+        kBoxPoints);
   Boxes boxes(metric, palette);
   for (const Section& section : summary.sections) {
     if (section.kind == kind) boxes.add(section, section.scenario, true);
@@ -299,7 +295,7 @@ Figure cost_figure(const Summary& summary, const Palette& palette) {
   Figure figure;
   figure.id = "cost";
   figure.caption = fmt::format(
-      "The plot shows the CPU time of one estimate. Each point shows one draw; a box has at most {} points.",
+      "The plot shows the CPU time of one estimate. Each point shows one simulated run; a box has at most {} points.",
       kBoxPoints);
   std::set<Kind> kinds;
   for (const Section& section : summary.sections) kinds.insert(section.kind);

@@ -14,7 +14,6 @@
 
 namespace tumble::tools {
 
-/// Figure is a Plotly figure for page.js, which sets the colours of text and grid.
 struct Figure {
   std::string id;       ///< id of its HTML element, unique within the page
   std::string caption;  ///< one or two sentences
@@ -23,56 +22,46 @@ struct Figure {
   bool empty() const { return traces.empty(); }
 };
 
-/// Sets traces and layout of a figure. Without traces, the figure stays empty. Invalid UTF-8 in texts is replaced.
+/// Without traces, the figure stays empty. Invalid UTF-8 in texts is replaced.
 void set_plot(const nlohmann::json& traces, const nlohmann::json& layout, Figure& figure);
 
-/// Maximum number of runs of a box that are drawn as points.
+/// Maximum number of runs of a box that are drawn as points
 inline constexpr std::size_t kBoxPoints = 1000;
 
-/// Rounds to five significant digits: finer than a plot can show, and the page stays small.
+/// Five significant digits are finer than a plot can show, and keep the page small.
 double five_digits(double value);
 
-/// Escapes & < > as entities, because Plotly interprets some tags in texts.
+/// Plotly interprets some tags in texts, so the characters & < > are escaped.
 std::string plot_text(const std::string& text);
 
 /// Reduces a list to `most` (at least 2) sorted values: the smallest, the largest, and values at equal steps of rank.
-/// The quantiles of the reduced list are close to those of all values. The cost is O(n log n).
 std::vector<double> at_most(std::vector<double> values, std::size_t most);
 
-/// Palette assigns one colour index to each method of a page, in the order of `add`. Methods of different kinds with
+/// Palette assigns one colour index to each method of a page, in the order of `add`; methods of different kinds with
 /// the same name share a colour.
 class Palette {
  public:
-  /// Adds a method by NAME or KIND/NAME. A known method keeps its index. A new method gets the index `wanted` if it is
-  /// free.
   void add(const std::string& method, std::optional<std::size_t> wanted = {});
-  /// Returns the index of the method, or `otherwise` for an unknown method.
   std::size_t index(const std::string& method, std::size_t otherwise) const;
 
  private:
   std::map<std::string, std::size_t> indices_;
 };
 
-/// Returns the title of an axis with the display unit of the metric: "attitude rmse [°]". The name of a scenario
-/// parameter is unchanged.
+/// Returns the title with the display unit of the metric: "attitude rmse [°]"; the name of a scenario parameter is
+/// unchanged.
 std::string axis_title(const std::string& metric);
 
-/// Plots every run as a point next to a box of the quartiles: one box per method and scenario, with at most
-/// `kBoxPoints` points. Failed runs are points on the line "failed", beyond the worst value, so the quartiles count
-/// them as in the tables. The axis is logarithmic if values are positive and span more than a decade.
+/// Failed runs are points on the line "failed", beyond the worst value, so the quartiles count them as in the tables.
 Figure box_figure(const scenarios::Summary& summary, scenarios::Kind kind, const std::string& metric,
                   const std::string& caption, const Palette& palette = {});
 
-/// Plots the CPU time of every method, one box per method, scenario and kind, on a logarithmic axis.
 Figure cost_figure(const scenarios::Summary& summary, const Palette& palette = {});
 
-/// Converts a plot of an example to a figure. Methods in `palette` get their colour of the page.
 Figure figure_of(const Plot& plot, const std::string& id, const Palette& palette = {});
 
-/// Returns the colour of a line in an example's plot, and of its legend entry.
 Colour colour_of(int colour);
 
-/// Marker, dash and fill opacity that distinguish methods with equal colours. `round` is the result of `colour_round`.
 const char* symbol_of_round(std::size_t round);
 const char* dash_of_round(std::size_t round);
 double filling_of_round(std::size_t round);

@@ -44,13 +44,12 @@ std::vector<Fact> versions(const scenarios::Results& results, const Summary& sum
   return out;
 }
 
-/// Describes each method of the results.
 std::vector<Fact> listed_methods(const Summary& summary) {
   std::vector<Fact> out;
   for (const scenarios::Section& section : summary.sections) {
     for (const scenarios::MethodSummary& method : section.methods) {
       Fact fact(full_name(section.kind, method.method) + (method.method == section.baseline ? " (baseline)" : ""),
-                method.what.empty() ? "A file describes this method." : method.what);
+                method.what.empty() ? "A file (--method FILE) describes this external method." : method.what);
       if (std::ranges::find(out, fact) == out.end()) out.push_back(std::move(fact));
     }
   }
@@ -65,7 +64,6 @@ bool are_of_here(const scenarios::Results& results, const ReportOptions& options
          (made_of.empty() || options.data.empty() || made_of == options.data);
 }
 
-/// Returns the commands that repeat and extend the page, without commands that would reject these results.
 std::vector<Fact> commands(const scenarios::Results& results, const ReportOptions& options,
                            const PageContent& content) {
   const std::string database = scenarios::shell_word(options.database.string());
@@ -74,11 +72,11 @@ std::vector<Fact> commands(const scenarios::Results& results, const ReportOption
     const char* what = "This command computes the results";
     for (const std::string& sweep : scenarios::commands_of(results.note(scenarios::kCommandNote))) {
       out.emplace_back(what, "tumble sweep " + sweep + " --db " + database);
-      what = "and this command adds results";
+      what = "This command adds results to the database";
     }
   }
   if (!options.page.empty())
-    out.emplace_back("This command writes this page",
+    out.emplace_back("This command writes this report page",
                      "tumble report " + database + " -o " + scenarios::shell_word(options.page.string()));
   if (!content.comparison.failures.empty())
     out.emplace_back("This command prints the paired differences as tables; add --metric NAME for other metrics",
@@ -89,7 +87,6 @@ std::vector<Fact> commands(const scenarios::Results& results, const ReportOption
   return out;
 }
 
-/// Plots the headline metrics of each kind, without pass-fail metrics, whose fraction is in the table.
 std::vector<Figure> errors_of_all_draws(const Summary& summary, const Palette& palette) {
   std::vector<Figure> figures;
   for (const Kind kind : {Kind::rate, Kind::attitude, Kind::position, Kind::slam}) {
@@ -103,9 +100,7 @@ std::vector<Figure> errors_of_all_draws(const Summary& summary, const Palette& p
   return figures;
 }
 
-/// Returns true if the example belongs to these results: the database contains its rows, and the digests of the
-/// recordings are equal. Sweeps omit lidars that no method needs, so the digest may be that of the recording without
-/// lidars.
+/// Sweeps omit lidars that no method needs, so the digest may be that of the recording without lidars.
 bool is_of(const scenarios::Results& results, const Example& example) {
   if (example.made_of != scenarios::digest_of_rows(results, {example.scenario, example.seed})) return false;
   const std::vector<scenarios::Outcome> rows = results.outcomes_of(example.scenario, example.seed);
@@ -115,11 +110,9 @@ bool is_of(const scenarios::Results& results, const Example& example) {
   });
 }
 
-/// Explains why there are no pictures, and which command creates them. Only a sweep adds pictures, with the build and
-/// the data of the results.
 std::string how_to_get_pictures(const scenarios::Results& results, const ReportOptions& options) {
   const std::string none =
-      fmt::format("There are no pictures of single draws in {}", examples_folder(options.database).string());
+      fmt::format("There are no pictures of single simulated runs in {}", examples_folder(options.database).string());
   const std::string made_by = results.note("build"), made_of = results.note("data");
   if (made_by == scenarios::kMixedBuilds)
     return fmt::format(
@@ -143,7 +136,6 @@ std::string how_to_get_pictures(const scenarios::Results& results, const ReportO
       scenarios::shell_word(options.database.string()));
 }
 
-/// Returns the URL, relative to the page, of a replay next to the database.
 std::string replay_address(const ReportOptions& options, const Example& example) {
   if (example.replay.empty()) return "";
   const std::filesystem::path replay = examples_folder(options.database) / example.replay;
@@ -160,14 +152,14 @@ void add_examples(const scenarios::Results& results, const ReportOptions& option
     std::string replay = replay_address(options, example);
     content.examples.push_back({std::move(example), of_these, std::move(replay)});
   }
-  // Errors of the pictures must not hide the scores.
+  // Errors of the pictures must not hide the scores, so they become warnings.
   for (const std::string& what : found.unreadable)
-    content.warnings.push_back(fmt::format("The page cannot show some pictures of single draws: {}", what));
+    content.warnings.push_back(fmt::format("The page cannot show some pictures of single simulated runs: {}", what));
   if (!found.unreadable.empty()) return;
   if (content.examples.empty()) content.warnings.push_back(how_to_get_pictures(results, options));
 }
 
-/// Takes the colours in the examples' pictures first, because pictures cannot be recoloured.
+/// The colours in the examples' pictures are taken first, because pictures cannot be recoloured.
 Palette palette_of(const PageContent& content) {
   Palette palette;
   for (const ShownExample& shown : content.examples) {
@@ -210,7 +202,7 @@ PageContent report_content(ReportInput input, const ReportOptions& options) {
   content.commands = commands(results, options, content);
   content.certificates = results.certificates();
   if (content.certificates.empty() && !content.recorded)
-    content.warnings.push_back("These results contain no certificate of their build.");
+    content.warnings.push_back("These results contain no certificate of the simulation of their build.");
   for (const scenarios::Certificate& certificate : content.certificates) {
     content.versions.emplace_back("certificate", certificate_summary(certificate));
     if (!certificate.passes()) content.warnings.push_back("The certificate of build " + certificate.build + " fails.");

@@ -12,7 +12,6 @@
 
 namespace tumble::tools {
 
-/// ReportInput is the input of a report page.
 struct ReportInput {
   const scenarios::Results* results = nullptr;
   const scenarios::Summary* summary = nullptr;
@@ -31,9 +30,8 @@ struct ReportOptions {
   std::string made_at;             ///< date and time on the page
 };
 
-/// Computes the content of the page from the results, and from the examples that a sweep stored next to them. Nothing
-/// is simulated or estimated. Without examples, the page shows the command that creates them, or the required build or
-/// data.
+/// Computes the content of the page from the results, and from the examples that a sweep stored next to them; nothing
+/// is simulated or estimated.
 PageContent report_content(ReportInput input, const ReportOptions& options);
 
 }  // namespace tumble::tools

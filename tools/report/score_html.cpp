@@ -31,7 +31,6 @@ std::string plain(double value) {
   return fmt::format("{:.{}f}", value, digits);
 }
 
-/// Returns the method without truth that has the best median.
 const MethodSummary* best_method(const Section& section, const std::string& metric) {
   const MethodSummary* best = nullptr;
   const MetricInfo& info = metric_info(metric);
@@ -60,7 +59,9 @@ std::string metric_cell(const std::string& name, const MetricSummary* metric, bo
   out += "<small>" + html::escaped(styled_interval(name, metric->centre)) + "</small>";
   if (metric->wins.pairs > 0) {
     out += "<small class=\"wins\">" +
-           html::escaped(fmt::format("better in {} of {} draws", metric->wins.count, metric->wins.pairs)) + "</small>";
+           html::escaped(fmt::format("better than the baseline in {} of {} simulated runs", metric->wins.count,
+                                     metric->wins.pairs)) +
+           "</small>";
   }
   return out + "</td>";
 }

@@ -26,18 +26,16 @@ std::string median_text(const Sensitivity& row, double value) {
   return styled_value(row.metric, value, true);
 }
 
-/// Draws a bar from 0 to 1 next to the number.
 std::string strength_cell(double strength) {
   return fmt::format("<td class=\"number\"><span class=\"strength\" style=\"width:{:.0f}px\"></span>{:.2f}</td>",
                      60.0 * strength, strength);
 }
 
-/// Draws the score as a function of the scenario parameter.
 std::string dependence_cell(const Sensitivity& row, const Influence& each) {
   const bool is_share = row.metric == kFailure || scenarios::metric_info(row.metric).unit == scenarios::Unit::verdict;
   const auto label_of = [&](const scenarios::DependenceClass& part) {
     const std::string centre =
-        is_share ? fmt::format("{:.0f} % of runs failed [{:.0f}, {:.0f}]", 100.0 * part.centre.value,
+        is_share ? fmt::format("{:.0f} % of the simulated runs failed [{:.0f}, {:.0f}]", 100.0 * part.centre.value,
                                100.0 * part.centre.low, 100.0 * part.centre.high)
                  : styled_value(row.metric, part.centre.value, true) + " " + styled_interval(row.metric, part.centre);
     return fmt::format("{} {:.4g} to {:.4g}: {}, {} draws", each.number, part.low, part.high, centre, part.draws);
@@ -68,7 +66,6 @@ std::string row_html(const Sensitivity& row) {
   return "<tr>" + cell(row.method) + cell(row.metric) + "<td colspan=\"6\">no significant influence</td></tr>\n";
 }
 
-// A trend needs at least two classes.
 constexpr auto kDrawsMin = static_cast<std::int64_t>(scenarios::kSensitivityDrawsMin);
 constexpr auto kDrawnFrom = static_cast<std::int64_t>(2 * scenarios::kDependenceDrawsMin);
 
@@ -78,11 +75,12 @@ std::string draws_needed_text(const std::map<std::string, std::int64_t>& draws) 
   std::string out;
   for (const auto& [scenario, count] : draws) {
     if (count >= kDrawnFrom) continue;
-    out += out.empty() ? fmt::format(
-                             "A scenario needs {} draws to compute the influence of its parameters, and {} draws for a "
-                             "plot of the score over a parameter. These scenarios need more draws: ",
-                             kDrawsMin, kDrawnFrom)
-                       : "; ";
+    out += out.empty()
+               ? fmt::format(
+                     "A scenario needs {} simulated runs to compute the influence of its parameters, and {} simulated "
+                     "runs for a plot of the score over a parameter. These scenarios need more runs: ",
+                     kDrawsMin, kDrawnFrom)
+               : "; ";
     out += scenario + " ";
     if (count < kDrawsMin) out += fmt::format("{}, and ", kDrawsMin - count);
     out += fmt::format("{} for the plot", kDrawnFrom - count);

@@ -10,12 +10,8 @@
 
 namespace tumble::tools {
 
-/// Shows the causes of each method's failures: the three scenario parameters with the strongest significant influence.
-/// `note` states which runs were used, or why there is no result.
 std::string sensitivity_html(const std::vector<scenarios::Sensitivity>& rows, const std::string& note);
 
-/// Describes how many more runs each scenario needs for the ranking of influences, and for the plot of the score over a
-/// parameter. The text is empty if all scenarios have enough runs.
 std::string draws_needed_text(const std::map<std::string, std::int64_t>& draws);
 
 }  // namespace tumble::tools

@@ -22,7 +22,6 @@ void append_line(std::string& out, std::string line) {
   out += line + "\n";
 }
 
-/// Splits a text at spaces into lines of at most `width` characters. A longer word has its own line.
 std::vector<std::string> wrapped(const std::string& text, std::size_t width) {
   std::vector<std::string> lines(1);
   std::istringstream words(text);
@@ -104,7 +103,6 @@ std::string more_draws_text(double needed, std::int64_t draws, bool open) {
 }
 
 std::size_t character_count(const std::string& text) {
-  // In UTF-8, continuation bytes start with the bits 10.
   return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
 }
 

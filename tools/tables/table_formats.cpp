@@ -12,7 +12,6 @@ namespace {
 
 using Escape = std::string (*)(const std::string& cell);
 
-/// Joins the cells of one row with `between`.
 std::string joined(const std::vector<std::string>& cells, std::string_view between, Escape escape) {
   std::string out;
   for (std::size_t i = 0; i < cells.size(); ++i) {
@@ -26,7 +25,6 @@ std::string for_markdown(const std::string& cell) {
   std::string out;
   for (std::size_t i = 0; i < cell.size(); ++i) {
     const char c = cell[i];
-    // An underscore between letters is not markup, so names of metrics stay readable.
     const auto letter = [&](std::size_t at) {
       return at < cell.size() && std::isalnum(static_cast<unsigned char>(cell[at])) != 0;
     };

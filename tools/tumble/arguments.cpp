@@ -122,10 +122,11 @@ std::string metric_of(const scenarios::Method& method, const std::string& name) 
 std::uint64_t seed_of(const scenarios::Scenario& scenario, const std::string& text) {
   if (!text.empty()) return parse_seed(text);
   if (scenario.named_case) return scenario.named_case->seed;
-  throw BadInput(fmt::format("--seed is missing; use --seed NUMBER to choose a draw of scenario '{}'", scenario.name));
+  throw BadInput(
+      fmt::format("--seed is missing; use --seed NUMBER to choose a simulated run of scenario '{}'", scenario.name));
 }
 
-// CLI11 does not convert a BadInput from the check.
+// CLI11 does not convert a BadInput that a check throws.
 std::function<void(const std::string&)> a_scenario(const Session& session) {
   return [&session](const std::string& text) { scenarios::load_scenario(session.data(), text); };
 }
@@ -148,7 +149,8 @@ int available_processors() {
 void make_folder(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
-  if (error) throw BadInput(fmt::format("{}: cannot create this folder: {}", folder.string(), error.message()));
+  if (error)
+    throw BadInput(fmt::format("{}: the program cannot create this folder: {}", folder.string(), error.message()));
   if (!std::filesystem::is_directory(folder, error))
     throw BadInput(fmt::format("{}: this path exists, but is not a folder; choose another path", folder.string()));
 }

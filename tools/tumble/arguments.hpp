@@ -14,70 +14,55 @@
 #include "scenarios/methods/method.hpp"
 #include "tools/tumble/session.hpp"
 
-/// arguments.hpp parses command-line arguments and prepares output files. All functions throw scenarios::BadInput with
-/// a one-line message.
 namespace tumble::tools {
 
-/// Parses a seed: an unsigned decimal integer below 2^64.
 std::uint64_t parse_seed(const std::string& text);
-/// Parses a range of seeds, "7" or "1..40"; both ends are included.
 std::pair<std::uint64_t, std::uint64_t> parse_seeds(const std::string& text);
 
-/// Shard is a part of the work: "2/8" is the second of eight parts.
+/// The shard "2/8" is the second of eight parts of the work.
 struct Shard {
   std::uint64_t index = 1, count = 1;
 };
 Shard parse_shard(const std::string& text);
-/// Reduces a range of seeds to those of one shard: one of `count` contiguous parts, whose lengths differ by at most
-/// one. Returns false if the part is empty.
+/// The range of seeds is reduced to one of `count` contiguous parts, whose lengths differ by at most one; false means
+/// an empty part.
 bool shard_seeds(const Shard& shard, std::uint64_t& first, std::uint64_t& last);
 
-/// Throws BadInput for an unknown name and suggests the nearest name: "unknown verb 'rnu'; did you mean 'run'?".
 void require_known(const std::string& what, const std::string& name, std::span<const std::string> known);
 
-/// Returns the named methods in order, without duplicates. An empty `names` selects all methods.
 std::vector<scenarios::MethodPointer> select_methods(const std::vector<std::string>& names);
 
-/// Returns the method `name`. External methods have the time limit `time_limit_s`.
 scenarios::MethodPointer one_method(const std::string& name, double time_limit_s);
 
-/// States the time limit of each external method among `names`, because external methods can hang.
+/// External methods can hang, so their time limit is printed.
 void note_time_limits(const Session& session, std::span<const std::string> names);
 
-/// Returns the metric `name` of the method's kind. If `name` is empty, returns the first metric of the kind.
 std::string metric_of(const scenarios::Method& method, const std::string& name);
 
-/// Parses the seed in `text`. For an empty `text`, returns the seed of a named case; other scenarios require a seed.
+/// For an empty `text`, returns the seed of a named case; other scenarios require a seed.
 std::uint64_t seed_of(const scenarios::Scenario& scenario, const std::string& text);
 
-/// Returns a check that accepts scenarios of the catalogue and scenario files. The check runs before CLI11 reports
-/// missing options.
 std::function<void(const std::string&)> a_scenario(const Session& session);
-/// Returns a check that accepts suites, suite files and scenarios.
 std::function<void(const std::string&)> a_suite(const Session& session);
 
-/// Throws BadInput if the file is missing or no recording. The check runs before CLI11 reports missing options.
+/// The check for a valid recording runs before CLI11 reports missing options.
 void a_recording(const std::string& file);
 
-/// Returns the number of processors that this process may use.
 int available_processors();
 
-/// Creates a folder and its parent folders.
 void make_folder(const std::filesystem::path& folder);
-/// Creates the folder of an output file. Throws BadInput if the output is one of the inputs. Must be called before the
-/// computation starts.
+/// Throws BadInput if the output is one of the inputs; must be called before the computation starts.
 void prepare_output(const std::filesystem::path& output, std::span<const std::filesystem::path> inputs);
 
 /// Throws BadInput if the extension of an output is not one of `endings`, so that an output never replaces a file of
 /// another kind.
 void require_ending(const std::filesystem::path& output, std::span<const std::string_view> endings);
 
-/// Checks, before the computation starts, that an output file can be written; leaves no file behind. Throws BadInput if
-/// the output is one of the inputs or has none of the extensions `endings`.
+/// Checks, before the computation starts, that an output file can be written. Throws BadInput if the output is one of
+/// the inputs or has none of the extensions `endings`.
 void prepare_file(const std::filesystem::path& output, std::span<const std::filesystem::path> inputs,
                   const std::vector<std::string_view>& endings);
 
-/// Extensions of recordings that the program writes.
 inline const std::vector<std::string_view> kRecordingEndings = {".h5", ".hdf5"};
 
 }  // namespace tumble::tools

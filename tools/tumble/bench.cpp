@@ -44,7 +44,6 @@ struct BenchOptions {
   bool store = false;
 };
 
-/// A suite has one kind, so all methods must have this kind.
 std::vector<scenarios::MethodPointer> methods_of(const BenchOptions& options) {
   std::vector<scenarios::MethodPointer> methods = scenarios::find_methods(options.methods);
   for (const scenarios::MethodPointer& each : methods)
@@ -60,8 +59,8 @@ scenarios::Suite suite_of(const scenarios::DataRoot& data, const BenchOptions& o
   scenarios::Suite suite =
       scenarios::load_suite(data, options.suite.empty() ? scenarios::bench_suite_name(kind) : options.suite);
   if (suite.classes.empty())
-    throw BadInput(
-        fmt::format("suite {} has no classes of draws; add the key 'draws' to the file of the suite", suite.name));
+    throw BadInput(fmt::format(
+        "suite {} has no classes of simulated runs; add the key 'draws' to the file of the suite", suite.name));
   suite.methods = options.methods;
   return suite;
 }
@@ -79,8 +78,6 @@ fs::path database_of(const scenarios::DataRoot& data, const BenchOptions& option
   return fmt::format("{}_{}_{}.db", suite.name, whose, scenarios::digest_of_texts(texts).substr(0, kDigestShown));
 }
 
-/// Reads the stored results in the source tree and the result files that the user names. Results of another suite are
-/// an error.
 std::vector<BenchResult> stored_results(const scenarios::DataRoot& data, const BenchOptions& options,
                                         const scenarios::Suite& suite) {
   std::vector<BenchResult> all = scenarios::read_bench_results(scenarios::bench_results_file(data, suite.name));
@@ -96,7 +93,7 @@ std::vector<BenchResult> stored_results(const scenarios::DataRoot& data, const B
   return all;
 }
 
-/// Returns the command with file names only: the page then contains no path of this machine.
+/// The command contains file names only, so that the page contains no path of this machine.
 std::string command_of(const BenchOptions& options) {
   std::string words = "tumble bench";
   for (const std::string& method : options.methods) {
@@ -122,28 +119,27 @@ BenchPage page_of(const scenarios::Results& results, const scenarios::Suite& sui
       page.stored.push_back(std::move(each));
     else
       page.left_out.push_back(
-          fmt::format("{}: the recording of {} in these results differs, because another build simulated the recording",
+          fmt::format("{}: the recording of simulated run {} in these results differs, because another build simulated "
+                      "the recording",
                       each.method, draw));
   }
   return page;
 }
 
-/// Prints the page. With --json, prints one JSON line per method that ran.
 void print(const Session& session, const std::vector<Table>& tables, const std::string& lines) {
   if (!session.json) return session.print(tables, {});
   if (std::fwrite(lines.data(), 1, lines.size(), stdout) != lines.size() || std::fflush(stdout) != 0)
     throw BadInput(std::string("standard output: ") + std::strerror(errno));
 }
 
-/// Returns the command of the sweep that measures the same runs, for a note in the database.
 std::string sweep_command(const BenchOptions& options, const scenarios::Suite& suite) {
   std::string words = scenarios::shell_word(options.suite.empty() ? suite.name : options.suite);
   for (const std::string& method : options.methods) words += " --method " + scenarios::shell_word(method);
   return words;
 }
 
-/// Writes a database with measured and stored results for `report`, and returns its path. The measured database never
-/// contains stored results: a sweep would take them for completed runs.
+/// A separate database serves `report`, because a sweep would take stored results in the measured database for
+/// completed runs.
 fs::path database_to_report(const fs::path& measured, const scenarios::Results& results, const BenchPage& page) {
   std::vector<BenchResult> others = page.stored;
   std::erase_if(others, [&](const BenchResult& stored) {
@@ -172,16 +168,17 @@ int bench(const Session& session, const BenchOptions& options) {
   if (!options.lines.empty()) prepare_file(options.lines, {}, {".jsonl"});
   const fs::path database = database_of(data, options, suite, methods);
   if (database.has_parent_path()) make_folder(database.parent_path());
-  session.note(fmt::format(
-      "suite {} has {} draws. The program stores the results in {}. A stopped run continues from this database",
-      suite.name, suite.draw_count(), database.string()));
+  session.note(
+      fmt::format("suite {} has {} simulated runs. The program stores the results in {}. A stopped run continues from "
+                  "this database",
+                  suite.name, suite.draw_count(), database.string()));
   const scenarios::DatabaseOwner owner(database);
   const InterruptFlag interrupt;
   scenarios::SweepOptions how;
   how.jobs = options.jobs;
   how.stop = &interrupt.raised();
-  how.again = {scenarios::OutcomeStatus::killed};  // a run that the operating system killed does not characterise the
-                                                   // method
+  how.again = {
+      scenarios::OutcomeStatus::killed};  // a run that the operating system killed says nothing about the method
   const scenarios::SweepProgress final = sweep_with_progress(session, data, suite, owner, how);
   if (final.draws_done < final.draws_total) return say_stopped(final);
 
@@ -213,7 +210,7 @@ Action declare_bench(VerbOptions& verb, const Session& session) {
            "must have the same kind")
       .required();
   verb.add("--suite", options->suite,
-           "runs this suite, which must list its draws [default: the standard suite of the method's kind]");
+           "runs this suite, which must list its simulated runs [default: the standard suite of the method's kind]");
   verb.add("--beside", options->beside, "also shows the published results in this FILE.jsonl").one_at_a_time();
   verb.add("--jobs", options->jobs, "runs this number of processes in parallel [default: number of processors]")
       .whole(1, 1024)

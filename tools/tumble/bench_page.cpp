@@ -20,7 +20,6 @@ using scenarios::BenchResult;
 constexpr const char* kCost = "estimate_cpu_s";
 constexpr std::size_t kVersionShown = 40;
 
-/// MethodRow is a method on the page; the methods of this run come first.
 struct MethodRow {
   const BenchResult* result;
   std::string label;
@@ -33,7 +32,6 @@ std::vector<MethodRow> rows_of(const BenchPage& page) {
   return rows;
 }
 
-/// Returns the method with which all others are paired: the baseline, or else the first method in the registry.
 const BenchResult* baseline_of(const std::vector<MethodRow>& rows) {
   const BenchResult* first = nullptr;
   for (const scenarios::Method& method : scenarios::methods()) {
@@ -78,7 +76,6 @@ Table metric_table(const scenarios::Suite& suite, const std::string& metric, con
   return table;
 }
 
-/// Returns the table with status counts, cost and origin of each result.
 Table origin_table(const scenarios::Suite& suite, const std::vector<MethodRow>& rows,
                    const std::vector<BenchResult>& all) {
   Table table(fmt::format("origin of the results; {} {}", suite.name, scenarios::bench_suite_digest(suite)),

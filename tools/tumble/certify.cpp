@@ -26,7 +26,7 @@ int certify(const Session& session, const std::vector<std::string>& rows) {
       scenarios::measure_certificate({session.data(), session.program()}, options);
   session.print({certificate_table(certificate)}, nlohmann::json::parse(to_json(certificate)));
   if (interrupt.raised().load()) {
-    std::fprintf(stderr, "tumble: stopped: the certificate is incomplete; run the command again\n");
+    std::fprintf(stderr, "tumble: stopped: the certificate of the simulation is incomplete; run the command again\n");
     return kCheckFailed;
   }
   return certificate.passes() ? kDone : kCheckFailed;
@@ -39,7 +39,8 @@ Action declare_certify(VerbOptions& verb, const Session& session) {
   std::string known;
   for (const scenarios::CertificateRow& row : scenarios::certificate_rows()) known += " " + row.name;
   verb.add("--row", *rows,
-           fmt::format("measures only this row of the certificate; repeat the option for more rows:{}", known))
+           fmt::format("makes only this measurement of the simulation; repeat the option for more measurements:{}",
+                       known))
       .one_at_a_time();
   return [&session, rows] { return certify(session, *rows); };
 }

@@ -36,7 +36,6 @@ struct CompareOptions {
   double risk = 0.05, power = 0.8;
 };
 
-/// The reference is the baseline, or the last method if several are named.
 scenarios::ComparisonOptions read(const CompareOptions& options) {
   scenarios::ComparisonOptions out;
   out.methods = options.methods;
@@ -61,7 +60,6 @@ std::string title_of(const Contest& contest, const std::string& what) {
   return fmt::format("{}: {}, {}", contest.scenario, to_string(contest.kind), what);
 }
 
-/// ComparisonRow builds the cells of a row, and the column titles.
 struct ComparisonRow {
   std::vector<std::string> heads = {}, cells = {};
 
@@ -69,7 +67,6 @@ struct ComparisonRow {
     heads.push_back(head);
     cells.push_back(std::move(cell));
   }
-  /// Adds the two ends of an interval as numeric cells, for CSV. Infinite ends are empty.
   void add_ends(const std::string& head, const scenarios::Interval& interval, double unit = 1.0) {
     const auto end = [&](double value) { return std::isfinite(value) ? fmt::format("{:.6g}", unit * value) : ""; };
     add(head + " low", end(interval.low));
@@ -132,7 +129,6 @@ ComparisonRow cells_of(const FailureComparison& row, bool apart) {
   return out;
 }
 
-/// Returns one table per contest; `cells(row)` builds a row.
 template <typename Comparisons, typename Cells>
 std::vector<Table> tables_of(const Comparisons& rows, const std::string& what, const Cells& cells) {
   std::vector<Table> tables;
@@ -201,9 +197,10 @@ int compare(const Session& session, const CompareOptions& options) {
   const scenarios::Results results(options.database, scenarios::Results::Mode::read_only);
   const Comparison comparison = scenarios::compare(scenarios::summarize(results), asked);
   if (comparison.failures.empty())
-    throw BadInput(fmt::format(
-        "{}: no draw of this database has results of two of the named methods; name methods that ran on the same draws",
-        options.database.string()));
+    throw BadInput(
+        fmt::format("{}: no simulated run of this database has results of two of the named methods; name methods that "
+                    "ran on the same simulated runs",
+                    options.database.string()));
   const bool apart = session.format == TableFormat::csv;
   std::vector<Table> tables = tables_of(comparison.metrics, "paired with ", [&](const MetricComparison& row) {
     return cells_of(row, asked.margin.has_value(), apart);
@@ -231,7 +228,7 @@ Action declare_compare(VerbOptions& verb, const Session& session) {
   verb.add("--against", options->against,
            "sets the method with which the other methods are compared [default: the last --method, or the baseline]");
   verb.add("--metric", options->metrics,
-           "compares this metric; repeat the option for more metrics [default: the headline metrics of the kind]")
+           "compares this metric; repeat the option for more metrics [default: the most important metrics of the kind]")
       .one_at_a_time();
   verb.add("--margin", options->margin,
            "sets the margin: a smaller loss counts as 'not worse'. Write a number in the metric's unit, or a "
@@ -240,7 +237,7 @@ Action declare_compare(VerbOptions& verb, const Session& session) {
       .within(1e-6, 0.5)
       .shows_default();
   verb.add("--power", options->power,
-           "sets the power of the tests, from which the program computes the needed number of draws")
+           "sets the power of the tests, from which the program computes the needed number of simulated runs")
       .within(0.5, 0.999)
       .shows_default();
   return [&session, options] { return compare(session, *options); };

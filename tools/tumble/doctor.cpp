@@ -22,7 +22,7 @@ void append_findings(std::vector<RecordingFinding> more, std::vector<RecordingFi
   std::move(more.begin(), more.end(), std::back_inserter(out));
 }
 
-/// Runs the causal slam method, whose health reports faults that only a map reveals.
+/// The health of the causal slam method reports faults that only a map reveals.
 std::vector<RecordingFinding> findings_of_odometry(const sim::Sensors& sensors) {
   const scenarios::MethodPointer method = chosen_method("slam/tumble_lag", {sensors.robot, true});
   const scenarios::Estimate estimate = run_method(*method, sensors);
@@ -48,7 +48,6 @@ std::vector<RecordingFinding> findings_of(const OpenRecording& recording) {
 }
 
 int run_doctor(const Session& session, const ImportOptions& options) {
-  // Invalid options and an unknown format are wrong use; later errors are findings.
   (void)format_of(options);
   (void)bag_reading(session, options);
   std::vector<RecordingFinding> findings;

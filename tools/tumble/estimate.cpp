@@ -37,7 +37,6 @@ struct EstimateOptions {
   PriorMapOptions prior_map;
 };
 
-/// ShownCounter is a health counter in the table. --json and estimate.json contain all counters.
 struct ShownCounter {
   const char *name, *meaning, *unit;
 };
@@ -48,7 +47,6 @@ constexpr ShownCounter kShownCounters[] = {
     {"end_sigma_rad", "standard deviation of the last attitude", "rad"},
 };
 
-/// Lists the content of an estimate, with units.
 Table summary(const scenarios::Estimate& estimate, scenarios::OutcomeStatus status) {
   Table table("", {"estimate", "value", "unit"});
   table.align_right_from(1);
@@ -112,11 +110,9 @@ int run_estimate(const Session& session, const EstimateOptions& options) {
   if (const std::string caution = learnt.caution(sensors); !caution.empty()) session.note(caution);
   if (!options.prior_map.map.empty()) session.note(localisation_text(options.prior_map, estimate));
   if (!with_digest) session.note("the recording contains no digest of its data, so the program cannot detect damage");
-  // After a failure, the findings may name the cause: a sensor fault.
   for (const HealthFinding& each : estimate.faults.findings)
     session.note(full_name(method.info) + ": " + scenarios::report_text(each));
   if (estimate.status.ok()) return kDone;
-  // The incomplete estimate is kept for inspection.
   throw BadInput(options.recording.string() + ": " + full_name(method.info) +
                  " failed: " + failure_reason(estimate.status, sensors));
 }

@@ -24,7 +24,6 @@ struct ExportOptions {
   std::vector<std::filesystem::path> estimates;
 };
 
-/// Returns the format that the user names, or else that of the output's extension.
 std::string format_of(const ExportOptions& options) {
   const std::string format_name = options.format.empty() ? scenarios::format_of_ending(options.out) : options.format;
   if (format_name.empty())
@@ -33,7 +32,6 @@ std::string format_of(const ExportOptions& options) {
   return format_name;
 }
 
-/// Reports what the export wrote, and where.
 int said(const Session& session, const ExportOptions& options, const std::string& what, const std::string& name) {
   Table table("", {"recording", what, "written to"});
   table.add_row({options.recording.string(), name, options.out.string()});

@@ -38,7 +38,6 @@ std::string rate_text(std::int64_t period_ns) {
   return period_ns > 0 ? rounded(1e9 / static_cast<double>(period_ns)) + " Hz" : "unknown rate";
 }
 
-/// Found collects the rows for one recording.
 class Found {
  public:
   Found(const Session& session, OpenRecording& recording) : recording_(recording) {

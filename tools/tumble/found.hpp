@@ -9,11 +9,8 @@
 #include "tools/tables/table.hpp"
 #include "tools/tumble/importing.hpp"
 
-/// found.hpp reports what `odometry` detected in a recording, and adds properties that neither recording nor user
-/// states.
 namespace tumble::tools {
 
-/// FoundItem is one detected or assumed property.
 struct FoundItem {
   std::string item;
   std::string found;   ///< value, with its evidence or the effect of an assumption
@@ -21,10 +18,10 @@ struct FoundItem {
   std::string option;  ///< command-line option that changes the property
 };
 
-/// Detects the data sheets of the first IMU and lidar, and the attitude of a lidar without a known pose. Stores these
-/// properties in the recording and returns them.
+/// Detects the data sheets of the first IMU and lidar, and the attitude of a lidar without a known pose, and stores
+/// them in the recording.
 ///
-/// @param own_body_L  Box around the robot in lidar axes; points inside are dropped. For display only.
+/// @param own_body_L  Box around the robot in lidar axes, for display only; points inside are dropped.
 std::vector<FoundItem> complete_recording(const Session& session, OpenRecording& recording,
                                           const Eigen::AlignedBox3d& own_body_L, bool own_body_stated);
 

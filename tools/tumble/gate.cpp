@@ -47,8 +47,8 @@ bool is_of(const scenarios::MethodRun& run, const scenarios::MethodPointer& meth
   return run.kind == method->info.kind && run.method == method->info.name;
 }
 
-/// Without --accept, only external methods may be named: the accepted results determine which methods of this build
-/// run. With --accept, named methods are added to the gate.
+/// Without --accept, only external methods may be named, because the accepted results determine which methods of this
+/// build run.
 std::vector<scenarios::MethodPointer> given_methods(const GateOptions& options) {
   for (const std::string& name : options.methods) {
     if (!options.accept && !scenarios::is_method_file(name))
@@ -60,7 +60,6 @@ std::vector<scenarios::MethodPointer> given_methods(const GateOptions& options) 
   return scenarios::find_methods(options.methods);
 }
 
-/// Restricts the suite to accepted methods. With --accept, newly named methods are added.
 void keep_accepted(const scenarios::Gate& gate, const GateOptions& options,
                    const std::vector<scenarios::MethodPointer>& given, scenarios::Suite& suite) {
   std::vector<std::string> methods = options.methods, names;
@@ -85,7 +84,6 @@ void keep_accepted(const scenarios::Gate& gate, const GateOptions& options,
   suite.scenarios = names;
 }
 
-/// Drops results that do not belong to the suite; the user's database may contain them.
 scenarios::GateRun of_suite(scenarios::GateRun run, const scenarios::Suite& suite) {
   const std::vector<scenarios::MethodPointer> methods = scenarios::find_methods(suite.methods);
   std::erase_if(run.methods, [&](const scenarios::MethodRun& each) {
@@ -148,7 +146,6 @@ json to_json(const std::vector<GateResult>& results, bool passes) {
   return {{"verdict", passes ? "pass" : "fail"}, {"held", std::move(rows)}};
 }
 
-/// Loads the gate. Returns nothing if the gate does not exist and --accept creates it.
 std::optional<scenarios::Gate> load(const scenarios::DataRoot& data, const GateOptions& options,
                                     const std::vector<scenarios::MethodPointer>& given, const std::string& suite) {
   const fs::path file = gate_file(data, options, suite);
@@ -164,23 +161,21 @@ std::optional<scenarios::Gate> load(const scenarios::DataRoot& data, const GateO
   return gate;
 }
 
-/// Stores the new results as accepted results. The limits stay unchanged.
 void write_accepted(const fs::path& file, const scenarios::Gate& gate) {
   if (file.has_parent_path()) make_folder(file.parent_path());
   scenarios::replace_file(fs::path(file).replace_extension(".csv"), scenarios::to_csv(gate.accepted));
   if (!fs::exists(file)) scenarios::replace_file(file, scenarios::to_yaml(gate));
 }
 
-/// Stores the certificate of this build, if known, in a kept database, and describes its state. The certificate is not
-/// measured here, because gates run often.
+/// The certificate (checks of the simulation) is not measured here, because gates run often.
 std::string certificate_text(const Session& session, const scenarios::DataRoot& data, const fs::path& database) {
   scenarios::Results results(database, scenarios::Results::Mode::create_or_append);
   const auto certificate = scenarios::known_certificate(results, scenarios::CertificateStore(session.cache(), data));
   return certificate ? certificate_summary(*certificate)
-                     : "not measured for this build on this machine; run 'tumble certify' or 'tumble sweep'";
+                     : "not measured for this build on this machine; 'tumble certify' or 'tumble sweep' measures the "
+                       "agreement of the simulation with physics";
 }
 
-/// Runs named cases, which contain their own expectations.
 int run_case_gate(const Session& session, const scenarios::DataRoot& data, const GateOptions& options) {
   if (!options.accepted.empty() || !options.methods.empty())
     throw scenarios::BadInput(
@@ -195,9 +190,10 @@ int run_gate(const Session& session, const GateOptions& options) {
   scenarios::Suite suite = scenarios::load_suite(data, options.suite);
   if (!suite.recordings.empty())
     throw scenarios::BadInput(
-        fmt::format("suite '{}' contains recordings; a gate needs draws of scenarios", suite.name));
+        fmt::format("suite '{}' contains recordings; a gate needs simulated runs of scenarios", suite.name));
   if (!suite.classes.empty())
-    throw scenarios::BadInput(fmt::format("suite '{}' names its draws; a gate needs a range of seeds", suite.name));
+    throw scenarios::BadInput(
+        fmt::format("suite '{}' lists its simulated runs; a gate needs a range of seeds", suite.name));
   if (!options.accepted.empty() && options.accepted.extension() != ".yaml")
     throw scenarios::BadInput(
         fmt::format("--against {}: the accepted results must be in a FILE.yaml", options.accepted.string()));
@@ -246,8 +242,8 @@ int run_gate(const Session& session, const GateOptions& options) {
 Action declare_gate(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<GateOptions>();
   verb.add("SUITE", options->suite,
-           "runs the fixed seeds of this suite, suite file or scenario; or this named case; or all named cases "
-           "('regressions')")
+           "runs the fixed seeds of this suite, suite file or scenario; or this named case (a stored failure); or all "
+           "named cases ('regressions')")
       .required()
       .check(a_suite_or_cases(session));
   verb.add("--against", options->accepted,

@@ -23,7 +23,6 @@ namespace {
 using nlohmann::json;
 using scenarios::CaseResult;
 
-/// Converts a case to a suite: its single simulated run, and the methods with an expectation.
 scenarios::Suite suite_of(const scenarios::Scenario& named) {
   scenarios::Suite suite;
   suite.name = kAllCases;
@@ -34,7 +33,6 @@ scenarios::Suite suite_of(const scenarios::Scenario& named) {
   return suite;
 }
 
-/// Expectations of a case, each with the outcome of this run.
 using Reached = std::vector<std::pair<scenarios::Expectation, scenarios::Outcome>>;
 
 Reached reached(const scenarios::Results& results, const scenarios::Scenario& named) {
@@ -53,9 +51,10 @@ Reached reached(const scenarios::Results& results, const scenarios::Scenario& na
     }
   }
   if (out.size() != named.named_case->expected.size())
-    throw scenarios::BadInput(fmt::format(
-        "case {} has missing outcomes, because its draw cannot be simulated; correct or delete the file of the case",
-        named.name));
+    throw scenarios::BadInput(
+        fmt::format("named case {} has missing results, because its run cannot be simulated; correct or delete the "
+                    "file of the case",
+                    named.name));
   return out;
 }
 
@@ -91,7 +90,6 @@ json to_json(const std::vector<CaseResult>& results, bool passes) {
   return {{"verdict", passes ? "pass" : "fail"}, {"cases", std::move(rows)}};
 }
 
-/// Writes the outcomes to the file of the case as new expectations.
 void accept(const Session& session, const scenarios::DataRoot& data, scenarios::Scenario named, Reached& outcomes) {
   named.named_case->expected.clear();
   for (auto& [expected, outcome] : outcomes) {
@@ -108,7 +106,6 @@ void accept(const Session& session, const scenarios::DataRoot& data, scenarios::
   session.note("accepted: " + file.string());
 }
 
-/// Loads the named cases and checks that the methods and metrics of the expectations exist.
 std::vector<scenarios::Scenario> cases_of(const scenarios::DataRoot& data, const std::string& word) {
   std::vector<scenarios::Scenario> out;
   for (const std::string& name : scenarios::case_names(data)) {

@@ -27,7 +27,6 @@ scenarios::Frame frame_of(const std::string& name, bool has_imu) {
 
 namespace {
 
-/// Throws BadInput if the digest of the sensor data in the estimate is not that of the recording.
 void require_own(const std::filesystem::path& estimate, const std::filesystem::path& recording,
                  const sim::Sensors& sensors) {
   const std::string made_from = scenarios::estimated_sensors(estimate);

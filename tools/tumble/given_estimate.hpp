@@ -7,11 +7,8 @@
 #include "scenarios/methods/method.hpp"
 #include "sim/recording.hpp"
 
-/// given_estimate.hpp reads an estimate that is an argument in addition to the recording.
 namespace tumble::tools {
 
-/// Returns the frame of the poses in a TUM file: the user's choice, or else the first IMU, or the body if there is no
-/// IMU. Throws BadInput for an unknown frame; the message suggests the nearest known frame.
 scenarios::Frame frame_of(const std::string& name, bool has_imu);
 
 struct GivenEstimate {
@@ -19,8 +16,8 @@ struct GivenEstimate {
   scenarios::Frame tum_frame;  ///< frame of the poses in a TUM file
 };
 
-/// Reads an estimate of the recording and converts its stamps to the recording's clock (estimate_clock.hpp). `truth`
-/// may be null. Throws BadInput for read errors, and if the estimate belongs to other sensor data (digest).
+/// Reads an estimate of the recording and converts its stamps to the recording's clock. `truth` may be null. Throws
+/// BadInput for read errors, and if the estimate belongs to other sensor data.
 scenarios::Estimate read_given(const GivenEstimate& given, const sim::Sensors& sensors, const sim::Truth* truth,
                                scenarios::Kind& kind, std::string& method);
 

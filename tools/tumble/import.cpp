@@ -40,7 +40,6 @@ nlohmann::json document_of(const ImportOptions& options, const std::string& form
   return document;
 }
 
-/// Returns one row per sensor, and one row for the reference.
 Table table_of(const Imported& imported) {
   Table table("", {"what", "name", "readings", "period [ms]", "seconds", "remark"});
   const auto ms = [](std::int64_t ns) { return number_text(static_cast<double>(ns) * 1e-6); };

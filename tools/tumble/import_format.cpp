@@ -23,7 +23,6 @@ using scenarios::BadInput;
 const std::vector<std::string> kFormats = {"csv", "kitti",   "mcap",    "pcd", "odometry",
                                            "ply", "rosbag1", "rosbag2", "tum", "vtk"};
 
-/// Detects the format of the files in a folder. Several ROS 1 bags are parts of one recording.
 std::string format_of_folder(const std::filesystem::path& folder) {
   const std::map<std::string, std::string> known = {{".ply", "ply"},    {".pcd", "pcd"},     {".bin", "kitti"},
                                                     {".vtk", "vtk"},    {".bag", "rosbag1"}, {".mcap", "rosbag2"},
@@ -50,7 +49,7 @@ std::string format_of_folder(const std::filesystem::path& folder) {
   return found;
 }
 
-/// Throws BadInput for a table of a data set that the Python package reads.
+/// The Python package, and not `tumble import`, reads the tables of known data sets.
 void require_no_data_set(const std::filesystem::path& file) {
   std::ifstream stream(file);
   std::string line;
@@ -64,7 +63,6 @@ void require_no_data_set(const std::filesystem::path& file) {
                   file.filename().string()));
 }
 
-/// Detects the format of a CSV file from its first line.
 std::string format_of_csv(const std::filesystem::path& file) {
   require_no_data_set(file);
   try {
@@ -74,7 +72,6 @@ std::string format_of_csv(const std::filesystem::path& file) {
   }
 }
 
-/// Detects a binary format from the first bytes; empty for other files.
 std::string format_of_content(const std::filesystem::path& file) {
   std::array<char, 16> first{};
   std::ifstream(file, std::ios::binary).read(first.data(), first.size());
@@ -85,7 +82,7 @@ std::string format_of_content(const std::filesystem::path& file) {
   return start.starts_with("\x89HDF\r\n") ? "recording" : "";
 }
 
-/// Detects the format of a text file: a table with commas, or poses. The first line that is no comment decides.
+/// The first line that is no comment decides whether a text file is a table with commas, or poses.
 std::string format_of_text(const std::filesystem::path& file) {
   std::ifstream stream(file);
   std::string line;

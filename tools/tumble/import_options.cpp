@@ -29,14 +29,13 @@ bool is_sweeps(const std::string& format) {
 void require_numbers(const std::string& option, const std::vector<double>& numbers, double bound) {
   for (const double x : numbers) {
     if (!(std::abs(x) <= bound)) {
-      // NaN has its own message, because tables show NaN as a dash.
+      // NaN has a separate error message, because tables show NaN as a dash.
       throw BadInput(
           fmt::format("{0}: {1:g} is out of range; each number must be from -{2:g} to {2:g}", option, x, bound));
     }
   }
 }
 
-/// Converts seven numbers x y z qx qy qz qw to a pose.
 Eigen::Isometry3d pose_of(const std::string& option, const std::vector<double>& numbers) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   if (numbers.empty()) return pose;
@@ -86,7 +85,6 @@ scenarios::SweepReading sweep_reading(const Session& session, const ImportOption
   reading.time_field = options.time_field;
   reading.time_unit = options.time_unit;
   reading.not_skewed = options.not_skewed;
-  // Without an output file, the points are kept in memory.
   if (!options.out.empty()) reading.scratch = options.out.parent_path().empty() ? "." : options.out.parent_path();
   return reading;
 }

@@ -10,57 +10,46 @@
 #include "tools/tumble/session.hpp"
 #include "tools/tumble/verb_options.hpp"
 
-/// import_options.hpp declares the options of `tumble import`, and converts them for the library. All functions throw
-/// BadInput with a one-line message.
 namespace tumble::tools {
 
 struct ImportOptions {
   std::filesystem::path path, out;
   std::string format, robot;
   double radius_m = 0.0;
-  // Properties of the IMU.
   std::string device, accel_unit, gyro_unit, columns;
   std::vector<double> lever_arm_m;
   std::filesystem::path imu;
-  // Properties of the lidar.
   std::string lidar, stem, bin_columns, time_field, time_unit;
   std::vector<double> T_body_lidar;
   std::filesystem::path times;
   double sweep_period_s = 0.0;
   bool not_skewed = false;
-  // Properties of the reference.
   std::filesystem::path reference;
   std::string reference_frame;
   bool sorted = false;
-  // These options select topics of a bag.
   std::vector<std::string> imu_topics, lidar_topics;
   std::string reference_topic, stamps;
   bool leave_out_topics = false;  ///< skip a faulty topic if another topic of its kind is readable
 };
 
-/// Declares the path and the options that determine how IMU and lidar are read.
 void declare_sensors(VerbOptions& verb, ImportOptions& options);
-/// Declares all options of `tumble import`.
 void declare(VerbOptions& verb, ImportOptions& options);
 
-/// Returns the format that the user names, or else detects it from the extension or the content.
 std::string format_of(const ImportOptions& options);
 
 /// Throws BadInput for options that have no effect for this format.
 void require_fitting(const ImportOptions& options, const std::string& format);
 
-/// Returns name, device, ranges, noise and mounting of an IMU from its data sheet and the options.
 sim::ImuRecord imu_sheet(const Session& session, const ImportOptions& options);
-/// Copies properties that the file lacks from the data sheet.
 void complete(const sim::ImuRecord& sheet, sim::ImuRecord& imu);
 scenarios::AccelUnit accel_unit(const ImportOptions& options);
 scenarios::GyroUnit gyro_unit(const ImportOptions& options);
 
 scenarios::SweepSource sweep_source(const Session& session, const ImportOptions& options, const std::string& format);
-/// Returns the file of reference poses: the user's choice, or else a file of norlab's mapper next to the sweeps, or
-/// truth.csv in a folder of tables. The path is empty if there is no such file.
+/// Returns the user's choice, or else a file of norlab's mapper next to the sweeps, or truth.csv in a folder of tables;
+/// empty if there is no such file.
 std::filesystem::path reference_file(const ImportOptions& options, const std::string& format);
-/// If the user names no frame and the recording has a lidar, the poses are assumed to be those of the lidar.
+/// If the user names no frame and the recording has a lidar, the reference poses are assumed to be those of the lidar.
 scenarios::ReferenceSource reference_source(const ImportOptions& options, const std::filesystem::path& file,
                                             bool has_lidar);
 scenarios::ReferenceSource trajectory_source(const ImportOptions& options, const std::string& format);

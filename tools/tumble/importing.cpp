@@ -22,7 +22,6 @@ Imported imu_table(const Session& session, const ImportOptions& options, const s
                                    options.columns);
 }
 
-/// Imports files of one format.
 Imported import_format(const Session& session, const ImportOptions& options, const std::string& format) {
   if (format == "csv" && std::filesystem::is_directory(options.path))
     return scenarios::import_csv_folder(options.path, imu_sheet(session, options), accel_unit(options),
@@ -36,7 +35,6 @@ Imported import_format(const Session& session, const ImportOptions& options, con
   return scenarios::import_sweeps(sweep_source(session, options, format));
 }
 
-/// Adds notes on assumed properties of an IMU that the file format lacks.
 void say_what_is_assumed(const ImportOptions& options, const std::string& format, std::vector<std::string>& notes) {
   if (options.lever_arm_m.empty() && (format == "csv" || !options.imu.empty())) {
     notes.push_back(
@@ -45,7 +43,6 @@ void say_what_is_assumed(const ImportOptions& options, const std::string& format
   }
 }
 
-/// Sets an option that the user did not set. Returns false if it is already set, or not a known option.
 bool set_option(const scenarios::ImportOption& option, ImportOptions& options) {
   const std::pair<const char*, std::string*> known[] = {
       {"--accel-unit", &options.accel_unit}, {"--gyro-unit", &options.gyro_unit}, {"--stamps", &options.stamps}};
@@ -57,15 +54,12 @@ bool set_option(const scenarios::ImportOption& option, ImportOptions& options) {
   return false;
 }
 
-/// Throws BadInput for options that have no effect on a recording of this program: only data sheet and mounting of its
-/// first sensors can be set.
 void require_own_options(ImportOptions options) {
   for (std::string* name : {&options.device, &options.lidar}) name->clear();
   for (std::vector<double>* pose : {&options.lever_arm_m, &options.T_body_lidar}) pose->clear();
   require_fitting(options, "recording");
 }
 
-/// Applies the data sheet and the mounting in the options to the sensors.
 void apply_mounting(const Session& session, const ImportOptions& options, sim::Sensors& sensors) {
   if (!sensors.imus.empty()) {
     const sim::ImuRecord stated = imu_sheet(session, options);
@@ -76,7 +70,6 @@ void apply_mounting(const Session& session, const ImportOptions& options, sim::S
     sensors.lidars.front().T_BL = sweep_source(session, options, "").reading.device.T_BL;
 }
 
-/// Reads a recording of this program.
 void open_own(const Session& session, OpenRecording& out) {
   require_own_options(out.options);
   const std::string path = out.options.path.string();

@@ -11,10 +11,9 @@ namespace {
 std::atomic<bool> raised_by_signal{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler must not lock");
 
-// Previous signal handlers.
 struct sigaction interrupt_before = {}, terminate_before = {}, hang_up_before = {};
 
-/// A second signal has its previous effect; only SIGHUP sets the flag again.
+/// A second Ctrl-C or SIGTERM has its previous effect; only SIGHUP sets the flag again.
 extern "C" void raise_flag(int number) {
   raised_by_signal.store(true);
   if (number != SIGHUP) sigaction(number, number == SIGINT ? &interrupt_before : &terminate_before, nullptr);

@@ -5,9 +5,6 @@
 
 namespace tumble::tools {
 
-/// While an instance exists, the first Ctrl-C (SIGINT) or SIGTERM sets a flag; the second ends the program. SIGHUP
-/// always sets the flag, because a closing terminal may send it twice (shell and system). An ignored SIGHUP (nohup)
-/// stays ignored. Only one instance may exist at a time.
 class InterruptFlag {
  public:
   InterruptFlag();

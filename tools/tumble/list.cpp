@@ -19,7 +19,6 @@ namespace {
 
 using nlohmann::json;
 
-/// Listing is a listing as tables and as JSON.
 struct Listing {
   std::vector<Table> tables;
   json document = json::array();
@@ -35,7 +34,6 @@ std::string bounds_of_parameter(const sim::Parameter& p) {
   return "[" + number_text(p.low) + ", " + number_text(p.high) + "]";
 }
 
-/// Formats a distribution, for example "uniform 0.35 .. 0.78".
 std::string distribution_text(const scenarios::Distribution& d) {
   using Shape = scenarios::Distribution::Shape;
   const auto number = [&](std::size_t i) {
@@ -59,7 +57,6 @@ std::string distribution_text(const scenarios::Distribution& d) {
   return text;
 }
 
-/// Returns the parameters of the registered component `type`, with unit, default and bounds.
 std::span<const sim::Parameter> parameters_of(std::span<const sim::ComponentType> registry, const std::string& type) {
   for (const sim::ComponentType& entry : registry) {
     if (entry.name == type) return entry.parameters;
@@ -67,7 +64,6 @@ std::span<const sim::Parameter> parameters_of(std::span<const sim::ComponentType
   return {};
 }
 
-/// Adds one table row and one JSON object per parameter. Parameters that the scenario omits have their defaults.
 void add_part(Table& table, json& rows, const std::string& place, std::span<const sim::Parameter> known,
               const std::map<std::string, scenarios::Distribution>& given) {
   for (const sim::Parameter& p : known) {
@@ -95,7 +91,6 @@ void add_scenario_numbers(const scenarios::Scenario& s, Listing& out, json& entr
   entry["numbers"] = std::move(rows);
 }
 
-/// Lists the named cases, with origin and expectations, in a separate table.
 void add_cases(const scenarios::DataRoot& data, Listing& out) {
   Table table("named cases", {"case", "of", "seed", "duration_s", "expected", "meaning"});
   for (const std::string& name : scenarios::case_names(data)) {
@@ -186,12 +181,10 @@ Listing list_methods(const std::string& only) {
   }
   out.tables.push_back(std::move(table));
   if (!parameters.empty()) out.tables.push_back(std::move(parameters));
-  // The parameters of all methods would fill thousands of lines.
   if (!only.empty() && !further.empty()) out.tables.push_back(std::move(further));
   return out;
 }
 
-/// Lists the kinds of sensors, or all parameters of one kind.
 void add_sensor_kinds(const std::string& only, Listing& out) {
   Table kinds("kinds", {"kind", "meaning"});
   for (const sim::ComponentType& kind : sim::sensor_types()) {

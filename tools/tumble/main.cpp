@@ -8,7 +8,6 @@
 int main(int argc, char** argv) {
   // A write beyond the file-size limit must cause an error message and not end the program.
   std::signal(SIGXFSZ, SIG_IGN);
-  // Removes unfinished files when a signal interrupts a verb.
   tumble::scenarios::remove_unfinished_on_signals();
   return tumble::tools::run_program(argc, argv);
 }

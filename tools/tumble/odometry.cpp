@@ -61,7 +61,6 @@ std::string method_name(const OdometryOptions& options) {
   return options.prior_map.map.empty() ? "slam/tumble" : "slam/tumble_lag";
 }
 
-/// Returns the parameter texts for a method with these parameters, including the box of the robot.
 std::vector<std::string> parameter_texts(const OdometryOptions& options, const scenarios::MethodInfo& info) {
   std::vector<std::string> texts = options.parameters;
   if (options.own_body_m.empty()) return texts;
@@ -84,7 +83,6 @@ void require_both_sensors(const std::filesystem::path& path, const sim::Sensors&
           : "Add IMU readings with --imu FILE.csv"));
 }
 
-/// Runs the method, with a progress bar on a terminal. Returns the duration in seconds.
 double run_with_progress(const Session& session, const scenarios::Method& method, const sim::Sensors& sensors,
                          Estimate& estimate) {
   using Clock = std::chrono::steady_clock;
@@ -107,7 +105,7 @@ double run_with_progress(const Session& session, const scenarios::Method& method
   return since(start);
 }
 
-/// Returns the length of the path through the ends of the sweeps [m]. The poses between would add noise.
+/// Only the ends of the sweeps count for the path length, because the poses between would add noise.
 double path_length_m(const Estimate& estimate) {
   double sum_m = 0.0;
   for (std::size_t k = 1; k < estimate.sweeps.size(); ++k)

@@ -18,7 +18,6 @@ using scenarios::BadInput;
 
 namespace {
 
-/// Returns the prior map of the options.
 std::shared_ptr<const PriorMap> read_map_of(const PriorMapOptions& options) {
   constexpr std::size_t kPose = 4, kWithSigmas = 6;
   auto map = std::make_shared<PriorMap>();

@@ -8,7 +8,6 @@
 #include "scenarios/methods/method.hpp"
 #include "tools/tumble/verb_options.hpp"
 
-/// prior_map_options.hpp declares the options by which a verb localises a run in the map of an earlier run.
 namespace tumble::tools {
 
 struct PriorMapOptions {
@@ -19,11 +18,9 @@ struct PriorMapOptions {
 
 void declare_prior_map(VerbOptions& verb, PriorMapOptions& options);
 
-/// Returns `method` with the prior map of the options, if there is one. Throws BadInput if the map cannot be read, or
-/// the method cannot use a map.
+/// Throws BadInput if the prior map cannot be read, or the method cannot use a map.
 scenarios::Method with_prior_map(const scenarios::Method& method, const PriorMapOptions& options);
 
-/// States from which sweep the poses are in the frame of the prior map.
 std::string localisation_text(const PriorMapOptions& options, const scenarios::Estimate& estimate);
 
 }  // namespace tumble::tools

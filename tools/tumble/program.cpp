@@ -37,7 +37,6 @@ void check_verb(int argc, const char* const* argv) {
   }
 }
 
-/// Converts `help` and `help VERB` to --help, as other programs do.
 std::vector<const char*> without_help(int argc, const char* const* argv) {
   std::vector<const char*> words(argv, argv + argc);
   if (words.size() < 2 || std::string_view(words[1]) != "help") return words;
@@ -49,13 +48,11 @@ std::vector<const char*> without_help(int argc, const char* const* argv) {
   return words;
 }
 
-/// Returns the verb on the command line, or else the program itself.
 const CLI::App& parsed(const CLI::App& app) {
   const auto subcommands = app.get_subcommands();
   return subcommands.empty() ? app : *subcommands.front();
 }
 
-/// Returns a one-line hint for a command line that CLI11 rejected.
 std::string usage_line(const CLI::App& app, const CLI::ParseError& error) {
   const CLI::App& verb = parsed(app);
   const std::string place = &verb == &app ? "" : verb.get_name() + ": ";
@@ -81,7 +78,7 @@ std::string usage_line(const CLI::App& app, const CLI::ParseError& error) {
 }
 
 int say(const char* prefix, const std::string& line, int status) {
-  // A corrupt file may contain megabytes in place of a word.
+  // An error message is shortened, because a corrupt file may contain megabytes in place of a word.
   constexpr std::size_t kBegin = 1500, kEnd = 300;
   std::string shown =
       line.size() <= kBegin + kEnd ? line : line.substr(0, kBegin) + " ... " + line.substr(line.size() - kEnd);
@@ -91,7 +88,6 @@ int say(const char* prefix, const std::string& line, int status) {
   return status;
 }
 
-/// Prints the text of `tumble` without arguments.
 int show_the_way() {
   std::string text =
       "tumble simulates robots that tumble and roll, estimates their motion and scores the estimates\n\nfirst steps\n  "
@@ -124,7 +120,6 @@ void add_table_format(CLI::App& options, Session& session) {
       ->type_name("TEXT");
 }
 
-/// Parses the command line and runs the verb.
 int dispatch(int argc, const char* const* argv) {
   if (argc == 1) return show_the_way();
   CLI::App app("tumble simulates robots that tumble and roll, estimates their motion and scores the estimates.",
@@ -142,7 +137,6 @@ int dispatch(int argc, const char* const* argv) {
     options->add_flag("--quiet", session.quiet, "suppresses notes and progress on standard error");
     VerbOptions declared(*options);
     options->callback([action = verb.declare(declared, session), &chosen] { chosen = action; });
-    // Some verbs have another --format: that of a recording.
     if (options->get_option_no_throw("--format") == nullptr) add_table_format(*options, session);
   }
   check_verb(argc, argv);
@@ -169,10 +163,10 @@ int run_program(int argc, const char* const* argv) {
   } catch (const std::filesystem::filesystem_error& error) {
     return say("", error.what(), kBadInput);
   } catch (const std::system_error& error) {
-    // A lack of processes, pipes or threads is not a defect.
+    // A lack of processes, pipes or threads is not a defect of the program.
     return say("", error.what(), kBadInput);
   } catch (const sim::SimulationFailure& error) {
-    return say("the simulation rejected the draw: ", error.what(), kCheckFailed);
+    return say("the simulation rejected the run: ", error.what(), kCheckFailed);
   } catch (const std::bad_alloc&) {
     return say("", "the program needs more memory than is available", kBadInput);
   } catch (const std::exception& error) {

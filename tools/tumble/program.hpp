@@ -3,8 +3,7 @@
 
 namespace tumble::tools {
 
-/// Runs the program: parses the command line, runs the verb, and converts every exception to one line on standard error
-/// and an exit status (session.hpp).
+/// Every exception becomes one line on standard error and an exit status.
 int run_program(int argc, const char* const* argv);
 
 }  // namespace tumble::tools

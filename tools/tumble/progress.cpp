@@ -15,7 +15,6 @@ namespace {
 constexpr double kLinePeriodS = 10.0;
 constexpr int kBarWidth = 24;
 
-/// Describes the failures, for example " (2 diverged, 1 timeout)"; empty without failures.
 std::string failures_text(const scenarios::SweepProgress& progress) {
   std::string text;
   for (const auto& [status, count] : progress.failures)
@@ -23,7 +22,6 @@ std::string failures_text(const scenarios::SweepProgress& progress) {
   return text.empty() ? text : text + ")";
 }
 
-/// Returns a bar of `width` cells; empty for a width of 0.
 std::string bar_text(double share, int width) {
   if (width <= 0) return "";
   const int filled = std::clamp(static_cast<int>(share * width), 0, width);
@@ -49,7 +47,6 @@ std::string progress_line(const scenarios::SweepProgress& p, int bar_width) {
                       static_cast<int>(share * 100.0), p.outcomes, p.not_ok(), failures_text(p), p.rejected);
   if (p.to_keep > 0) line += fmt::format("  kept {}/{}", p.kept, p.to_keep);
   if (p.draws_done < p.draws_total) {
-    // The remaining time is unknown until the first run ends.
     line += "  left " + (p.draws_done == 0 ? "?" : duration_text(p.left_s));
   } else {
     line += "  in " + duration_text(p.elapsed_s);

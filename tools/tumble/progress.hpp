@@ -10,24 +10,21 @@
 
 namespace tumble::tools {
 
-/// Formats a duration with at most two units: "42 s", "3 min 05 s", "1 h 02 min"; "?" if it is negative or not finite.
+/// Formats a duration with at most two units, for example "42 s", "3 min 05 s" or "1 h 02 min"; "?" if the duration is
+/// negative or not finite.
 std::string duration_text(double seconds);
 
-/// Formats the progress with the failures by kind: "[####------]  4/10 draws  40 %  16 outcomes  3 not ok (2 diverged,
-/// 1 timeout)  0 rejected  left 1 min 10 s". The bar has `bar_width` cells; 0 omits it.
+/// The progress bar has `bar_width` cells; 0 omits the bar.
 std::string progress_line(const scenarios::SweepProgress& progress, int bar_width);
 
-/// RegistrationProgress is the progress of an estimator over the lidar sweeps of one recording.
 struct RegistrationProgress {
   std::size_t done = 0, all = 0;
   double elapsed_s = 0.0;  ///< time since the first sweep of this pass
 };
 
-/// Formats the progress, for example "[####------]  40/100 lidar sweeps  87 sweeps/s".
 std::string progress_line(const RegistrationProgress& progress, int bar_width);
 
-/// ProgressDisplay shows the progress of a sweep (many simulated runs) or of an estimator. A terminal shows one line
-/// that is overwritten; other outputs get a new line every ten seconds.
+/// A terminal shows one progress line that is overwritten; other outputs get a new line every ten seconds.
 class ProgressDisplay {
  public:
   using Write = std::function<void(std::string_view)>;
@@ -37,7 +34,6 @@ class ProgressDisplay {
 
   void show(const scenarios::SweepProgress& progress) { show_line(progress, progress.elapsed_s); }
   void show(const RegistrationProgress& progress) { show_line(progress, progress.elapsed_s); }
-  /// Shows the last progress line and ends it.
   void finish(const scenarios::SweepProgress& progress) { finish_line(progress); }
   void finish(const RegistrationProgress& progress) { finish_line(progress); }
 

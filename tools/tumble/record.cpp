@@ -19,7 +19,6 @@ struct RecordOptions {
   std::filesystem::path file;
 };
 
-/// Returns a table with one row per sensor.
 Table contents(const sim::Sensors& sensors) {
   Table table("", {"sensor", "device", "samples", "points"});
   table.align_right_from(2);
@@ -61,7 +60,8 @@ Action declare_record(VerbOptions& verb, const Session& session) {
   verb.add("SCENARIO", options->scenario, "simulates this scenario of the catalogue, or this scenario file")
       .required()
       .check(a_scenario(session));
-  verb.add("--seed", options->seed, "sets the seed of the draw [default: for a named case, the seed of the case]");
+  verb.add("--seed", options->seed,
+           "sets the seed of the simulated run [default: for a named case, the seed of the case]");
   verb.add("--threads", options->threads,
            "uses this number of threads to simulate the lidar; the result is the same for any number")
       .whole(1, 1024)

@@ -49,7 +49,6 @@ std::string end_in_motion(const sim::Truth& truth) {
 sim::BuiltSituation built_from(const scenarios::RecordingInfo& info, const std::string& place,
                                const scenarios::DataRoot& data) {
   sim::Situation situation = scenarios::situation_from_yaml(info.situation_yaml, place);
-  // Only world and robot are built, so unknown names in other parts must cause no error.
   const sim::Situation bare;
   situation.sensors.clear();
   situation.duration_s = bare.duration_s;

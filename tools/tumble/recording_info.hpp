@@ -10,19 +10,15 @@
 
 namespace tumble::tools {
 
-/// Returns the versions of program and physics engine for the metadata of recordings.
 scenarios::RecordingInfo recording_versions();
 
-/// Returns the metadata of a simulated recording.
 scenarios::RecordingInfo recording_info(const sim::ResolvedSituation& situation, const std::string& digest);
 
 /// Returns a note if the body still moves at the end of the recording (faster than 0.05 m/s or 0.25 rad/s), because the
-/// scenario's `duration_s` may be too short. Returns an empty text if the body is at rest.
+/// scenario's `duration_s` may be too short.
 std::string end_in_motion(const sim::Truth& truth);
 
-/// Builds the world of a simulated recording from the parameters in its metadata. Sensors are omitted, so that unknown
-/// sensor parameters cause no error. Throws BadInput, with a message that starts with `place`, or sim::InvalidSituation
-/// if the world cannot be built.
+/// Sensors are omitted, so that unknown sensor parameters cause no error.
 sim::BuiltSituation built_from(const scenarios::RecordingInfo& info, const std::string& place,
                                const scenarios::DataRoot& data);
 

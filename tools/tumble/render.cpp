@@ -39,7 +39,6 @@ struct RenderOptions {
   int width = 1280, height = 720;
 };
 
-/// RenderContent owns the data to which a scene refers.
 struct RenderContent {
   std::optional<sim::BuiltSituation> built;
   sim::Sensors sensors;
@@ -48,13 +47,11 @@ struct RenderContent {
 };
 
 bool is_recording(const std::string& what) {
-  // A name with the extension of a recording is a file, even if the file does not exist. A folder is no recording: the
-  // folder from 'tumble run hill' must not hide the scenario 'hill'.
+  // A folder is no recording, because the folder from 'tumble run hill' must not hide the scenario 'hill'.
   if (std::filesystem::exists(what) && !std::filesystem::is_directory(what)) return !what.ends_with(".yaml");
   return what.ends_with(".h5") || what.ends_with(".hdf5");
 }
 
-/// Loads world, sensors and truth of a recording.
 void load_situation(const scenarios::DataRoot& data, const RenderOptions& options, RenderContent& content) {
   const scenarios::RecordingInfo info = scenarios::read_info(options.what);
   if (info.situation_yaml.empty())
@@ -96,7 +93,6 @@ void load_draw(const scenarios::DataRoot& data, const RenderOptions& options, Re
   content.built.emplace(scenarios::draw(data, scenario, seed_of(scenario, options.seed)), data.models());
 }
 
-/// Draws the maps of the estimates next to each other, coloured by error.
 int render_maps(const Session& session, const RenderOptions& options, const scenarios::DataRoot& data) {
   if (!is_recording(options.what) || options.estimates.empty()) {
     throw BadInput("--map needs a recording and at least one estimate: FILE.h5 ESTIMATE...");
@@ -128,10 +124,9 @@ int render_maps(const Session& session, const RenderOptions& options, const scen
   return kDone;
 }
 
-/// Maximum number of video frames: more would take minutes to render and to watch.
+/// More video frames than this would take minutes to render and to watch.
 constexpr std::size_t kFramesMax = 3000;
 
-/// Interval of progress lines for long renderings.
 constexpr double kSayEvery_s = 10.0;
 
 std::vector<std::uint8_t> video_of(const Session& session, const RenderOptions& options, const Scene& scene) {
@@ -183,7 +178,7 @@ int render(const Session& session, const RenderOptions& options) {
   inputs.emplace_back(options.what);
   prepare_file(options.output, inputs, {options.video ? ".webp" : ".png"});
   if (is_recording(options.what) && !options.seed.empty()) {
-    throw BadInput(fmt::format("--seed applies to a scenario; '{}' is a recording of one draw", options.what));
+    throw BadInput(fmt::format("--seed applies to a scenario; '{}' is a recording of one simulated run", options.what));
   }
   if (options.map) return render_maps(session, options, data);
   RenderContent content;
@@ -210,14 +205,16 @@ int render(const Session& session, const RenderOptions& options) {
 
 Action declare_render(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<RenderOptions>();
-  verb.add("WHAT", options->what, "renders this recording, FILE.h5, or one draw of this scenario (with --seed)")
+  verb.add("WHAT", options->what,
+           "renders this recording, FILE.h5, or one simulated run of this scenario (with --seed)")
       .required()
       .check([&session](const std::string& text) {
         if (is_recording(text)) return a_recording(text);
         scenarios::load_scenario(session.data(), text);
       });
   verb.add("ESTIMATE", options->estimates, "also shows the estimates in these folders");
-  verb.add("--seed", options->seed, "sets the seed of the draw [default: for a named case, the seed of the case]");
+  verb.add("--seed", options->seed,
+           "sets the seed of the simulated run [default: for a named case, the seed of the case]");
   verb.add("-o,--output", options->output, "writes this picture, FILE.png; with --video FILE.webp").required();
   verb.add("--film", options->film, "renders a film strip with this number of frames").whole(1, 64);
   verb.add_flag("--map", options->map,

@@ -29,7 +29,6 @@ struct ReplayOptions {
   std::size_t points = ReplayLimits{}.points;
 };
 
-/// ReplayContent owns the data to which a replay refers.
 struct ReplayContent {
   sim::Sensors sensors;
   std::optional<sim::Truth> truth;
@@ -38,7 +37,6 @@ struct ReplayContent {
   std::list<scenarios::Estimate> estimates;
 };
 
-/// Loads the recording; its truth is only displayed.
 void load_recording(const Session& session, const ReplayOptions& options, const scenarios::RecordingInfo& info,
                     ReplayContent& content) {
   content.sensors = scenarios::read_sensors(options.recording);

@@ -49,7 +49,6 @@ std::string wins_text(const Wins& wins) {
   return wins.pairs == 0 ? "" : fmt::format("{} of {}", wins.count, wins.pairs);
 }
 
-/// Returns one row per method and metric: the headline metrics, or all metrics.
 Table score_table(const Section& section, bool all) {
   Table table(
       fmt::format("{}: {} (paired with {})", section.scenario, to_string(section.kind), section.baseline),
@@ -81,7 +80,6 @@ Table draws_table(const Summary& summary) {
   return table;
 }
 
-/// Returns the content of the tables in SI units.
 json to_json(const Summary& summary) {
   json rows = json::array();
   for (const Section& section : summary.sections) {
@@ -112,11 +110,11 @@ std::string read_text(const std::filesystem::path& path) {
   std::ifstream stream(path, std::ios::binary);
   std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
   if (!stream.good() && !stream.eof())
-    throw scenarios::BadInput(fmt::format("{}: the file cannot be read", path.string()));
+    throw scenarios::BadInput(fmt::format("{}: the file cannot be read; give an existing file", path.string()));
   return text;
 }
 
-/// Returns the digest of the data that a sweep would use; empty if the data are missing, which a report does not need.
+/// A report does not need the data, so missing data give an empty digest.
 std::string data_found(const Session& session) {
   try {
     return scenarios::data_digest(session.data());
@@ -125,11 +123,10 @@ std::string data_found(const Session& session) {
   }
 }
 
-/// Maximum number of simulated runs per scenario for the sensitivity section of a page.
+/// Maximum number of simulated runs per scenario for the sensitivity section of a page
 constexpr std::size_t kSensitivityDraws = 2000;
 
-/// Adds the sensitivity of each method, for one score and for failures, from a limited number of runs. `tumble
-/// sensitivity` computes the complete table, which takes long.
+/// A limited number of simulated runs is used, because the complete table of `tumble sensitivity` takes long.
 void add_sensitivity(const Session& session, const std::string& data_found, ReportInput& input) {
   const Summary some = scenarios::at_most_draws(*input.summary, kSensitivityDraws);
   NumbersByScenario numbers;
@@ -139,8 +136,8 @@ void add_sensitivity(const Session& session, const std::string& data_found, Repo
   } else {
     numbers = numbers_of_motions(input.draws, some);
     input.sensitivity_note =
-        "The random parameters of these draws are unknown, because the results come from other models and scenarios. "
-        "The page therefore lists the influence of the motions. ";
+        "The random parameters of these simulated runs are unknown, because the results come from other models and "
+        "scenarios. The page therefore lists the influence of the motions. ";
   }
   scenarios::SensitivityOptions options;
   for (const Section& section : input.summary->sections) {
@@ -153,11 +150,12 @@ void add_sensitivity(const Session& session, const std::string& data_found, Repo
   const std::string needed = draws_needed_text(input.summary->draws);
   input.sensitivity_note += needed;
   if (input.sensitivity.empty() && needed.empty())
-    input.sensitivity_note += "All known parameters of a scenario are equal in all draws. ";
+    input.sensitivity_note += "All known parameters of a scenario are equal in all simulated runs. ";
   for (const auto& [scenario, draws] : input.summary->draws) {
     if (draws <= static_cast<std::int64_t>(kSensitivityDraws)) continue;
-    input.sensitivity_note += fmt::format(
-        "For scenarios with more draws, the analysis uses only {} draws, with evenly spaced seeds.", kSensitivityDraws);
+    input.sensitivity_note +=
+        fmt::format("For scenarios with more simulated runs, the analysis uses only {} runs, with evenly spaced seeds.",
+                    kSensitivityDraws);
     break;
   }
 }
@@ -177,7 +175,7 @@ PageContent content_of(const Session& session, const ReportVerbOptions& options,
 void write_page(const Session& session, const ReportVerbOptions& options, ReportInput input) {
   const std::string plotly = options.page.empty() ? "" : read_text(session.plotly());
   const PageContent content = content_of(session, options, std::move(input));
-  // Page and badge are complete before the first is moved: a full disk then leaves neither.
+  // Page and badge are complete before the first is moved, so that a full disk leaves neither.
   std::list<scenarios::OutputFile> files;
   const auto write = [&](const std::filesystem::path& path, const std::string& text) {
     files.emplace_back(path).write(std::as_bytes(std::span(text)));
@@ -220,7 +218,6 @@ int report(const Session& session, const ReportVerbOptions& options) {
   for (const scenarios::Certificate& certificate : results.certificates()) {
     document["certificates"].push_back(json::parse(to_json(certificate)));
   }
-  // The page is written first, because it must not depend on the reader of standard output.
   if (!options.page.empty() || !options.badge.empty())
     write_page(session, options, {&results, &summary, draws, std::move(curves), std::move(motions), {}, {}});
   session.print(tables, document);
@@ -234,8 +231,10 @@ Action declare_report(VerbOptions& verb, const Session& session) {
   verb.add("DATABASE", options->database, "reads this results database, FILE.db").required();
   verb.add("-o,--output", options->page, "writes this page, FILE.html [default: prints only tables]");
   verb.add("--badge", options->badge,
-           "writes this badge, FILE.svg, which shows the suite and the number of contests won");
-  verb.add_flag("--all", options->all, "prints all metrics and the curves over bins, not only the headline metrics");
+           "writes this badge, FILE.svg, which shows the suite and in how many scenarios a method is better than the "
+           "baseline");
+  verb.add_flag("--all", options->all,
+                "prints all metrics and the curves over bins, not only the most important metrics");
   return [&session, options] { return report(session, *options); };
 }
 

@@ -39,7 +39,6 @@ struct RunOptions {
   fs::path learnt;
 };
 
-/// Returns true if the command line has only a scenario and perhaps a seed, as for a first try of the program.
 bool is_bare(const RunOptions& options) {
   return options.methods.empty() && options.folder.empty() && options.learnt.empty() && options.parameters.empty() &&
          options.vary.empty();
@@ -52,7 +51,6 @@ fs::path free_folder(const std::string& name) {
   return folder;
 }
 
-/// Returns the first method of a kind without truth that fulfils the condition; null without such a method.
 template <class Is>
 const scenarios::MethodInfo* first_of(scenarios::Kind kind, Is is) {
   for (const scenarios::Method& method : scenarios::methods()) {
@@ -61,13 +59,12 @@ const scenarios::MethodInfo* first_of(scenarios::Kind kind, Is is) {
   return nullptr;
 }
 
-/// Returns the registered baseline of a kind, or else its first method.
 const scenarios::MethodInfo* baseline_of(scenarios::Kind kind) {
   const scenarios::MethodInfo* const baseline = first_of(kind, [](const auto& info) { return info.baseline; });
   return baseline != nullptr ? baseline : first_of(kind, [](const auto&) { return true; });
 }
 
-/// Selects the baseline and tumble's method of each kind in which both can run on this scenario.
+/// The first run uses the baseline and tumble's method of each kind in which both can run on this scenario.
 RunOptions first_run(RunOptions options, const scenarios::Scenario& scenario) {
   using scenarios::Kind;
   const scenarios::Subject subject = scenarios::subject_of(scenario);
@@ -83,7 +80,7 @@ RunOptions first_run(RunOptions options, const scenarios::Scenario& scenario) {
   return options;
 }
 
-/// Suggests further commands. `sweep` accepts only scenarios of the catalogue; a suite may have the name of a scenario.
+/// The verb `sweep` accepts only scenarios of the catalogue; a suite may have the name of a scenario.
 void say_what_next(const Session& session, const RunOptions& options, const scenarios::RunResult& result,
                    bool in_catalogue) {
   const std::string folder = options.folder.string();
@@ -97,19 +94,18 @@ void say_what_next(const Session& session, const RunOptions& options, const scen
   if (std::any_of(result.methods.begin(), result.methods.end(),
                   [](const auto& method) { return method->info.kind == scenarios::Kind::slam; })) {
     say(fmt::format("tumble render {0}/recording.h5 {0}/estimates/slam-* --map -o {0}/maps.png", folder),
-        "renders the maps, coloured by error");
+        "renders the estimated maps, coloured by error");
   }
   say(fmt::format("tumble run {} --seed 2 -o {}_seed_2", options.scenario, folder),
-      "runs every method on another draw");
+      "runs every method on another simulated run");
   if (in_catalogue) {
     say(fmt::format("tumble sweep {0} --scenario {0} --seeds 1..8 --db {1}.db", options.scenario, folder),
-        "runs every method on eight draws");
+        "runs every method on eight simulated runs");
     say(fmt::format("tumble report {0}.db -o {0}.html", folder), "prints the tables and writes a page with the tables");
   }
   say("tumble list methods", "lists all methods");
 }
 
-/// Writes recording, situation and estimates under the names that other verbs expect.
 void leave_files(const fs::path& folder, const scenarios::RunResult& result) {
   const scenarios::RecordingInfo info = recording_info(result.built->situation(), result.recording_digest);
   scenarios::write_recording(folder / "recording.h5", info, result.recording.sensors, &result.recording.truth);
@@ -123,7 +119,6 @@ void leave_files(const fs::path& folder, const scenarios::RunResult& result) {
   }
 }
 
-/// Writes pictures of the path, a film strip with all estimated paths, and the replay page.
 void leave_pictures(const fs::path& folder, const scenarios::RunResult& result) {
   Scene scene{&result.built.value(), &result.recording.sensors, &result.recording.truth, {}};
   for (const scenarios::Estimate& estimate : result.estimates) {
@@ -143,7 +138,6 @@ std::vector<scenarios::MethodPointer> pointers(const std::vector<scenarios::Meth
   return out;
 }
 
-/// Returns the point of a curve that the user names; empty by default.
 scenarios::Setting setting_of(const scenarios::DataRoot& data, const RunOptions& options, std::uint64_t seed) {
   if (options.vary.empty()) return {};
   const scenarios::Setting setting = scenarios::setting_from(options.vary);
@@ -154,7 +148,6 @@ scenarios::Setting setting_of(const scenarios::DataRoot& data, const RunOptions&
   return setting;
 }
 
-/// Reports the failed methods, and the health warnings of the other methods.
 void say_troubles(const Session& session, const scenarios::RunResult& result) {
   for (std::size_t i = 0; i < result.outcomes.size(); ++i) {
     const scenarios::Outcome& outcome = result.outcomes[i];
@@ -172,7 +165,6 @@ std::uint64_t asked_seed(const RunOptions& options, const scenarios::Scenario& s
   return any_draw ? 1 : seed_of(scenario, options.seed);
 }
 
-/// Returns the methods that the user names. Methods that calibrate start with the calibration in the --learnt file.
 std::vector<scenarios::Method> asked_methods(const RunOptions& options, const scenarios::Scenario& scenario,
                                              LearntFile& learnt) {
   const auto selected = select_methods(options.methods);
@@ -243,7 +235,8 @@ Action declare_run(VerbOptions& verb, const Session& session) {
   verb.add("SCENARIO", options->scenario, "simulates this scenario of the catalogue, or this scenario file")
       .required()
       .check(a_scenario(session));
-  verb.add("--seed", options->seed, "sets the seed of the draw [default: 1; for a named case, the seed of the case]");
+  verb.add("--seed", options->seed,
+           "sets the seed of the simulated run [default: 1; for a named case, the seed of the case]");
   verb.add("--method", options->methods,
            "runs this method, for example 'saave' or 'rate/saave'; repeat the option for more methods [default: all "
            "methods that apply; with only a scenario and a seed, the baseline and our method of each kind]")

@@ -33,8 +33,7 @@ struct ScoreOptions {
   std::string frame, kind;
 };
 
-/// Accepts estimate and recording in either order, because other verbs take the recording first. The file extension
-/// identifies the recording.
+/// Estimate and recording are accepted in either order, because other verbs take the recording first.
 void order(ScoreOptions& options) {
   const auto is_recording = [](const std::filesystem::path& file) {
     return file.extension() == ".h5" || file.extension() == ".hdf5";
@@ -61,17 +60,15 @@ void require_common_time(const ScoreOptions& options, const scenarios::Estimate&
 }
 
 constexpr double kHoleShare = 0.2;  // fraction of the recording; a longer gap is a divergence (scenarios::verdict)
-// Below these limits, little more than the aligned pose would be compared.
+// With fewer poses or a shorter overlap, little more than the aligned pose would be compared.
 constexpr std::size_t kComparedMin = 2;
 constexpr double kSpannedShareMin = 0.01;
 
-/// Standing contains alignment and temporal coverage of an external trajectory relative to the truth.
 struct Standing {
   double first_s = 0, last_s = 0, end_s = 0;  ///< times of the first and last pose within the truth; end of the truth
   std::size_t compared = 0, poses = 0;        ///< number of poses within the time of the truth; number of all poses
   double covered_s = 0;                       ///< covered time of the truth, without gaps longer than a fifth of it
   scenarios::Alignment alignment;
-  /// Returns the fraction of the truth's time between the first and the last pose, including gaps.
   double spanned() const { return end_s > 0.0 ? (last_s - first_s) / end_s : 1.0; }
   double share() const { return end_s > 0.0 ? covered_s / end_s : 1.0; }
 };
@@ -94,9 +91,7 @@ Standing standing_of(const scenarios::Estimate& estimate, const sim::Truth& trut
   return out;
 }
 
-/// Throws BadInput for time stamps in ms, us or ns that were read as seconds. Only the first few poses, far apart,
-/// would then overlap the recording. A correct trajectory that contains the recording has denser poses or another
-/// length.
+/// Only the first few poses, far apart, would then overlap the recording.
 void require_seconds(const ScoreOptions& options, const scenarios::Estimate& estimate, const Standing& standing) {
   constexpr double kNear = 1.5, kLeastStep_s = 0.1;
   if (estimate.poses.size() < 2 || !(standing.end_s > 0.0)) return;
@@ -113,7 +108,7 @@ void require_seconds(const ScoreOptions& options, const scenarios::Estimate& est
   }
 }
 
-/// Throws BadInput if the trajectory hardly overlaps the truth, because all errors would be zero.
+/// If the trajectory hardly overlaps the truth, all errors would be zero.
 void require_compared(const ScoreOptions& options, const Standing& standing) {
   if (standing.compared >= kComparedMin && standing.spanned() >= kSpannedShareMin) return;
   throw scenarios::BadInput(
@@ -137,8 +132,8 @@ std::string cover_text(const Standing& standing) {
                      standing.poses);
 }
 
-/// Judges an external trajectory over its own part of the truth's time, and reports the coverage. "partial" means no
-/// divergence in this part, but a gap of more than a fifth of the recording.
+/// The status "partial" means no divergence in the trajectory's part of the truth's time, but a gap of more than a
+/// fifth of the recording.
 std::string judge_trajectory(const Session& session, const Standing& standing, const scenarios::ScoredEstimate& scored,
                              scenarios::Outcome& outcome) {
   std::string status = to_string(outcome.status);
@@ -167,14 +162,11 @@ nlohmann::json to_json(const Standing& standing) {
             {"translation_m", {t.x(), t.y(), t.z()}}}}};
 }
 
-/// Adds the temporal coverage below the scores.
 void add_cover(const Standing& standing, Table& table) {
   table.add_row({"covered_share", number_text(standing.share())});
   table.add_row({"poses_compared", fmt::format("{} of {}", standing.compared, standing.poses)});
 }
 
-/// Returns the kind of a TUM file: the user's choice, or else `position` for a rolling sphere or a recording without
-/// lidar, or else `slam`.
 scenarios::Kind kind_of(const std::string& name, const sim::Sensors& sensors) {
   if (name.empty()) {
     return sensors.lidars.empty() || sensors.sphere_radius_m > 0.0 ? scenarios::Kind::position : scenarios::Kind::slam;
@@ -184,7 +176,6 @@ scenarios::Kind kind_of(const std::string& name, const sim::Sensors& sensors) {
   return name == "slam" ? scenarios::Kind::slam : scenarios::Kind::position;
 }
 
-/// Claim is the estimate to be scored.
 struct Claim {
   scenarios::RecordingInfo info;
   sim::Sensors sensors;
@@ -195,7 +186,6 @@ struct Claim {
   bool foreign = false;  ///< external trajectory without information about its method
 };
 
-/// Adds the information that an external estimate lacks, and reports a wrong convention or clock.
 void complete_foreign(const Session& session, const ScoreOptions& options, Claim& claim) {
   claim.kind = kind_of(options.kind, claim.sensors);
   for (const auto& complain : {scenarios::turning_complaint, scenarios::clock_complaint}) {
@@ -233,14 +223,13 @@ Claim read_claim(const Session& session, const ScoreOptions& options) {
   return claim;
 }
 
-/// Builds the true surface, which takes long. Returns null if there is no map, because only maps need the surface.
+/// Returns null if there is no map, because only maps need the surface, which takes long to build.
 std::unique_ptr<const sim::Surface> surface_of(const Session& session, const ScoreOptions& options,
                                                const Claim& claim) {
   if (claim.kind != scenarios::Kind::slam || claim.foreign || claim.info.situation_yaml.empty()) return nullptr;
   return std::make_unique<const sim::Surface>(built_from(claim.info, options.recording.string(), session.data()));
 }
 
-/// Returns the method of this build that computed the estimate, or only kind and name of another method.
 scenarios::MethodInfo info_of(const Claim& claim) {
   for (const scenarios::Method& method : scenarios::methods())
     if (method.info.kind == claim.kind && method.info.name == claim.method) return method.info;

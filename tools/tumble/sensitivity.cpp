@@ -31,16 +31,15 @@ struct SensitivityVerbOptions {
   bool motion = false, all = false, dependence = false;
 };
 
-/// Throws BadInput if the database comes from other models or scenarios: the parameters of its runs could not be
-/// computed.
+/// If the database comes from other models or scenarios, the parameters of its simulated runs cannot be computed.
 void require_same_data(const scenarios::Results& results, const scenarios::DataRoot& data,
                        const std::filesystem::path& database) {
   const std::string made_of = results.note("data"), found = scenarios::data_digest(data);
   if (made_of != found)
     throw BadInput(
         fmt::format("{}: these results come from models and scenarios with digest '{}', but the models and scenarios "
-                    "of this installation have digest {}. The random parameters of the draws are therefore unknown; "
-                    "use --motion for the influence of the motions",
+                    "of this installation have digest {}. The random parameters of the simulated runs are therefore "
+                    "unknown; use --motion for the influence of the motions",
                     database.string(), made_of, found));
 }
 
@@ -54,7 +53,6 @@ std::map<std::string, scenarios::NumbersOfDraws> numbers_of(const Session& sessi
   return numbers_of_catalogue(session, data, summary);
 }
 
-/// Returns the strongest significant influences, or all on request.
 std::vector<Influence> shown(const Sensitivity& row, bool all) {
   std::vector<Influence> out;
   for (const Influence& each : row.influences) {
@@ -91,7 +89,6 @@ std::vector<Table> tables_of(const std::vector<Sensitivity>& rows, bool all) {
   return tables;
 }
 
-/// Returns one row per class of parameter values, for each influence that is shown.
 Table dependence_table(const std::vector<Sensitivity>& rows, bool all) {
   Table table("partial dependence: median score, or share of failures, for each class of values of a parameter",
               {"scenario", "method", "metric", "number", "from", "to", "draws", "score", "95 %"});
@@ -159,9 +156,10 @@ int sensitivity(const Session& session, const SensitivityVerbOptions& options) {
   const std::vector<Sensitivity> rows = scenarios::sensitivities(
       summary, numbers_of(session, options, results, summary), {options.methods, options.metrics});
   if (rows.empty())
-    throw BadInput(fmt::format(
-        "{}: this database contains too few draws; a scenario needs at least {} draws and one random parameter",
-        options.database.string(), scenarios::kSensitivityDrawsMin));
+    throw BadInput(
+        fmt::format("{}: this database contains too few simulated runs; a scenario needs at least {} simulated runs "
+                    "and one random parameter",
+                    options.database.string(), scenarios::kSensitivityDrawsMin));
   std::vector<Table> tables = tables_of(rows, options.all);
   if (options.dependence) tables.push_back(dependence_table(rows, options.all));
   session.print(tables, {{"sensitivity", to_json(rows)}});
@@ -180,7 +178,7 @@ Action declare_sensitivity(VerbOptions& verb, const Session& session) {
            "shows this method; repeat the option for more methods [default: all methods that need no truth]")
       .one_at_a_time();
   verb.add("--metric", options->metrics,
-           "shows this metric; repeat the option for more metrics [default: the headline metrics of the kind]")
+           "shows this metric; repeat the option for more metrics [default: the most important metrics of the kind]")
       .one_at_a_time();
   verb.add_flag("--motion", options->motion,
                 "shows the influence of the motions (for example the largest rate) instead of the random parameters");

@@ -18,7 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Candidate folders for the project's files, by priority.
 std::vector<fs::path> candidate_roots() {
   std::vector<fs::path> roots;
   if (const char* given = std::getenv("TUMBLE_DATA"); given != nullptr && *given != '\0') roots.emplace_back(given);
@@ -51,7 +50,7 @@ scenarios::DataRoot Session::data() const {
   for (const fs::path& root : candidate_roots()) {
     const scenarios::DataRoot data{root};
     if (fs::is_directory(data.models(), error)) return data;
-    // If the user names a folder, no other folder is used: it might contain other models.
+    // If the user names a folder, no other folder is used, because it might contain other models.
     if (given != nullptr && *given != '\0')
       throw scenarios::BadInput(fmt::format(
           "TUMBLE_DATA must name the folder that contains models/ and scenarios/, but this folder does not exist: {}",

@@ -36,8 +36,7 @@ struct ShrinkVerbOptions {
   std::filesystem::path file;
 };
 
-/// Returns the oracle (method with true input) of the method's kind, if it can run on the robot. A run on which even
-/// the oracle fails is no useful case.
+/// A run on which even the oracle (method with true input) fails is no useful case.
 scenarios::MethodPointer control_of(const ShrinkVerbOptions& options, const scenarios::Method& method,
                                     const scenarios::Scenario& scenario, double time_limit_s) {
   if (options.control == "none") return nullptr;
@@ -98,7 +97,6 @@ json to_json(const Shrunk& shrunk, const std::string& metric, const ShrinkVerbOp
           {"case", options.file.string()}};
 }
 
-/// Returns the command that repeats the shrinking.
 std::string command_of(const ShrinkVerbOptions& options, std::uint64_t seed) {
   using scenarios::shell_word;
   std::string words = "tumble shrink " + shell_word(options.scenario) + " --seed " + std::to_string(seed) +
@@ -109,7 +107,6 @@ std::string command_of(const ShrinkVerbOptions& options, std::uint64_t seed) {
   return words + fmt::format(" --budget {} -o ", options.budget) + shell_word(options.file.filename().string());
 }
 
-/// Returns the name of the case: the file's name, which must be an identifier.
 std::string name_of(const std::filesystem::path& file) {
   const std::string name = file.stem().string();
   const auto allowed = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; };
@@ -139,12 +136,12 @@ void require_whole(const ShrinkVerbOptions& options) {
 }
 
 std::string control_text(const Shrunk& shrunk, const scenarios::ShrinkOptions& options) {
-  if (!options.control) return "no control method was used";
+  if (!options.control) return "the result is not confirmed, because no control method was used";
   const std::string& name = options.control->info.name;
-  return shrunk.controlled ? fmt::format("the control method {} does not fail on the smaller draw", name)
+  return shrunk.controlled ? fmt::format("the control method {} does not fail on the smaller simulated run", name)
                            : fmt::format(
-                                 "the control method {} also fails on the draw, so it cannot confirm that the failure "
-                                 "comes from the method",
+                                 "the control method {} also fails on the simulated run, so it cannot confirm that the "
+                                 "failure comes from the method",
                                  name);
 }
 
@@ -177,14 +174,14 @@ int run_shrink(const Session& session, const ShrinkVerbOptions& options) {
       shrunk, name, own ? full : options.method, shrinking.failure, program_version(), command_of(options, seed));
   scenarios::replace_file(options.file, scenarios::to_yaml(made));
   session.print({lines_table(shrunk, metric), outcomes_table(shrunk, metric)}, to_json(shrunk, metric, options));
-  session.note(fmt::format("{}: {} runs, {}; {}; {}; case file: {}", shrunk.failure, shrunk.runs,
-                           shrunk.complete ? "no further part can be removed"
-                                           : "the budget of runs is used up; a larger --budget may remove more parts",
-                           control_text(shrunk, shrinking),
-                           shrunk.cure.empty()
-                               ? "no replacement of a single input by its truth cures the failure"
-                               : "replacing the input " + shrunk.cure + " by its truth cures the failure",
-                           options.file.string()));
+  session.note(fmt::format(
+      "{}: {} runs, {}; {}; {}; case file: {}", shrunk.failure, shrunk.runs,
+      shrunk.complete ? "no further part of the simulated run can be removed"
+                      : "the budget of simulated runs is used up; a larger --budget may remove more parts",
+      control_text(shrunk, shrinking),
+      shrunk.cure.empty() ? "no replacement of a single input by its true value prevents the failure"
+                          : fmt::format("replacing the input {} by its true value prevents the failure", shrunk.cure),
+      options.file.string()));
   return kDone;
 }
 
@@ -192,21 +189,24 @@ int run_shrink(const Session& session, const ShrinkVerbOptions& options) {
 
 Action declare_shrink(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<ShrinkVerbOptions>();
-  verb.add("SCENARIO", options->scenario, "simplifies a failing draw of this scenario, named case, or scenario file")
+  verb.add("SCENARIO", options->scenario,
+           "simplifies a failing simulated run of this scenario, named case, or scenario file")
       .required()
       .check(a_scenario(session));
   verb.add("--seed", options->seed,
-           "sets the seed of the failing draw [default: for a named case, the seed of the case]");
-  verb.add("--method", options->method, "names the method that fails on the draw").required();
+           "sets the seed of the failing simulated run [default: for a named case, the seed of the case]");
+  verb.add("--method", options->method, "names the method that fails on the simulated run").required();
   verb.add("--metric", options->metric,
            "names the metric that defines a failure, together with --worse-than [default: a run fails by its status or "
            "by a pass-fail metric]");
   verb.add("--worse-than", options->worse_than,
            "sets the limit of the metric in SI units; a run with a worse value fails");
   verb.add("--control", options->control,
-           "names the control method, which must succeed on the smaller draw, or 'none' [default: the oracle of the "
-           "method's kind]");
-  verb.add("--budget", options->budget, "simulates at most this number of draws").whole(1, 100000).shows_default();
+           "names the control method, which must succeed on the smaller simulated run, or 'none' [default: the oracle "
+           "(method with true input) of the method's kind]");
+  verb.add("--budget", options->budget, "limits the number of simulated runs of the search")
+      .whole(1, 100000)
+      .shows_default();
   verb.add("-o,--output", options->file,
            "writes this case file, NAME.yaml; the gate checks all cases in scenarios/regressions")
       .required();

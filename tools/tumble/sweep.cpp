@@ -26,7 +26,7 @@ namespace tumble::tools {
 
 namespace {
 
-/// Defaults of `tumble sweep`. Each example costs one more simulated run, and its pictures.
+/// Each example costs one more simulated run, and its pictures.
 constexpr std::uint64_t kExamplesMax = 3, kDrawsPerExample = 8, kFailuresMax = 8, kDrawsPerFailure = 4;
 
 struct SweepVerbOptions {
@@ -42,17 +42,16 @@ struct SweepVerbOptions {
   double risk = 0.05;
 };
 
-/// Keeps only the named scenarios, in the order of the suite.
 void take_scenarios(const std::vector<std::string>& named, scenarios::Suite& suite) {
   if (named.empty()) return;
   if (!suite.recordings.empty() || !suite.classes.empty())
-    throw scenarios::BadInput(fmt::format("--scenario does not apply to suite '{}', because the suite names its {}",
-                                          suite.name, suite.recordings.empty() ? "draws" : "recordings"));
+    throw scenarios::BadInput(fmt::format("--scenario does not apply to suite '{}', because the suite lists its {}",
+                                          suite.name, suite.recordings.empty() ? "simulated runs" : "recordings"));
   for (const std::string& name : named) require_known("scenario of suite '" + suite.name + "'", name, suite.scenarios);
   std::erase_if(suite.scenarios, [&](const std::string& name) { return std::ranges::count(named, name) == 0; });
 }
 
-/// Prints the content of the suite, because a scenario may have the same name.
+/// The content of the suite is printed, because a scenario may have the same name.
 void say_what_it_holds(const Session& session, const SweepVerbOptions& options, const scenarios::Suite& suite) {
   if (!options.scenarios.empty() || suite.scenarios.size() < 2) return;
   if (std::ranges::count(suite.scenarios, options.suite) == 0) return;
@@ -61,7 +60,6 @@ void say_what_it_holds(const Session& session, const SweepVerbOptions& options, 
       options.suite, fmt::join(suite.scenarios, " ")));
 }
 
-/// Builds the suite with the changes from the command line. Returns false if this shard has no seed.
 bool select(const scenarios::DataRoot& data, const SweepVerbOptions& options, scenarios::Suite& suite) {
   suite = scenarios::load_suite(data, options.suite);
   take_scenarios(options.scenarios, suite);
@@ -71,7 +69,7 @@ bool select(const scenarios::DataRoot& data, const SweepVerbOptions& options, sc
         "--seeds and --shard do not apply, because a suite of recordings has no seeds; remove both options");
   if (!suite.classes.empty() && !options.seeds.empty())
     throw scenarios::BadInput(
-        fmt::format("--seeds does not apply to suite '{}', because the suite names its draws", suite.name));
+        fmt::format("--seeds does not apply to suite '{}', because the suite lists its simulated runs", suite.name));
   if (!options.seeds.empty()) std::tie(suite.first_seed, suite.last_seed) = parse_seeds(options.seeds);
   if (!recorded && !options.recordings.empty())
     throw scenarios::BadInput(
@@ -85,8 +83,6 @@ bool select(const scenarios::DataRoot& data, const SweepVerbOptions& options, sc
   return options.shard.empty() || shard_seeds(parse_shard(options.shard), suite.first_seed, suite.last_seed);
 }
 
-/// Stores the certificate of this build (checks of its simulation) with the results. The certificate is measured at
-/// most once per build and machine.
 void certify(const Session& session, const scenarios::DataRoot& data, const std::filesystem::path& database,
              const std::atomic<bool>& stop) {
   scenarios::Results results(database, scenarios::Results::Mode::create_or_append);
@@ -96,18 +92,17 @@ void certify(const Session& session, const scenarios::DataRoot& data, const std:
   options.on_row = [&](const scenarios::CertificateRow&, double) {
     if (!announced)
       session.note(
-          "the program measures the certificate of this build; this happens once per build and takes about half a "
-          "minute");
+          "the program measures the agreement of this build's simulation with physics; this happens once per build and "
+          "takes about half a minute");
     announced = true;
   };
   const scenarios::Certificate certificate = scenarios::certify_results(
       results, scenarios::CertificateStore(session.cache(), data), {data, session.program()}, options);
   if (!stop.load() && !certificate.passes()) {
-    session.note("some rows of the certificate of this build fail; 'tumble certify' shows these rows");
+    session.note("some measurements of this build's simulation fail; 'tumble certify' shows these measurements");
   }
 }
 
-/// Returns the command for this sweep, without the database.
 std::string command_of(const SweepVerbOptions& options) {
   using scenarios::shell_word;
   std::string words = shell_word(options.suite);
@@ -118,20 +113,18 @@ std::string command_of(const SweepVerbOptions& options) {
   return words;
 }
 
-/// Appends the command to the commands of earlier sweeps in this database.
 void note_command(scenarios::Results results, const SweepVerbOptions& options) {
   const std::string known = results.note(scenarios::kCommandNote);
   results.set_note(scenarios::kCommandNote, scenarios::with_commands(known, command_of(options)));
 }
 
-/// Generates examples if the complete suite was swept: typical runs of a part may be untypical of the suite. Errors in
-/// pictures are reported, but change neither table nor exit status. Returns false if the generation was stopped.
+/// Examples require the complete suite, because typical runs of a part may be untypical of the suite.
 bool leave_examples(const Session& session, const scenarios::DataRoot& data, const scenarios::Suite& suite,
                     const SweepVerbOptions& options, std::uint64_t draws, const std::atomic<bool>& stop) {
   if (!options.shard.empty()) return true;
   LeaveOptions leave;
   leave.count = options.examples.value_or(std::min(kExamplesMax, draws / kDrawsPerExample));
-  // `--examples 0` also disables pictures of failures. A sweep that is too small for typical runs still shows failures.
+  // A sweep that is too small for typical runs still shows failures.
   const bool wants_none = options.examples && *options.examples == 0;
   leave.failures =
       options.failures.value_or(wants_none ? 0 : std::clamp(draws / kDrawsPerFailure, std::uint64_t{1}, kFailuresMax));
@@ -141,9 +134,9 @@ bool leave_examples(const Session& session, const scenarios::DataRoot& data, con
   try {
     return tools::leave_examples(data, suite, options.database, leave);
   } catch (const scenarios::BadInput& error) {
-    std::fprintf(stderr, "tumble: the pictures of single draws could not be created: %s\n", error.what());
+    std::fprintf(stderr, "tumble: the pictures of single simulated runs could not be created: %s\n", error.what());
   } catch (const std::filesystem::filesystem_error& error) {
-    std::fprintf(stderr, "tumble: the pictures of single draws could not be created: %s\n", error.what());
+    std::fprintf(stderr, "tumble: the pictures of single simulated runs could not be created: %s\n", error.what());
   }
   return true;
 }
@@ -189,7 +182,6 @@ scenarios::SweepOptions sweep_options(const SweepVerbOptions& options, const std
   return out;
 }
 
-/// NewDatabase removes a database that a rejected sweep created, if it contains no runs.
 class NewDatabase {
  public:
   explicit NewDatabase(const std::filesystem::path& path) : path_(path), is_new_(!exists_at(path)) {}
@@ -222,19 +214,19 @@ class NewDatabase {
   bool is_new_, kept_ = false;
 };
 
-/// Stores the question in the results before the first run. Without --until, there is no question.
 std::optional<scenarios::Question> ask(const SweepVerbOptions& options, const scenarios::DataRoot& data,
                                        const scenarios::Suite& suite) {
   if (options.until.empty()) return std::nullopt;
   if (!options.shard.empty())
-    throw scenarios::BadInput("--until does not apply with --shard, because a shard contains only a part of the draws");
+    throw scenarios::BadInput(
+        "--until does not apply with --shard, because a shard contains only a part of the simulated runs");
   if (!suite.recordings.empty() || !suite.curves.empty())
     throw scenarios::BadInput(fmt::format(
         "--until does not apply to suite '{}', because the suite contains recordings or curves", suite.name));
   if (!suite.classes.empty())
-    throw scenarios::BadInput(
-        fmt::format("--until does not apply to suite '{}', because the suite names its draws and has no range of seeds",
-                    suite.name));
+    throw scenarios::BadInput(fmt::format(
+        "--until does not apply to suite '{}', because the suite lists its simulated runs and has no range of seeds",
+        suite.name));
   const scenarios::Question question = parse_question(options.until, options.risk, suite);
   scenarios::Results results = scenarios::open_results(data, suite, options.database);
   scenarios::claim(results, question, options.database);
@@ -244,10 +236,10 @@ std::optional<scenarios::Question> ask(const SweepVerbOptions& options, const sc
 void say_what_is_kept(const Session& session, const SweepVerbOptions& options,
                       const scenarios::SweepProgress& progress) {
   if (options.keep == "none") return;
-  session.note(fmt::format("{} of {} selected draws are stored in {}.files/kept/SCENARIO/SEED", progress.kept,
+  session.note(fmt::format("{} of {} selected simulated runs are stored in {}.files/kept/SCENARIO/SEED", progress.kept,
                            progress.to_keep, options.database.string()));
   if (progress.kept < progress.to_keep)
-    std::fprintf(stderr, "tumble: %llu selected draws could not be stored: %s\n",
+    std::fprintf(stderr, "tumble: %llu selected simulated runs could not be stored: %s\n",
                  static_cast<unsigned long long>(progress.to_keep - progress.kept),
                  progress.not_kept.empty() ? "stopped early" : progress.not_kept.c_str());
 }
@@ -263,7 +255,7 @@ int run_sweep(const Session& session, const SweepVerbOptions& options) {
   const scenarios::DatabaseOwner owner(options.database);
   NewDatabase made(options.database);
   if (!any) {
-    // Creates an empty database, so that the databases of all parts can be merged.
+    // An empty database is created, so that the databases of all parts can be merged.
     scenarios::Results results = scenarios::open_results(data, suite, options.database);
     if (options.keep != "none") results.set_note(scenarios::kKeepNote, options.keep);
     made.keep();
@@ -302,7 +294,8 @@ int run_sweep(const Session& session, const SweepVerbOptions& options) {
   if (!complete) return say_stopped(final);
   if (shown) return kDone;
   std::fputs(
-      "tumble: stopped: all draws are stored, but their pictures are missing; run again to create the pictures\n",
+      "tumble: stopped: all simulated runs are stored, but their pictures are missing; run again to create the "
+      "pictures\n",
       stderr);
   return kCheckFailed;
 }
@@ -323,18 +316,19 @@ Action declare_sweep(VerbOptions& verb, const Session& session) {
   verb.add("--jobs", options->jobs, "runs this number of processes in parallel [default: number of processors]")
       .whole(1, 1024)
       .shows_default();
-  verb.add("--shard", options->shard, "runs the i-th of n parts of the seeds; write i/n").filled();
+  verb.add("--shard", options->shard, "runs the i-th of n parts of the seeds; write i/n, for example 2/8").filled();
   verb.add("--again", options->again, "repeats stored runs with these statuses, for example crashed,timeout,killed")
       .separated_by(',')
       .one_at_a_time();
   verb.add("--examples", options->examples,
-           "sets the number of typical draws that the sweep runs again at the end. For these draws, the sweep writes "
-           "pictures, plots and replays to FILE.db.files for 'tumble report'; does not apply to shards [default: one "
-           "per 8 draws, at most 3]")
+           "sets the number of typical simulated runs that the sweep repeats at the end. For these runs, the sweep "
+           "writes pictures, plots and replays to FILE.db.files for 'tumble report'; does not apply to shards "
+           "[default: one per 8 simulated runs, at most 3]")
       .whole(0, 64);
   verb.add("--failures", options->failures,
-           "sets the number of draws with the most failed methods that the sweep runs again. For each of these draws, "
-           "the sweep writes a picture and a replay [default: one per 4 draws, at most 8; none with --examples 0]")
+           "sets the number of simulated runs with the most failed methods that the sweep repeats. For each of these "
+           "runs, the sweep writes a picture and a replay [default: one per 4 simulated runs, at most 8; none with "
+           "--examples 0]")
       .whole(0, 64);
   verb.add("--memory", options->memory_mib,
            "limits the memory of each worker process and of each method, MiB; a run beyond the limit has status "
@@ -342,13 +336,13 @@ Action declare_sweep(VerbOptions& verb, const Session& session) {
       .within(64.0, 1e7)
       .shows_default();
   verb.add("--keep", options->keep,
-           "stores recording and estimates of these draws in FILE.db.files/kept: none, failed, worst:N of each "
-           "scenario and method, or all")
+           "stores recording and estimates of these simulated runs in FILE.db.files/kept: none, failed, worst:N of "
+           "each scenario and method, or all")
       .shows_default();
   verb.add("--until", options->until,
-           "stops when the draws show whether method A is better than B by more than the margin: A:B:METRIC[:MARGIN]. "
-           "The margin is in the metric's unit, or a percentage of B's value such as 10%. The sweep evaluates the "
-           "question up to 20 times")
+           "stops when the simulated runs show whether method A is better than B by more than the margin: "
+           "A:B:METRIC[:MARGIN]. The margin is in the metric's unit, or a percentage of B's value such as 10%. The "
+           "sweep evaluates the question up to 20 times")
       .filled();
   verb.add("--risk", options->risk,
            "sets the accepted probability that --until gives an answer although neither method is better")

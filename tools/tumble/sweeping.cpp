@@ -10,7 +10,6 @@ namespace tumble::tools {
 
 namespace {
 
-/// Adds the progress before this step and that of this step, for a total of `draws`.
 scenarios::SweepProgress sum(const scenarios::SweepProgress& before, const scenarios::SweepProgress& since,
                              std::uint64_t draws) {
   scenarios::SweepProgress all = since;
@@ -22,7 +21,7 @@ scenarios::SweepProgress sum(const scenarios::SweepProgress& before, const scena
   all.elapsed_s += before.elapsed_s;
   all.peak_mib = std::max(all.peak_mib, before.peak_mib);
   if (all.not_kept.empty()) all.not_kept = before.not_kept;
-  // The remaining time follows from the mean time per run, as if all runs were executed.
+  // The remaining time follows from the mean time per simulated run.
   if (all.draws_done > 0)
     all.left_s = all.elapsed_s / static_cast<double>(all.draws_done) * static_cast<double>(draws - all.draws_done);
   return all;
@@ -46,7 +45,7 @@ AskedSweep sweep_until(const Session& session, const scenarios::DataRoot& data, 
   ProgressDisplay shown = ProgressDisplay::on_standard_error();
   AskedSweep out;
   scenarios::Suite part = suite;
-  // The worst runs are known only after the last step.
+  // The worst simulated runs are known only after the last step of the sweep.
   scenarios::SweepOptions own = options;
   if (options.keep.which == scenarios::Keep::Which::worst) own.keep = {};
   const auto draws_of = [&](std::uint64_t seeds) { return seeds * suite.scenarios.size(); };
@@ -76,7 +75,7 @@ AskedSweep sweep_until(const Session& session, const scenarios::DataRoot& data, 
 }
 
 int say_stopped(const scenarios::SweepProgress& progress) {
-  std::fprintf(stderr, "tumble: stopped: %llu of %llu draws are stored; run again to continue\n",
+  std::fprintf(stderr, "tumble: stopped: %llu of %llu simulated runs are stored; run again to continue\n",
                static_cast<unsigned long long>(progress.draws_done),
                static_cast<unsigned long long>(progress.draws_total));
   return kCheckFailed;

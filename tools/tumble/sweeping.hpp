@@ -9,14 +9,13 @@
 
 namespace tumble::tools {
 
-/// Sweeps a suite into a database. Shows the progress, except in a quiet session.
 scenarios::SweepProgress sweep_with_progress(const Session& session, const scenarios::DataRoot& data,
                                              const scenarios::Suite& suite, const scenarios::DatabaseOwner& database,
                                              scenarios::SweepOptions options);
 
 /// AskedSweep sweeps until the question is answered for all its scenarios, or the seeds are used up. The question is
-/// evaluated after fixed numbers of seeds, when all runs with these seeds are complete and no later run has started.
-/// The content of the database therefore does not depend on the number of jobs or on interruptions.
+/// evaluated after fixed numbers of seeds, so the content of the database does not depend on the number of jobs or on
+/// interruptions.
 struct AskedSweep {
   scenarios::SweepProgress progress;  ///< of all steps; `draws_total` counts the runs up to the last evaluation
   std::vector<scenarios::Answer> answers;
@@ -25,7 +24,6 @@ AskedSweep sweep_until(const Session& session, const scenarios::DataRoot& data, 
                        const scenarios::DatabaseOwner& database, const scenarios::SweepOptions& options,
                        const scenarios::Question& question);
 
-/// Prints to standard error how many runs are stored, and how to continue. Returns the exit status of a stopped sweep.
 int say_stopped(const scenarios::SweepProgress& progress);
 
 }  // namespace tumble::tools

@@ -7,7 +7,6 @@ namespace tumble::tools {
 
 namespace {
 
-/// Returns the number of bytes of the UTF-8 character that starts here; 0 if it is invalid (RFC 3629).
 std::size_t character_length(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned char first = byte(0);

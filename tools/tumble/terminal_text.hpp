@@ -6,8 +6,8 @@
 
 namespace tumble::tools {
 
-/// Makes a text safe for a terminal: invalid UTF-8 and control characters (C0 except line ends, DEL, C1) become '?'.
-/// Names in files and paths could otherwise move the cursor.
+/// Invalid UTF-8 and control characters (C0 except line ends, DEL, C1) become '?', because names in files and paths
+/// could otherwise move the cursor.
 std::string terminal_text(std::string_view text);
 
 }  // namespace tumble::tools

@@ -34,7 +34,6 @@ struct TriageVerbOptions {
   std::filesystem::path database;
 };
 
-/// Returns "cures" if the original run failed and the run with this true input succeeds.
 std::string verdict(const TriageRow& row, const TriageRow& base) {
   if (!base.fails) return "";
   return row.fails ? "" : "cures";
@@ -77,8 +76,9 @@ std::string conclusion(const std::vector<TriageRow>& rows) {
   for (const TriageRow& row : rows) {
     if (&row != &rows.front() && !row.fails) cures += (cures.empty() ? "" : ", ") + row.input;
   }
-  return cures.empty() ? "no single input cures the failure: the cause is in the method or in the scenario"
-                       : "cured by: " + cures;
+  return cures.empty()
+             ? "no true value of a single input prevents the failure: the cause is in the method or in the scenario"
+             : "cured by: " + cures;
 }
 
 scenarios::Failure failure_of(const TriageVerbOptions& options, const std::string& metric) {
@@ -105,24 +105,21 @@ int run_triage_of_draw(const Session& session, const TriageVerbOptions& options)
   return kDone;
 }
 
-/// Throws BadInput for a name that is neither a suite nor a scenario, before CLI11 reports missing options. The content
-/// of a file is checked later, when all options are known.
 std::function<void(const std::string&)> known_name(const Session& session) {
   return [&session](const std::string& text) {
     if (!text.ends_with(".yaml")) scenarios::load_suite(session.data(), text);
   };
 }
 
-/// Returns true for a seed or a named case; otherwise the name is a suite.
 bool is_one_draw(const Session& session, const TriageVerbOptions& options) {
   const bool named = !options.what.ends_with(".yaml") && names_cases(session.data(), options.what);
   const bool one = !options.seed.empty() || (named && options.seeds.empty());
   if (one && (!options.seeds.empty() || !options.database.empty()))
-    throw BadInput("--seeds and --db apply to a suite only, but a single draw is requested; remove both options");
+    throw BadInput(
+        "--seeds and --db apply to a suite only, but a single simulated run is requested; remove both options");
   return one;
 }
 
-/// Returns the options of the command that triages one simulated run of the suite.
 std::string words_of(const TriageVerbOptions& options) {
   std::string words = " --method " + scenarios::shell_word(options.method);
   if (!options.metric.empty()) words += " --metric " + scenarios::shell_word(options.metric);
@@ -141,8 +138,8 @@ int run_triage(const Session& session, const TriageVerbOptions& options) {
   asked.options.memory_mib = options.memory_mib;
   asked.suite = scenarios::load_suite(session.data(), options.what);
   if (!asked.suite.classes.empty() && !options.seeds.empty())
-    throw BadInput(
-        fmt::format("--seeds does not apply to suite '{}', because the suite names its draws", asked.suite.name));
+    throw BadInput(fmt::format("--seeds does not apply to suite '{}', because the suite lists its simulated runs",
+                               asked.suite.name));
   if (!options.seeds.empty()) std::tie(asked.suite.first_seed, asked.suite.last_seed) = parse_seeds(options.seeds);
   asked.database = options.database;
   return run_suite_triage(session, std::move(asked));
@@ -153,21 +150,23 @@ int run_triage(const Session& session, const TriageVerbOptions& options) {
 Action declare_triage(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<TriageVerbOptions>();
   verb.add("SCENARIO", options->what,
-           "with --seed, analyses one draw of this scenario, named case or scenario file; without --seed, analyses the "
-           "draws of this suite, suite file or scenario")
+           "with --seed, analyses one simulated run of this scenario, named case or scenario file; without --seed, "
+           "analyses the simulated runs of this suite, suite file or scenario")
       .required()
       .check(known_name(session));
   verb.add("--seed", options->seed,
-           "sets the seed of a single draw [default: all draws of the suite; for a named case, the seed of the case]");
+           "sets the seed of a single simulated run [default: all runs of the suite; for a named case, the seed of the "
+           "case]");
   verb.add("--seeds", options->seeds,
            "selects the seeds A..B of a suite, both included [default: the seeds of the suite]");
-  verb.add("--db", options->database, "reads this results database and selects only draws on which the method failed");
+  verb.add("--db", options->database,
+           "reads this results database and selects only simulated runs on which the method failed");
   verb.add("--jobs", options->jobs,
            "runs this number of processes in parallel, for a suite [default: number of processors]")
       .whole(1, 1024)
       .shows_default();
   verb.add("--memory", options->memory_mib,
-           "limits the memory of each process, MiB; a draw beyond the limit has no result")
+           "limits the memory of each process, MiB; a simulated run beyond the limit has no result")
       .within(64.0, 1e7)
       .shows_default();
   verb.add("--method", options->method, "names the method that fails").required();

@@ -95,22 +95,21 @@ json to_json(const std::vector<InputWorth>& worths, const std::vector<DrawTriage
           {"draws", std::move(all)}};
 }
 
-/// Names the true input that prevents the failure of most runs. The replacement of all inputs is only a bound and is
-/// not considered.
 std::string conclusion(const std::vector<InputWorth>& worths) {
-  if (worths.empty()) return "no draw could be run";
+  if (worths.empty()) return "no simulated run could be completed";
   const std::string& whole = worths.back().scenario;  // all scenarios, if there are several
   const auto is_single = [&](const InputWorth& worth) { return worth.scenario == whole && worth.input != "all"; };
   const auto first = std::find_if(worths.begin(), worths.end(), is_single);
-  if (first == worths.end()) return "no input could be replaced";
+  if (first == worths.end()) return "no input of the method could be replaced by its true value";
   const std::string name = first->input + " (" + first->doc + ")";
   if (first->cured > 0)
-    return fmt::format("the input {} has the strongest influence: its truth cures {} of {} failures", name,
+    return fmt::format("the input {} has the strongest influence: its true value prevents {} of {} failures", name,
                        first->cured, first->failed);
-  const std::string failures =
-      first->failed == 0 ? "no run failed (--metric and --limit define a failure)" : "no single input cures a failure";
-  if (first->better <= first->worse) return fmt::format("{}; no input improves most draws", failures);
-  return fmt::format("{}; {} improves {} of {} draws", failures, name, first->better, first->better + first->worse);
+  const std::string failures = first->failed == 0 ? "no method run failed (--metric and --limit define a failure)"
+                                                  : "no true value of a single input prevents a failure";
+  if (first->better <= first->worse) return fmt::format("{}; no true input improves most simulated runs", failures);
+  return fmt::format("{}; the true value of {} improves {} of {} simulated runs", failures, name, first->better,
+                     first->better + first->worse);
 }
 
 std::vector<DrawName> chosen_draws(const Session& session, const SuiteTriage& asked) {
@@ -123,8 +122,8 @@ std::vector<DrawName> chosen_draws(const Session& session, const SuiteTriage& as
   const auto failed = scenarios::failed_draws(results, *asked.method, asked.options.triage.failure);
   std::erase_if(draws, [&](const DrawName& draw) { return !failed.contains(draw); });
   if (draws.empty())
-    throw BadInput(fmt::format("{}: {} failed on none of the selected draws in this database", asked.database.string(),
-                               full_name(asked.method->info)));
+    throw BadInput(fmt::format("{}: {} failed on none of the selected simulated runs in this database",
+                               asked.database.string(), full_name(asked.method->info)));
   return draws;
 }
 
@@ -137,8 +136,8 @@ std::string line_of(const DrawTriage& draw) {
   for (const scenarios::TriageRow& row : draw.rows) {
     if (!row.fails) cures += (cures.empty() ? "" : ", ") + row.input;
   }
-  return cures.empty() ? fmt::format("{}fails, and no single input cures the failure", name)
-                       : fmt::format("{}fails; these inputs cure the failure: {}", name, cures);
+  return cures.empty() ? fmt::format("{}fails, and no true value of a single input prevents the failure", name)
+                       : fmt::format("{}fails; the true values of these inputs prevent the failure: {}", name, cures);
 }
 
 std::string first_trouble(const std::vector<DrawTriage>& draws) {
@@ -151,7 +150,7 @@ std::string first_trouble(const std::vector<DrawTriage>& draws) {
 
 int run_suite_triage(const Session& session, SuiteTriage asked) {
   if (!asked.suite.recordings.empty())
-    throw BadInput(fmt::format("suite '{}' contains recordings, whose inputs cannot be replaced by their truth",
+    throw BadInput(fmt::format("suite '{}' contains recordings, whose inputs cannot be replaced by their true values",
                                asked.suite.name));
   const std::vector<DrawName> draws = chosen_draws(session, asked);
   const InterruptFlag interrupt;
@@ -160,7 +159,7 @@ int run_suite_triage(const Session& session, SuiteTriage asked) {
   asked.options.on_draw = [&](const DrawTriage& draw) {
     ++done;
     failed += !draw.rows.empty() && draw.rows.front().fails ? 1 : 0;
-    session.note(fmt::format("{} of {} draws, {} failed: {}", done, draws.size(), failed, line_of(draw)));
+    session.note(fmt::format("{} of {} simulated runs, {} failed: {}", done, draws.size(), failed, line_of(draw)));
   };
   const std::vector<DrawTriage> triaged = scenarios::triage_draws(session.data(), draws, *asked.method, asked.options);
   const std::vector<InputWorth> worths = scenarios::worth_of_inputs(triaged, asked.metric);
@@ -169,12 +168,13 @@ int run_suite_triage(const Session& session, SuiteTriage asked) {
   const auto troubled =
       std::count_if(triaged.begin(), triaged.end(), [](const DrawTriage& draw) { return !draw.error_code.empty(); });
   if (troubled > 0)
-    std::fprintf(stderr,
-                 "tumble: %td of %zu draws have no result or an incomplete result; the first of these draws is %s\n",
-                 troubled, triaged.size(), first_trouble(triaged).c_str());
+    std::fprintf(
+        stderr,
+        "tumble: %td of %zu simulated runs have no result or an incomplete result; the first of these runs is %s\n",
+        troubled, triaged.size(), first_trouble(triaged).c_str());
   if (triaged.size() == draws.size()) return kDone;
-  std::fprintf(stderr, "tumble: stopped after %zu of %zu draws; the table covers only these draws\n", triaged.size(),
-               draws.size());
+  std::fprintf(stderr, "tumble: stopped after %zu of %zu simulated runs; the table covers only these runs\n",
+               triaged.size(), draws.size());
   return kCheckFailed;
 }
 

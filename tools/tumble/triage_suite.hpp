@@ -7,7 +7,6 @@
 #include "scenarios/sweep/suite_triage.hpp"
 #include "tools/tumble/session.hpp"
 
-/// run_suite_triage runs the triage over all simulated runs of a suite.
 namespace tumble::tools {
 
 struct SuiteTriage {
@@ -19,8 +18,6 @@ struct SuiteTriage {
   std::filesystem::path database;  ///< if set: only runs on which the method failed in this database
 };
 
-/// Runs the triage, prints the effect of each input, and names the most important one. Returns the exit status of the
-/// program.
 int run_suite_triage(const Session& session, SuiteTriage asked);
 
 }  // namespace tumble::tools

@@ -35,7 +35,6 @@ std::string place_of_gap(const sim::Sensors& sensors) {
   return place;
 }
 
-/// Returns true if a reading has this error, alone or relative to the previous reading.
 bool has_trouble(ErrorCode error_code, const sim::ImuRecord& imu, std::size_t k) {
   if (error_code == ErrorCode::time_order) return k > 0 && imu.time_ns[k] <= imu.time_ns[k - 1];
   ImuSample sample;
@@ -56,7 +55,6 @@ std::string place_of_reading(ErrorCode error_code, const sim::Sensors& sensors) 
   return "";
 }
 
-/// Describes the size of the sweeps of the first lidar, because a map needs sweeps with enough points.
 std::string size_of_sweeps(const sim::Sensors& sensors) {
   std::vector<std::size_t> sizes;
   for (std::size_t k = 0; !sensors.lidars.empty() && k < sensors.lidars.front().sweep_start_ns.size(); ++k)

@@ -17,7 +17,6 @@ VerbOption VerbOption::required() {
   return *this;
 }
 
-// CLI::Range would accept NaN.
 VerbOption VerbOption::within(double low, double high) {
   const std::string range = fmt::format("{:g} to {:g}", low, high);
   option_->check(CLI::Validator(

@@ -9,21 +9,17 @@
 
 namespace tumble::tools {
 
-/// Action runs a verb after its options were parsed. Returns the exit status.
 using Action = std::function<int()>;
 
-/// Verb is a subcommand of the program. The declaration of a verb adds its options to `verb` and returns its action.
-/// The session outlives the action.
+/// The declaration of a verb adds its options to `verb` and returns its action; the session outlives the action.
 struct Verb {
   const char* name;
   const char* doc;
   Action (*declare)(VerbOptions& verb, const Session& session);
 };
 
-/// Returns all verbs, in the order of the data flow.
 std::span<const Verb> verbs();
 
-// Each verb is declared in its own source file.
 Action declare_list(VerbOptions& verb, const Session& session);
 Action declare_run(VerbOptions& verb, const Session& session);
 Action declare_record(VerbOptions& verb, const Session& session);

@@ -11,10 +11,9 @@ namespace tumble::baselines {
 
 namespace {
 
-// Axis contains the data of one gyro axis: readings, saturation flags and noise variance.
 struct Axis {
   std::span<const ImuSample> samples;
-  std::vector<bool> clipped;    ///< saturated
+  std::vector<bool> clipped;
   std::vector<bool> overflown;  ///< clipped beyond the limit: the reading contains no information
   int index = 0;
   double variance = 0.0;  ///< variance of an unclipped reading
@@ -27,15 +26,14 @@ struct Value {
   double rate = 0.0, variance = 0.0;
 };
 
-// Evaluates the cubic Hermite polynomial between two samples, whose derivatives are given.
 double cubic(double share, double span_s, double from, double slope_from, double to, double slope_to) {
   const double u = share, u2 = u * u, u3 = u2 * u;
   return (2.0 * u3 - 3.0 * u2 + 1.0) * from + (u3 - 2.0 * u2 + u) * span_s * slope_from + (3.0 * u2 - 2.0 * u3) * to +
          (u3 - u2) * span_s * slope_to;
 }
 
-// Returns the derivative of the rate at sample k, the last before a gap (step -1) or the first after a gap (step +1).
-// Returns 0 if the neighbouring sample outside the gap is clipped or missing.
+// Returns the derivative of the rate at sample k, next to a gap of clipped samples; 0 if the neighbouring sample
+// outside the gap is clipped or missing.
 double slope_at(const Axis& axis, std::size_t k, int step) {
   if (step < 0 ? k == 0 : k + 1 == axis.samples.size()) return 0.0;
   const std::size_t other = step < 0 ? k - 1 : k + 1;
@@ -59,7 +57,8 @@ std::vector<Value> interpolate(const Axis& axis) {
       const double span_s = axis.time_s(b) - axis.time_s(a), share = (axis.time_s(k) - axis.time_s(a)) / span_s;
       out[k].rate =
           cubic(share, span_s, axis.reading(a), slope_at(axis, a, -1), axis.reading(b), slope_at(axis, b, +1));
-      // A cubic has no variance. The distance between cubic and clipped reading serves as standard deviation.
+      // Interpolation by a cubic gives no variance, so the distance between cubic and clipped reading serves as
+      // standard deviation.
       const double departure = out[k].rate - axis.reading(k);
       out[k].variance = axis.variance + departure * departure;
     }

@@ -12,27 +12,19 @@
 
 namespace tumble::baselines {
 
-/// ClippedBaseline estimates clipped angular rates from the gyro alone. It bridges each gap of clipped samples by a
-/// cubic that matches the rate and its derivative at both ends of the gap. The cubic interpolation suits gaps that are
-/// short compared with the motion.
-///
-/// ClippedBaseline estimates each gyro axis independently. The estimate is limited to the range from the saturation
-/// level to a maximum rate. ClippedBaseline ignores the accelerometer.
-///
-/// An impact at the start or end of a gap gives a wrong derivative of the rate. On simulated tumbles of the rig, the
-/// cubic has a larger mean error than the clipped reading. ClippedBaseline neglects impacts within a gap and the
-/// coupling between the axes of a tumbling body.
+/// ClippedBaseline estimates clipped angular rates from the gyro alone, each axis independently. A cubic bridges each
+/// gap of clipped samples and matches the rate and its derivative at both ends of the gap. On simulated tumbles, the
+/// cubic has a larger mean error than the clipped reading.
 class ClippedBaseline {
  public:
   struct Params {
     RailDetector::Params rails = {};
     bool tilted_rails = false;  ///< also detects tilted rails (ClippingFinder), unlike the published method
-    /// Noise density of the gyro [rad/s/sqrt(Hz)].
+    /// Noise density of the gyro [rad/s/sqrt(Hz)]
     double gyro_noise_density = 5.236e-4;
     double rate_max_rad_s = 50.0;  ///< largest rate about one axis in a gap
     double gap_max_s = 1.0;        ///< longest accepted time between samples
 
-    /// Calls the visitor with each parameter's reference, name, unit and limits.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("rails_", p.rails);
@@ -47,12 +39,10 @@ class ClippedBaseline {
     }
   };
 
-  /// Throws InvalidParams if a parameter is outside its limits.
   explicit ClippedBaseline(const Params& params);
 
-  /// Estimates the angular rate of each sample, and writes one RateState per sample to `out`, in O(N). On error, `out`
-  /// keeps its content. Possible errors are `empty`, `too_few` (fewer than two samples), `non_finite`, `time_order` and
-  /// `gap`.
+  /// Writes one estimated angular rate per sample to `out`, in O(N); on error, `out` keeps its content. Possible errors
+  /// are `empty`, `too_few` (fewer than two samples), `non_finite`, `time_order` and `gap`.
   Status estimate(std::span<const ImuSample> samples, std::vector<RateState>& out) const;
 
  private:

@@ -17,7 +17,8 @@ namespace {
 
 constexpr double kCodeFullRate_rad_s = 2.0;
 constexpr double kCodeDeadZone = 0.1;
-/// At gimbal lock (|sin(pitch)| above this value), roll and yaw cannot be separated; the complementary step is skipped.
+/// At gimbal lock, where |sin(pitch)| exceeds this value, roll and yaw cannot be separated, so the filter skips the
+/// complementary step.
 constexpr double kGimbalLock = 0.999;
 
 double current_roll(const Eigen::Quaterniond& q) {
@@ -28,8 +29,8 @@ double current_yaw(const Eigen::Quaterniond& q) {
   return std::atan2(2.0 * (q.w() * q.z() + q.x() * q.y()), 1.0 - 2.0 * (q.y() * q.y() + q.z() * q.z()));
 }
 
-/// Performs the published complementary step, equation (A25) of attitude.md: rotates the attitude towards the roll and
-/// pitch that the accelerometer measures, at the current yaw.
+/// Rotates the attitude towards the roll and pitch that the accelerometer measures, at the current yaw: equation (A25)
+/// of attitude.md.
 Eigen::Quaterniond towards_roll_and_pitch(const Eigen::Quaterniond& q, const Eigen::Vector3d& f, double share,
                                           bool keep_roll) {
   const double sin_pitch = 2.0 * (q.w() * q.y() - q.x() * q.z());
@@ -48,7 +49,6 @@ Autogain::Autogain(const Params& p) : params_(p) {
   require_within("upper_rad_s", p.upper_rad_s, p.lower_rad_s + 1e-9, 100.0);
 }
 
-/// Computes the gains by equations (A21), (A22) and (A23) of attitude.md.
 AutogainGains Autogain::gains(const Eigen::Vector3d& w_I_rad_s, double dt_s) const {
   const double width = params_.upper_rad_s - params_.lower_rad_s;
   const auto risen = [&](double rate) { return std::clamp((rate - params_.lower_rad_s) / width, 0.0, 1.0); };

@@ -10,14 +10,12 @@
 
 namespace tumble::baselines {
 
-/// AutogainProfile selects the function of the angular rate that sets the weights of gyro and accelerometer.
 enum class AutogainProfile : std::uint8_t {
   paper,     ///< eq 2: 0 up to `lower`, (|w_k| - lower)^2 / (upper - lower)^2, 1 from `upper`
   code2021,  ///< authors' code of 2021: min(1, (w_k / 2)^2); the gains (not the factors) use 0 below 0.1
   smooth,    ///< smoothstep of the rate's norm between the bounds of `paper`; continuous, independent of the mounting
 };
 
-/// AutogainGains contains the correction factors and gains that Autogain uses for one sample.
 struct AutogainGains {
   Eigen::Vector3d factor = Eigen::Vector3d::Zero();  ///< f_x, f_y, f_z (eq 2); all equal in the smooth profile
   double beta = 0.0;                                 ///< beta (eq 3), from which the gains are computed
@@ -26,9 +24,9 @@ struct AutogainGains {
 };
 
 /// Autogain estimates attitude with the published filter for a rolling sphere (Zevering et al., IEEE MFI 2021, eqs
-/// 2-5). The filter first applies Madgwick's correction, whose gain grows with the rate. The filter then applies a
-/// complementary correction, whose weight falls with the rate. During slow rotation, the filter relies on the
-/// accelerometer even if the body accelerates. Autogain estimates neither gyro bias nor heading.
+/// 2-5). The filter first applies Madgwick's correction, whose gain grows with the angular rate. The filter then
+/// applies a complementary correction, whose weight falls with the angular rate. The filter estimates neither gyro bias
+/// nor heading.
 class Autogain {
  public:
   struct Params {
@@ -37,16 +35,14 @@ class Autogain {
     double tau_s = 0.396;      ///< time constant of the complementary step at rest (0.02 per sample at 125 Hz)
     double lower_rad_s = 0.1;  ///< unused by code2021
     double upper_rad_s = 2.1;  ///< above lower_rad_s; unused by code2021
-    /// true: the complementary step contains the error of the authors' code of 2021, to reproduce the attitudes in the
-    /// authors' recordings. In the authors' code, the check for gimbal lock is always true. The target attitude
-    /// therefore keeps the current roll, and the filter never corrects roll.
+    /// If true, the filter contains an error of the authors' code of 2021: a check for gimbal lock is always true, so
+    /// roll is never corrected.
     bool roll_error_2021 = false;
-    /// true: the complementary step is the smallest rotation that corrects the tilt, instead of a step in roll, pitch
-    /// and yaw. The `smooth` profile always uses the smallest rotation.
+    /// If true, the complementary step is the smallest rotation that corrects the tilt, instead of a step in roll,
+    /// pitch and yaw.
     bool tilt_form = false;
     double gap_max_s = 1.0;
 
-    /// Calls the visitor with each parameter's reference, name, unit and limits.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.profile,
@@ -82,12 +78,10 @@ class Autogain {
 
   explicit Autogain(const Params& params);
 
-  /// Updates the attitude with one IMU sample. The first sample sets roll and pitch from gravity and yaw to 0; later
-  /// samples integrate the gyro and correct the tilt. For a specific force below 1e-6 m/s^2, the filter only integrates
-  /// the gyro. On error, `state` keeps its content. The cost is O(1), without allocation.
+  /// The first IMU sample sets roll and pitch from gravity and yaw to 0; later samples integrate the gyro and correct
+  /// the tilt. For a specific force below 1e-6 m/s^2, the filter only integrates the gyro.
   Status step(const ImuSample& sample, State& state) const;
 
-  /// Returns the correction factors and gains for a rate in sensor axes and a sample period.
   AutogainGains gains(const Eigen::Vector3d& w_I_rad_s, double dt_s) const;
 
  private:

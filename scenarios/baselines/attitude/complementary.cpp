@@ -24,7 +24,6 @@ Status Complementary::step(const ImuSample& sample, State& state) const {
     q_WI = state.q_WI * so3::exp(sample.angular_velocity_rad_s * dt_s);
     if (const double force = sample.specific_force_m_s2.norm(); force >= kForceMin_m_s2) {
       const double share = -std::expm1(-dt_s / params_.tau_s);
-      // The correction applies a fraction of the tilt error: equation (A2) of attitude.md.
       q_WI = tilt_correction(q_WI * (sample.specific_force_m_s2 / force), share) * q_WI;
     }
     q_WI.normalize();

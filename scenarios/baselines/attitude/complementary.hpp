@@ -10,16 +10,15 @@
 namespace tumble::baselines {
 
 /// Complementary estimates attitude by a complementary filter. The filter integrates the gyro exactly, then applies the
-/// fraction 1 - exp(-dt / tau) of the smallest rotation that aligns the specific force with the vertical. The attitude
-/// is steady at rest, but an acceleration that lasts longer than tau causes an error. The filter does not estimate the
-/// gyro bias.
+/// fraction 1 - exp(-dt / tau) of the smallest rotation that aligns the specific force with the vertical (equation (A2)
+/// of attitude.md). An acceleration that lasts longer than tau causes an attitude error. The filter does not estimate
+/// the gyro bias.
 class Complementary {
  public:
   struct Params {
     double tau_s = 0.396;  ///< time constant of the correction: 0.02 per sample at 125 Hz, as published for the sphere
     double gap_max_s = 1.0;
 
-    /// Calls the visitor with each parameter's reference, name, unit and limits.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.tau_s,
@@ -39,9 +38,8 @@ class Complementary {
 
   explicit Complementary(const Params& params);
 
-  /// Updates the attitude with one IMU sample. The first sample sets roll and pitch from gravity and yaw to 0; later
-  /// samples integrate the gyro and correct the tilt. For a specific force below 1e-6 m/s^2, the filter only integrates
-  /// the gyro. On error, `state` keeps its content. The cost is O(1), without allocation.
+  /// The first IMU sample sets roll and pitch from gravity and yaw to 0; later samples integrate the gyro and correct
+  /// the tilt. For a specific force below 1e-6 m/s^2, the filter only integrates the gyro.
   Status step(const ImuSample& sample, State& state) const;
 
  private:

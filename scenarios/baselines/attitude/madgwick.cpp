@@ -14,8 +14,8 @@ namespace {
 
 constexpr double kGradientMin = 1e-12;
 
-/// Returns the gradient J^T F of half the squared distance between predicted and measured vertical, as a quaternion (x,
-/// y, z, w). The gradient is the vector s in equation (A24) of attitude.md.
+/// Returns the gradient J^T F of half the squared distance between predicted and measured vertical: the vector s in
+/// equation (A24) of attitude.md, as a quaternion (x, y, z, w).
 Eigen::Vector4d tilt_gradient(const Eigen::Quaterniond& q, const Eigen::Vector3d& up_I) {
   const double w = q.w(), x = q.x(), y = q.y(), z = q.z();
   const double f1 = 2.0 * (x * z - w * y) - up_I.x();
@@ -25,8 +25,6 @@ Eigen::Vector4d tilt_gradient(const Eigen::Quaterniond& q, const Eigen::Vector3d
           2.0 * x * f1 + 2.0 * y * f2, -2.0 * y * f1 + 2.0 * x * f2};
 }
 
-/// Returns the normalised tilt gradient. Returns zero if the specific force or the tilt error is zero, or if the
-/// estimated attitude is exactly upside down.
 Eigen::Vector4d correction(const Eigen::Quaterniond& q, const Eigen::Vector3d& f_I) {
   const double force = f_I.norm();
   if (force < kForceMin_m_s2) return Eigen::Vector4d::Zero();
@@ -38,7 +36,6 @@ Eigen::Vector4d correction(const Eigen::Quaterniond& q, const Eigen::Vector3d& f
 
 }  // namespace
 
-/// Performs one step of Madgwick's filter, equation (A24) of attitude.md.
 Eigen::Quaterniond madgwick_step(const Eigen::Quaterniond& q_WI, const Eigen::Vector3d& w_I_rad_s,
                                  const Eigen::Vector3d& f_I_m_s2, double gain_rad_s, double dt_s) {
   const Eigen::Quaterniond rate(0.0, w_I_rad_s.x(), w_I_rad_s.y(), w_I_rad_s.z());

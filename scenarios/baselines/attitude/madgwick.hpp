@@ -10,19 +10,14 @@
 namespace tumble::baselines {
 
 /// Madgwick estimates attitude by Madgwick's gradient filter from gyro and accelerometer (Madgwick, internal report,
-/// 2010, eqs 25-33). The filter integrates q' = q/2 (x) (0, w) - gain * s/|s| by an explicit step with normalisation,
-/// as published. The vector s is the gradient of the squared tilt error. Without a usable gradient (|s| or |f| ~ 0),
-/// the filter only integrates the gyro.
-///
-/// Madgwick's filter estimates neither gyro bias nor heading. The correction has a fixed angular speed of 2 gain rad/s,
-/// so the attitude oscillates at rest and follows accelerations.
+/// 2010, eqs 25-33). The correction has a fixed angular speed of 2 gain rad/s, so the attitude oscillates at rest and
+/// follows accelerations. The filter estimates neither gyro bias nor heading.
 class Madgwick {
  public:
   struct Params {
     double gain_rad_s = 0.033;  ///< quaternion rate of the correction: sqrt(3/4) x gyro error per axis
     double gap_max_s = 1.0;
 
-    /// Calls the visitor with each parameter's reference, name, unit and limits.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.gain_rad_s, {"gain_rad_s", "rad/s", 0.0, 10.0,
@@ -42,9 +37,8 @@ class Madgwick {
 
   explicit Madgwick(const Params& params);
 
-  /// Updates the attitude with one IMU sample. The first sample sets roll and pitch from gravity and yaw to 0; later
-  /// samples integrate the gyro and correct the tilt. On error, `state` keeps its content. The cost is O(1), without
-  /// allocation.
+  /// The first IMU sample sets roll and pitch from gravity and yaw to 0; later samples integrate the gyro and correct
+  /// the tilt.
   Status step(const ImuSample& sample, State& state) const;
 
  private:

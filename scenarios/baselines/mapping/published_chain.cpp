@@ -16,7 +16,6 @@ namespace {
 
 using Sweep = PublishedChain::Sweep;
 
-/// SweepCell is the sum of the points of one sweep in one voxel.
 struct SweepCell {
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
   double time_s = 0.0, skew_variance = 0.0;
@@ -27,10 +26,9 @@ TimeNs rounded_offset(const LidarPoint& point, TimeNs step_ns) {
   return static_cast<TimeNs>(point.offset_ns) / step_ns * step_ns;
 }
 
-/// Returns the time of the registered pose: the start of the sweep, or the common time if all points have the same
-/// time. If a common time were replaced by the start of the sweep, the velocity feedback would be unstable. The
-/// recursion v' = v_true + (v - v'') has the root -1.6. Points spread over the sweep halve the term (v - v''), which
-/// gives the roots 0.5 and -1.
+/// Returns the time of the registered pose: the start of the sweep, or the time of the points if all points have the
+/// same time. If all points have one time, a pose at the start of the sweep would make the velocity feedback unstable:
+/// v' = v_true + (v - v'') has the root -1.6.
 TimeNs registered_at(const Sweep& sweep, TimeNs step_ns) {
   if (sweep.points.empty()) return sweep.start_ns;
   const auto [first, last] = std::minmax_element(
@@ -39,7 +37,6 @@ TimeNs registered_at(const Sweep& sweep, TimeNs step_ns) {
   return sweep.start_ns + rounded_offset(*first, step_ns);
 }
 
-/// SweepBounds accepts lidar points outside the robot whose range is within the limits.
 class SweepBounds {
  public:
   explicit SweepBounds(const PublishedChain::Params& params)
@@ -76,8 +73,6 @@ std::vector<TrimmedIcp::Point> means_of(std::span<const SweepCell> cells, double
   return points;
 }
 
-/// Deskews the points of a sweep to the lidar axes at `at_ns`, downsamples them to voxels, and returns them with
-/// variances.
 std::vector<TrimmedIcp::Point> deskewed(const Sweep& sweep, TimeNs at_ns, const PublishedImuOdometry& odometry,
                                         const PublishedChain::Params& params) {
   const double rate = params.skew_sigma_m_s;
@@ -185,7 +180,6 @@ bool PublishedChain::registers(const Sweep& sweep, TimeNs at_ns, std::span<const
   return true;
 }
 
-/// Inserts the points that are far from all points that were in the map before this sweep.
 void PublishedChain::extend(std::span<const TrimmedIcp::Point> points, const Eigen::Isometry3d& T_WL,
                             SweepReport& report) {
   const Eigen::Isometry3f move = T_WL.cast<float>();
@@ -204,7 +198,6 @@ void PublishedChain::extend(std::span<const TrimmedIcp::Point> points, const Eig
   icp_.forget_normals();
 }
 
-/// Fills the report with the poses during the sweep in the map frame.
 void PublishedChain::report_poses(const Sweep& sweep, SweepReport& report) {
   const auto at = [&](TimeNs time_ns) {
     return pose_state(T_map_odom_ * odometry_.pose(time_ns), T_map_odom_.linear() * odometry_.velocity_m_s(time_ns),
@@ -218,7 +211,6 @@ void PublishedChain::report_poses(const Sweep& sweep, SweepReport& report) {
   if (report.trajectory.empty()) report.trajectory.push_back(report.pose);
 }
 
-/// Sets the velocity of the odometry to the mean velocity since the last registered sweep.
 void PublishedChain::feed_back(TimeNs at_ns) {
   const Eigen::Vector3d here_m = (T_map_odom_ * odometry_.pose(at_ns)).translation();
   if (registered_ns_ && at_ns > *registered_ns_) {

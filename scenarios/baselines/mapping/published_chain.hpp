@@ -16,16 +16,10 @@
 
 namespace tumble::baselines {
 
-/// PublishedChain estimates trajectory and map from given rates with the published mapping chain (Deschenes et al.,
-/// ICRA 2024) and the constants of its launch files.
+/// PublishedChain estimates trajectory and map from given angular rates with the published mapping chain (Deschenes et
+/// al., ICRA 2024) and the constants of its launch files.
 ///
-/// - Madgwick's filter estimates attitude. Accelerometer odometry estimates position, with velocity feedback from
-///   registration.
-/// - Each sweep is deskewed to its start, or to the common time of its points. The points of the sweep are weighted by
-///   time and voxelised.
-/// - Trimmed point-to-plane registration aligns the sweep to the map. Points are inserted only where the map is empty.
-///
-/// One parameter switches each known error of the published chain. The defaults are those of the launch files.
+/// One parameter switches each known error of the published chain.
 class PublishedChain {
  public:
   struct Params {
@@ -85,24 +79,20 @@ class PublishedChain {
   };
   using SweepReport = LidarInertialOdometry::SweepReport;
 
-  /// Sweep is one lidar sweep in lidar axes; the time offset of each point counts from `start_ns`.
   struct Sweep {
     TimeNs start_ns = 0, end_ns = 0;
     std::span<const LidarPoint> points;
   };
 
-  /// Stores the samples of a whole recording, and one angular rate per sample, which replaces the gyro reading. The
-  /// data of `samples` must outlive the PublishedChain.
+  /// `rates` contains one angular rate per IMU sample, which replaces the gyro reading. The data of `samples` must
+  /// outlive the PublishedChain.
   PublishedChain(const Params& params, std::span<const ImuSample> samples, std::span<const RateState> rates);
 
-  /// Returns true if the IMU samples extend beyond the end of the sweep.
   bool covers(const Sweep& sweep) const;
-  /// Registers a sweep to the map. `covers(sweep)` must be true, and the sweep must be later than all earlier sweeps.
-  /// Returns `out_of_range`, with unchanged state, if a point is later than the last IMU sample. Returns `empty`,
-  /// `degenerate` (all points have one time) or `too_few` (points in range) if the sweep is not registered; the
-  /// odometry still advances.
+  /// `covers(sweep)` must be true, and each sweep must be later than all earlier sweeps. Returns `empty`, `degenerate`
+  /// (all points have one time) or `too_few` (points in range) if the sweep is not registered; the odometry still
+  /// advances.
   Status add(const Sweep& sweep, SweepReport& report);
-  /// Returns the points of the map with normals that point towards the sensor.
   std::vector<MapPoint> map() const;
 
  private:

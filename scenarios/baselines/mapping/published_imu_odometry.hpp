@@ -12,31 +12,25 @@
 namespace tumble::baselines {
 
 /// PublishedImuOdometry computes attitude by Madgwick's filter and position from the accelerometer, in the odometry
-/// frame "odom". PublishedChain uses the result for deskewing and as initial pose of the registration. The position is
-/// constant until registration supplies the first velocity.
+/// frame "odom".
 class PublishedImuOdometry {
  public:
-  /// Stores the IMU samples, and one angular rate per sample, which replaces the gyro reading. The data of `samples`
-  /// must outlive the PublishedImuOdometry.
+  /// `rates` contains one angular rate per IMU sample, which replaces the gyro reading. The data of `samples` must
+  /// outlive the PublishedImuOdometry.
   PublishedImuOdometry(double madgwick_gain_rad_s, std::span<const ImuSample> samples,
                        std::span<const RateState> rates);
 
-  /// Integrates the samples up to the first sample at or after `to_ns`.
   void advance(TimeNs to_ns);
-  /// Sets the velocity at `time_ns` to the velocity from registration, and integrates the later accelerometer samples
-  /// again.
+  /// Sets the velocity at `time_ns` to the velocity from lidar registration, and integrates the later accelerometer
+  /// samples again.
   void feed_back(const Eigen::Vector3d& velocity_m_s, TimeNs time_ns);
 
-  /// Returns the pose of the IMU at `time_ns`, interpolated between samples (position linearly, attitude by slerp).
-  /// Before the first sample, the pose is constant.
+  /// Returns the pose of the IMU at `time_ns`, with linearly interpolated position and spherically interpolated
+  /// attitude.
   Eigen::Isometry3d pose(TimeNs time_ns) const;
-  /// Returns the integrated velocity at the first sample at or after `time_ns`. Later velocity feedback has no effect
-  /// on the returned velocity.
   const Eigen::Vector3d& velocity_m_s(TimeNs time_ns) const;
 
  private:
-  /// Returns the index of the first integrated sample at or after `time_ns`, or the index of the last sample if all are
-  /// earlier.
   std::size_t sample_at(TimeNs time_ns) const;
   Eigen::Vector3d acceleration_m_s2(std::size_t k) const;
 

@@ -66,7 +66,6 @@ Status RigidOdometry::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const 
   return status;
 }
 
-/// Computes the world positions of the deskewed points.
 void RigidOdometry::place(const Eigen::Isometry3d& T_WI) {
   const Eigen::Isometry3f T = T_WI.cast<float>();
   positions_m_.resize(points_.size());
@@ -80,7 +79,7 @@ void RigidOdometry::register_points(SweepReport& report) {
   for (const std::uint32_t index : chosen_index_) chosen_.push_back(points_[index]);
   report.points_registered = chosen_.size();
 
-  // The points are already deskewed to the end of the sweep, so the trajectory has zero length.
+  // The points are deskewed to the end of the sweep, so the trajectory within the sweep has zero length.
   MotionSample instant;
   instant.from_ns = predicted_.time_ns - 1;
   instant.time_ns = predicted_.time_ns;
@@ -116,8 +115,6 @@ void RigidOdometry::extend_map(bool has_ring_numbers, SweepReport& report) {
   seen_from_W_m_.push_back(T_WI.translation().cast<float>());
 }
 
-/// Fills the report with the predicted poses during the sweep. The correction by registration moves all poses as one
-/// rigid body.
 void RigidOdometry::describe(const SweepTrajectory& trajectory, SweepReport& report) const {
   const Eigen::Isometry3d correction = pose_of(state_) * pose_of(predicted_).inverse(Eigen::Isometry);
   const Eigen::Quaterniond turned(correction.linear());

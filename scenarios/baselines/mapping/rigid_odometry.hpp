@@ -17,11 +17,8 @@
 namespace tumble::baselines {
 
 /// RigidOdometry registers sweeps to a map, with a motion prediction from the caller. Like most lidar odometries,
-/// RigidOdometry deskews each sweep once, to its end, and corrects only the end pose. Published lidar odometries differ
-/// in their motion prediction (`Motion`) and in their use of the registered pose. The caller implements both.
-///
-/// RigidOdometry neglects motion errors within the sweep, mounting errors and clock offsets, and does not recover after
-/// a tracking failure.
+/// RigidOdometry deskews each sweep once, to its end, and corrects only the end pose. RigidOdometry neglects motion
+/// errors within the sweep, mounting errors and clock offsets, and does not recover after a tracking failure.
 class RigidOdometry {
  public:
   struct Params {
@@ -32,13 +29,12 @@ class RigidOdometry {
     double sweep_voxel_m = 0.25;     ///< voxel size; the registration uses one point per voxel of a sweep
     double map_voxel_m = 0.5;
     double map_spacing_m = 0.1;
-    /// true: sweeps without successful registration are inserted into the map at the predicted pose, as in most
+    /// If true, sweeps without successful registration are inserted into the map at the predicted pose, as in most
     /// published methods.
     bool extend_always = true;
     double degenerate_sigma_m = 0.15;  ///< as in LidarInertialOdometry
     Registration::Params registration;
 
-    /// Calls the visitor with each parameter's reference, name, unit and limits.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.range_min_m, {"range_min_m", "m", 0.0, 10.0, "minimum range; nearer returns are dropped"});
@@ -69,7 +65,6 @@ class RigidOdometry {
     }
   };
 
-  /// Motion is the predicted motion over a time interval, with the uncertainty at the end of the interval.
   struct Motion {
     MotionState start;                  ///< state at or before the sweep's start
     std::vector<MotionSample> samples;  ///< from the start to the sweep's end
@@ -79,13 +74,9 @@ class RigidOdometry {
 
   explicit RigidOdometry(const Params& params);
 
-  /// Registers the points of a sweep from `start_ns` to `end_ns` to the map. Returns the same errors as
-  /// LidarInertialOdometry::add_sweep.
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points, const Motion& motion,
                    LidarInertialOdometry::SweepReport& report);
 
-  /// The functions predicted() and state() return the predicted and the registered motion state at the end of the last
-  /// sweep, with covariance.
   const MotionState& predicted() const { return predicted_; }
   const MotionState& state() const { return state_; }
 

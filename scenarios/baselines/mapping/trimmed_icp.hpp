@@ -14,14 +14,8 @@
 
 namespace tumble::baselines {
 
-/// TrimmedIcp aligns a sweep to a map by point-to-plane registration with k matches per point, as the published chain
-/// does. The registration keeps only the closest matches, and determines their number from the data (Chetverikov et
-/// al., 2005; Phillips et al., 2007, with lambda). Each match is weighted by the inverse variances of both points. Each
-/// iteration solves normal equations that are linearised for small angles.
-///
-/// TrimmedIcp does not measure observability: along a corridor, the registration still reports success.
-/// LidarInertialOdometry detects unobservable directions. The cost of an iteration is proportional to the number of
-/// points times k.
+/// TrimmedIcp aligns a sweep to a map by point-to-plane registration with k matches per point and inverse-variance
+/// weights. TrimmedIcp does not measure observability: along a corridor, the registration still reports success.
 class TrimmedIcp {
  public:
   struct Params {
@@ -31,9 +25,8 @@ class TrimmedIcp {
     double trim_min = 0.5;       ///< smallest fraction of the matches to keep
     double trim_max = 0.7;
     double trim_lambda = 2.35;
-    /// true: contains the error of the authors' code. In the authors' code, the kept fraction refers to all match
-    /// slots, although the sorted distances omit slots without a match. The code therefore reads beyond the end of the
-    /// sorted list. TrimmedIcp stops at the end.
+    /// If true, the kept fraction refers to all match slots, also to slots without a match, as in the authors' code.
+    /// The authors' code then reads beyond the end of the sorted distances; TrimmedIcp stops at the end.
     bool count_unmatched_slots = false;
     int iterations_max = 40;
     double step_m = 0.01;  ///< converged if the mean step over two iterations is below both bounds
@@ -41,7 +34,6 @@ class TrimmedIcp {
     double correction_max_m = 15.0;
     double correction_max_rad = 1.1;
 
-    /// Calls the visitor with each parameter's reference, name, unit and limits.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.neighbours, {"neighbours", "1", 1, 32, "number of matches per point"});
@@ -81,16 +73,15 @@ class TrimmedIcp {
 
   explicit TrimmedIcp(const Params& params);
 
-  /// Estimates the pose that aligns `points` to `map`, starting from the pose `prior`. As in the published chain, a
-  /// registration that reaches the iteration limit counts as success. Returns an error if no point has a match or the
-  /// correction exceeds its limit.
+  /// As in the published chain, a registration that reaches the iteration limit counts as success. Returns an error if
+  /// no point has a match or the correction exceeds its limit.
   Result align(std::span<const Point> points, const Eigen::Isometry3d& prior, const VoxelMap& map);
 
-  /// Returns how many of the sorted squared distances d^2 the registration keeps. The kept fraction f minimises (sum of
-  /// the smallest f n distances d^2) / (f n f^(2 lambda)) over f in [trim_min, trim_max], with n = `slots`.
+  /// Returns how many of the n = `slots` sorted squared distances d^2 the registration keeps. The kept fraction f
+  /// minimises (sum of the smallest f n distances d^2) / (f n f^(2 lambda)) for f in [trim_min, trim_max].
   static std::size_t trim(std::span<const float> sorted_d2, std::size_t slots, const Params& params);
 
-  /// Clears the cached normals of the map points. The caller must call forget_normals after each change of the map.
+  /// Clears the cached normals of the map points; required after each change of the map.
   void forget_normals() { normals_.clear(); }
 
  private:

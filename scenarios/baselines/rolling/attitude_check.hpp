@@ -8,8 +8,6 @@
 
 namespace tumble::baselines {
 
-/// Returns `non_finite` for a non-finite attitude, and `out_of_range` if the norm of `q_WI` differs from 1 by more than
-/// 1e-6.
 inline Status check_attitude(const Eigen::Quaterniond& q_WI) {
   constexpr double kUnitTolerance = 1e-6;
   if (!q_WI.coeffs().allFinite()) return {ErrorCode::non_finite, "q_WI", q_WI.coeffs().sum(), 1.0};

@@ -13,8 +13,8 @@ namespace tumble::baselines {
 
 namespace {
 
-/// Scales each axis by the larger factor of the two other axes (eq 8), because rotation about these two axes moves the
-/// sphere along the first.
+/// Each axis is scaled by the larger rotation factor of the two other axes (eq 8 of the paper), because rotation about
+/// these two axes moves the sphere along the first.
 Eigen::Vector3d coupling(const Eigen::Vector3d& factor) {
   return {std::max(factor.y(), factor.z()), std::max(factor.x(), factor.z()), std::max(factor.x(), factor.y())};
 }
@@ -42,7 +42,6 @@ Status AutogainFusion::step(const ImuSample& sample, const Eigen::Quaterniond& q
   return {};
 }
 
-/// Integrates the linear acceleration in frame W, weighted by the rotation factors (eqs 6-9), and returns the velocity.
 Eigen::Vector3d AutogainFusion::accelerated(const ImuSample& sample, const Eigen::Quaterniond& q_WI, double dt_s,
                                             State& state) const {
   const double length = sample.specific_force_m_s2.norm();
@@ -55,7 +54,6 @@ Eigen::Vector3d AutogainFusion::accelerated(const ImuSample& sample, const Eigen
   const Eigen::Vector3d a_I = (params_.direction_only ? 1.0 : params_.gravity_m_s2) * linear_g;
   const Eigen::Vector3d scale = coupling(autogain_.gains(sample.angular_velocity_rad_s, dt_s).factor);
 
-  // The coupling factors refer to the sensor axes, even if the integral is in world axes.
   const Eigen::Quaterniond q = params_.integrate_in_body ? Eigen::Quaterniond::Identity() : q_WI;
   state.v_integral_m_s += dt_s * (params_.integrate_in_body ? a_I : q_mid * a_I);
   const Eigen::Vector3d gated_I = scale.cwiseProduct(q.conjugate() * state.v_integral_m_s);
@@ -63,7 +61,6 @@ Eigen::Vector3d AutogainFusion::accelerated(const ImuSample& sample, const Eigen
   return q_WI * gated_I;
 }
 
-/// Limits the integrated velocity (eq 12), computes the vertical velocity, and returns the weighted mean (eq 13).
 Eigen::Vector3d AutogainFusion::fuse(const Eigen::Vector3d& v_acc_W, const Eigen::Vector3d& v_rot_W) const {
   Eigen::Vector2d acc = v_acc_W.head<2>(), rot = v_rot_W.head<2>();
   const double speed = rot.norm();

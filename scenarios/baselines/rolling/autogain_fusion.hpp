@@ -11,10 +11,8 @@
 namespace tumble::baselines {
 
 /// AutogainFusion estimates the position of a rolling sphere on a flat floor from the rolling velocity and the
-/// integrated acceleration (Zevering et al., IEEE MFI 2021, eqs 6-13). The filter uses the integrated acceleration only
-/// during rotation, limits it to `limiter` times the rolling velocity, and averages both velocities. The limit usually
-/// leaves only the sign of the integrated acceleration, so the path of a sphere without slip is up to half too short.
-/// AutogainFusion is a baseline; its options select the variants of the paper and of the authors' code.
+/// integrated acceleration (Zevering et al., IEEE MFI 2021, eqs 6-13). The limit on the integrated acceleration usually
+/// leaves only its sign, so the path of a sphere without slip is up to half too short.
 class AutogainFusion {
  public:
   struct Params {
@@ -25,8 +23,8 @@ class AutogainFusion {
     double acceleration_weight = 0.5;  ///< eq 13
     Autogain::Params autogain = {};    ///< only for the factors of eq 2
 
-    // Each option switches one difference between the paper and the authors' code. The defaults follow the printed
-    // equations.
+    // Each option switches one difference between the paper and the authors' code; the defaults follow the equations of
+    // the paper.
     bool integrate_in_body = true;    ///< eq 7 in the rotating frame, without w x v; false integrates in W
     bool direction_only = false;      ///< as in the code: subtracts gravity from f / |f|, without multiplying by g
     bool recursive_coupling = false;  ///< as in the code: eq 8 scales the integral itself at each sample
@@ -36,7 +34,6 @@ class AutogainFusion {
 
     double gap_max_s = 1.0;
 
-    /// Calls the visitor with each parameter's reference, name, unit and limits.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.radius_m, {"radius_m", "m", 1e-9, 10.0, "radius of the sphere"});
@@ -91,8 +88,6 @@ class AutogainFusion {
 
   explicit AutogainFusion(const Params& params);
 
-  /// Updates the position with one IMU sample. The parameter `q_WI` is the attitude at the end of the sample's
-  /// averaging window. On error, `state` keeps its content.
   Status step(const ImuSample& sample, const Eigen::Quaterniond& q_WI, State& state) const;
 
  private:

@@ -14,7 +14,7 @@ constexpr double kUnitTolerance = 1e-6;
 constexpr double kRateLargest_rad_s = 1e6;
 
 Status check_input(const Eigen::Vector3d& w_I_rad_s, const Eigen::Quaterniond& q_WI) {
-  // sum() propagates NaN and infinity from any component; stableNorm() does not guarantee this.
+  // `sum()` propagates NaN and infinity from any component; `stableNorm()` does not guarantee this.
   if (!w_I_rad_s.allFinite()) return {ErrorCode::non_finite, "w_I_rad_s", w_I_rad_s.sum(), kRateLargest_rad_s};
   const double rate = w_I_rad_s.stableNorm();
   if (rate > kRateLargest_rad_s) return {ErrorCode::out_of_range, "w_I_rad_s", rate, kRateLargest_rad_s};
@@ -36,7 +36,6 @@ Status RollingOdometry::step(TimeNs time_ns, const Eigen::Vector3d& w_I_rad_s, c
     if (const Status bad = elapsed(time_ns, state.last_time_ns, params_.gap_max_s, dt_s); !bad.ok()) return bad;
   }
   const Eigen::Vector3d w_W_rad_s = q_WI * w_I_rad_s;
-  // Without slip, equation (R15) of rolling.md with u = 0 gives the velocity of the sphere's centre.
   const Eigen::Vector3d v_WG_m_s = params_.radius_m * w_W_rad_s.cross(params_.normal_W);
   state.p_WG_m += 0.5 * dt_s * (state.v_WG_m_s + v_WG_m_s);
   state.v_WG_m_s = v_WG_m_s;

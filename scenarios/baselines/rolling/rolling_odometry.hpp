@@ -9,9 +9,9 @@
 
 namespace tumble::baselines {
 
-/// RollingOdometry computes the position of a rolling sphere's centre G from the angular velocity. On a plane with
-/// normal n, the velocity of the centre is v = r w_W x n, which is integrated by the trapezoid rule. The position is
-/// exact without slip. RollingOdometry does not detect slip, sliding and height changes.
+/// RollingOdometry computes the position of a rolling sphere's centre from the angular velocity, by the trapezoid rule.
+/// On a plane with normal n, the velocity of the centre is v = r w_W x n (equation (R15) of rolling.md with u = 0). The
+/// position is wrong during slip, sliding and height changes.
 class RollingOdometry {
  public:
   struct Params {
@@ -19,7 +19,6 @@ class RollingOdometry {
     Eigen::Vector3d normal_W = Eigen::Vector3d::UnitZ();  ///< unit, from the contact to the centre
     double gap_max_s = 1.0;
 
-    /// Calls the visitor with each parameter's reference, name, unit and limits.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.radius_m, {"radius_m", "m", 1e-9, 10.0, "radius of the sphere"});
@@ -38,9 +37,8 @@ class RollingOdometry {
 
   explicit RollingOdometry(const Params& params);
 
-  /// Computes the position at `time_ns` from the position at the previous sample. `w_I_rad_s` is the mean rate over the
-  /// sample's averaging window, as an IMU measures it. `q_WI` is the attitude at the end of the window. On error,
-  /// `state` keeps its content.
+  /// `w_I_rad_s` is the mean angular rate over the IMU sample's averaging window, and `q_WI` is the attitude at the end
+  /// of the window.
   Status step(TimeNs time_ns, const Eigen::Vector3d& w_I_rad_s, const Eigen::Quaterniond& q_WI, State& state) const;
 
  private:

@@ -11,26 +11,19 @@
 
 namespace tumble::sim {
 
-/// Ground contains heights of the ground on a square grid centred on the origin. Generators change the heights;
-/// add_to() then adds the ground to a world as one height field.
 class Ground {
  public:
-  /// Creates level ground at height 0, with `side` by `side` nodes over |x|, |y| <= half_extent_m. `side` must be at
-  /// least 2.
   Ground(int side, double half_extent_m);
 
   int side() const { return side_; }
   double half_extent_m() const { return half_extent_m_; }
   double cell_m() const { return 2.0 * half_extent_m_ / (side_ - 1); }
-  /// Returns the x coordinate of a grid column or the y coordinate of a grid row.
   double coordinate_m(int index) const { return index * cell_m() - half_extent_m_; }
   double node_m(int row, int column) const { return heights_m_[static_cast<std::size_t>(row) * side_ + column]; }
 
-  /// Returns the bilinear height between the nodes, or the height of the edge beyond the edge. MuJoCo's triangles
-  /// differ from the bilinear height by the twist of a cell: 4 mm per 20 cm cell at 0.4 /m.
+  /// MuJoCo's triangles differ from the bilinear height by the twist of a cell: 4 mm per 20 cm cell at 0.4 /m.
   double height_m(double x_m, double y_m) const;
 
-  /// Replaces each height by f(x_m, y_m, height_m).
   template <typename Function>
   void transform(Function f) {
     for (int row = 0; row < side_; ++row) {
@@ -41,7 +34,6 @@ class Ground {
     }
   }
 
-  /// Adds f(x_m, y_m) at the nodes within the square of half width `reach_m` about (x_m, y_m). Cost: O(nodes in reach).
   template <typename Function>
   void add_near(double x_m, double y_m, double reach_m, Function f) {
     for (int row = nearest(y_m - reach_m); row <= nearest(y_m + reach_m); ++row) {
@@ -51,7 +43,6 @@ class Ground {
     }
   }
 
-  /// Adds the ground to a world as a height field and surface `name`.
   void add_to(mjSpec* spec, engine::World& world, const std::string& name, const Colour& colour) const;
 
  private:
@@ -64,8 +55,7 @@ class Ground {
   std::vector<double> heights_m_;
 };
 
-/// Returns 0 within `inner_m`, 1 beyond `outer_m`, and a smooth transition between. Relief multiplied by this factor is
-/// level around a position, so that a robot can rest there.
+/// Relief multiplied by this factor is level around a position, so that a robot can rest there.
 double fade(double distance_m, double inner_m, double outer_m);
 
 }  // namespace tumble::sim

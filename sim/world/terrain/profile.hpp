@@ -15,8 +15,8 @@ struct SlopeProfile {
   double height_m(double x_m) const;
 };
 
-/// LedgeProfile describes terraces below a level top at height 0. All drops have equal height, and are vertical within
-/// `face_m`. A sloping ledge follows each drop, and a level run-out follows the last ledge.
+/// LedgeProfile describes terraces below a level top at height 0: drops of equal height, vertical within `face_m`, each
+/// followed by a sloping ledge.
 struct LedgeProfile {
   double edge_x_m = 0.0;  ///< x of the first drop
   int drops = 2;          ///< number of drops, at least 1

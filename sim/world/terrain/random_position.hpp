@@ -8,19 +8,15 @@
 
 namespace tumble::sim {
 
-/// Rectangle is a horizontal rectangle along the axes.
 struct Rectangle {
   double low_x_m = 0.0, high_x_m = 0.0, low_y_m = 0.0, high_y_m = 0.0;
 };
 
-/// Disc is a horizontal disc.
 struct Disc {
   Eigen::Vector2d centre_m = Eigen::Vector2d::Zero();
   double radius_m = 0.0;
 };
 
-/// Draws uniform positions from the area until `fits` accepts one. After 1000 rejections, throws InvalidSituation with
-/// `what`.
 template <typename Fits>
 Eigen::Vector2d draw_position(Stream& stream, const Rectangle& area, const char* what, Fits fits) {
   constexpr int kAttempts = 1000;

@@ -8,9 +8,8 @@
 
 namespace tumble::sim {
 
-/// ReliefSpectrum is the spectrum of a rough surface. The power per wave number E(k), integrated over directions, is
-/// proportional to k^-exponent for wavelengths within [shortest_m, longest_m], and zero outside. The spectrum of a
-/// vertical cut through the surface has the same exponent.
+/// The power per wave number E(k) of a rough surface, integrated over directions, is proportional to k^-exponent for
+/// wavelengths within [shortest_m, longest_m], and zero outside.
 struct ReliefSpectrum {
   double rms_m = 0.1;       ///< root mean square of the height over random phases, at least 0
   double shortest_m = 1.0;  ///< above 0
@@ -19,8 +18,7 @@ struct ReliefSpectrum {
   bool ruled = false;       ///< true: the height depends only on x, so that every contour line is straight
 };
 
-/// Relief is a random surface with a stated spectrum: a sum of plane waves with random phases and directions, and
-/// log-uniform wavelengths.
+/// Relief is a random surface: a sum of plane waves with random phases and directions, and log-uniform wavelengths.
 class Relief {
  public:
   Relief(Stream& stream, const ReliefSpectrum& spectrum);
@@ -33,8 +31,8 @@ class Relief {
   std::vector<Wave> waves_;
 };
 
-/// Adds Gaussian bumps and hollows at uniform positions of `ground`. Heights are uniform in +-height_m; standard
-/// deviations of the shape are uniform in [0.2, 0.7] m (0.5 to 1.6 m wide at half height).
+/// Heights of the Gaussian bumps are uniform in +-height_m; standard deviations of the shape are uniform in [0.2, 0.7]
+/// m.
 void add_bumps(Ground& ground, Stream& stream, int count, double height_m);
 
 }  // namespace tumble::sim

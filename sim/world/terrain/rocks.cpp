@@ -25,7 +25,6 @@ std::vector<Rock> strew_rocks(Stream& stream, const RockField& field, const Grou
 
 void add_rocks(mjSpec* spec, engine::World& world, const std::vector<Rock>& rocks) {
   for (std::size_t i = 0; i < rocks.size(); ++i) {
-    // Rocks have different shades of grey, so that rocks in a heap can be distinguished in a picture.
     const float light = 0.42f + 0.04f * static_cast<float>(i % 5);
     add_surface(spec, world, "rock_" + std::to_string(i), mjGEOM_ELLIPSOID, rocks[i].centre_W_m, rocks[i].half_axes_m,
                 rocks[i].yaw_rad, {light, 0.97f * light, 0.9f * light, 1.0f});

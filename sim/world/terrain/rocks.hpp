@@ -10,28 +10,24 @@
 
 namespace tumble::sim {
 
-/// RockField describes the positions and sizes of rocks.
 struct RockField {
   int count = 0;
   double largest_m = 0.3;  ///< largest half axis
   /// Horizontal half axes are uniform in [smallest_share, 1] * largest_m, heights in [0.75 smallest_share, 0.7] *
-  /// largest_m.
+  /// largest_m
   double smallest_share = 0.4;
   Rectangle area;
   Disc clear;  ///< no rock reaches into this disc
 };
 
-/// Rock is an ellipsoid with more than a third below the ground.
 struct Rock {
   Eigen::Vector3d centre_W_m;
   Eigen::Vector3d half_axes_m;
   double yaw_rad;
 };
 
-/// Places rocks on the ground, uniformly over the area. Rocks may overlap. Throws InvalidSituation if the clear disc
-/// leaves no room for rocks.
+/// Throws InvalidSituation if the clear disc leaves no room for rocks.
 std::vector<Rock> strew_rocks(Stream& stream, const RockField& field, const Ground& ground);
-/// Adds the rocks to the world as surfaces "rock_0", "rock_1" and so on.
 void add_rocks(mjSpec* spec, engine::World& world, const std::vector<Rock>& rocks);
 
 }  // namespace tumble::sim

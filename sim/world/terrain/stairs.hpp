@@ -7,7 +7,6 @@
 
 namespace tumble::sim {
 
-/// Flight is a straight flight of steps that descends along +x from a level top at height 0.
 struct Flight {
   double edge_x_m = 0.0;  ///< x of the edge of the top, where the first riser is
   int steps = 12;         ///< number of risers, at least 1
@@ -20,16 +19,12 @@ struct Flight {
   double length_m() const { return steps * tread_m; }
 };
 
-/// Step is the box of step i = 1 .. steps. The top of step i is i risers below the top of the flight. The last step is
-/// level with the ground below the flight.
 struct Step {
   Eigen::Vector3d centre_W_m;
   Eigen::Vector3d half_m;
 };
 
-/// Returns the steps as boxes that extend `depth_m` below their tops.
 std::vector<Step> lay_steps(const Flight& flight, double depth_m);
-/// Adds the steps to the world as surfaces "step_1", "step_2" and so on.
 void add_steps(mjSpec* spec, engine::World& world, const std::vector<Step>& steps, const Colour& colour);
 
 }  // namespace tumble::sim

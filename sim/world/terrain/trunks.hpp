@@ -10,7 +10,6 @@
 
 namespace tumble::sim {
 
-/// Stand describes the positions and sizes of trees.
 struct Stand {
   int count = 0;
   double largest_radius_m = 0.15;  ///< radii are uniform in [0.4, 1] times this value
@@ -20,17 +19,14 @@ struct Stand {
   Disc clear;  ///< no tree is in this disc
 };
 
-/// Trunk is a vertical cylinder whose foot is half a metre below the ground.
 struct Trunk {
   Eigen::Vector3d centre_W_m;
   double radius_m;
   double half_height_m;  ///< uniform in [1.5, 3] m
 };
 
-/// Places trunks on the ground. Throws InvalidSituation if spacing, lane and clear disc leave no room for trunks. Cost:
-/// O(count^2).
+/// Throws InvalidSituation if spacing, lane and clear disc leave no room for trunks.
 std::vector<Trunk> plant_trunks(Stream& stream, const Stand& stand, const Ground& ground);
-/// Adds the trunks to the world as surfaces "trunk_0", "trunk_1" and so on.
 void add_trunks(mjSpec* spec, engine::World& world, const std::vector<Trunk>& trunks);
 
 }  // namespace tumble::sim

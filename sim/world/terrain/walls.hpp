@@ -7,16 +7,14 @@
 
 namespace tumble::sim {
 
-/// Block is a vertical block on the ground, for a wall or a house.
 struct Block {
   double x_m = 0.0, y_m = 0.0;
   double half_x_m = 1.0, half_y_m = 1.0;  ///< along its own axes
-  /// Height above the lowest ground at its corners and centre; 1 m more is below the ground.
+  /// Height above the lowest ground at the block's corners and centre; 1 m more is below the ground
   double height_m = 2.0;
   double yaw_rad = 0.0;
 };
 
-/// Adds a block to the world as the surface `name`.
 void add_block(mjSpec* spec, engine::World& world, const std::string& name, const Block& block, const Ground& ground,
                const Colour& colour);
 

@@ -63,7 +63,7 @@ TEST(BenchResult, OtherLinesAreRefusedWithPlace) {
   EXPECT_THAT(refusal(replaced(good, "\"status\":\"ok\"", "\"status\":\"fine\"")), HasSubstr("fine"));
   EXPECT_THAT(refusal(replaced(good, "\"seed\":1", "\"seed\":\"1\"")), HasSubstr("type"));
   EXPECT_THAT(refusal(replaced(good, "\"seed\":1,", "\"seed\":18446744073709551615,")), HasSubstr("occurs twice"));
-  EXPECT_THAT(refusal(replaced(good, ":0.1}", ":\"0.1\"}")), HasSubstr("not a number"));
+  EXPECT_THAT(refusal(replaced(good, ":0.1}", ":\"0.1\"}")), HasSubstr("not a finite number"));
   EXPECT_THAT(refusal(replaced(good, "\"date\":", "\"dates\":")), HasSubstr("date"));
 }
 

@@ -69,7 +69,7 @@ TEST(Bench, ResultsOfAnotherSuiteAreRefused) {
   other.timeout_s = 61;
   EXPECT_THAT(refusal(result, other), HasSubstr("two suites"));
   result.draws.pop_back();
-  EXPECT_THAT(refusal(result, small()), HasSubstr("has 2 draws"));
+  EXPECT_THAT(refusal(result, small()), HasSubstr("contains 2 simulated runs"));
 }
 
 TEST(Bench, ResultsOfAnotherSimulationAreTold) {

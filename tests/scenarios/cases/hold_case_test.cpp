@@ -99,9 +99,11 @@ TEST(HoldCase, AShrunkDrawBecomesACaseThatStillFails) {
   ASSERT_TRUE(named.named_case.has_value());
   EXPECT_EQ(named.named_case->scenario, "cliff");
   EXPECT_EQ(named.named_case->seed, 77u);
-  EXPECT_THAT(named.doc,
-              HasSubstr("fails (map_failed) on a simplified form of draw 77 of scenario cliff. Removing any of "
-                        "these parts removes the failure: world: bumps. The number of untried parts is 1."));
+  EXPECT_THAT(
+      named.doc,
+      HasSubstr(
+          "fails (map_failed) on a simplified form of the simulated run with seed 77 of scenario cliff. Removing any "
+          "of these parts removes the failure: world: bumps. The number of parts whose removal was not tried is 1."));
   const Expectation& expected = named.named_case->expected.front();
   EXPECT_EQ(expected.drawn, 2.5);
   EXPECT_EQ(expected.value, 1.5);

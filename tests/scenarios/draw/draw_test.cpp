@@ -64,9 +64,9 @@ TEST(Draw, RefusesADeviceOfAnotherKind) {
   std::vector<DataSheet> sheets(2, parse_data_sheet(kSheet, "mti30.yaml", fixture::registry()));
   sheets[1].sensor_kind = "spinning_lidar";
   const std::string message = fixture::complaint([&] { draw_given(scenario, sheets, 1); });
-  EXPECT_EQ(
-      message,
-      "hill.yaml:11: sensors.imu_reference: device 'mti30' is of kind 'spinning_lidar'; it must be of kind 'imu'");
+  EXPECT_EQ(message,
+            "hill.yaml:11: sensors.imu_reference: the device 'mti30' is a sensor of kind 'spinning_lidar'; it must be "
+            "of kind 'imu'");
 }
 
 /// DrawFiles has a data root in a temporary folder.

@@ -159,7 +159,7 @@ TEST_F(QuestionTest, IsClaimedBeforeTheDraws) {
   };
   refused(question_of(200), "belongs to the question");
   results.set_note(kQuestionNote, "");
-  refused(question_of(100), "of a run without --until");
+  refused(question_of(100), "of a sweep without --until");
 }
 
 TEST_F(QuestionTest, OfNothingIsOpen) {
@@ -190,7 +190,7 @@ TEST(Question, RefusesWhatCannotBeAsked) {
   refused([](Question& q) { q.margin.value = -0.1; }, "margin is -0.1");
   refused([](Question& q) { q.margin.value = std::numeric_limits<double>::quiet_NaN(); }, "margin is nan");
   refused([](Question& q) { q.risk = 1.0; }, "risk is 1");
-  refused([](Question& q) { q.looks = 0; }, "the number of looks is 0");
+  refused([](Question& q) { q.looks = 0; }, "the number of interim analyses is 0");
 }
 
 }  // namespace

@@ -174,7 +174,8 @@ TEST_F(RunIsolated, AKillFromOutsideAndNoMemoryAreTheMachines) {
   EXPECT_EQ(killed.message, "ended by signal 9 (Killed)");
   const Outcome memory = run([](const sim::Sensors&) -> Estimate { throw std::bad_alloc(); });
   EXPECT_EQ(memory.status, OutcomeStatus::killed);
-  EXPECT_EQ(memory.message, "not enough memory for the method");
+  EXPECT_EQ(memory.message,
+            "there is not enough memory for the method; free memory or increase the memory limit of a process");
 }
 
 TEST_F(RunIsolated, EndlessWorkIsATimeout) {

@@ -109,8 +109,8 @@ TEST_F(SuiteTest, DrawsMayBeNamedInClasses) {
   const std::string head = "name: test\ndoc: d\n";
   EXPECT_THAT(complaint(head + "draws: {mild: {hil: [1]}}\n"), ::testing::HasSubstr("did you mean 'hill'"));
   EXPECT_THAT(complaint(head + "draws: {mild: {hill: [1]}, wild: {hill: [1]}}\n"), ::testing::HasSubstr("twice"));
-  EXPECT_THAT(complaint(head + "draws: {mild: {}}\n"), ::testing::HasSubstr("needs at least one draw"));
-  EXPECT_THAT(complaint(head + "draws: {}\n"), ::testing::HasSubstr("needs at least one draw"));
+  EXPECT_THAT(complaint(head + "draws: {mild: {}}\n"), ::testing::HasSubstr("needs at least one simulated run"));
+  EXPECT_THAT(complaint(head + "draws: {}\n"), ::testing::HasSubstr("needs at least one simulated run"));
   EXPECT_THAT(complaint(head + "draws: {mild: {hill: [1]}}\nscenarios: [hill]\n"),
               ::testing::HasSubstr("is not allowed"));
   EXPECT_THAT(complaint(head + "draws: {mild: {hill: [1]}}\nmetrics: [ate]\n"), ::testing::HasSubstr("ate_m"));

@@ -114,7 +114,7 @@ TEST_F(SuiteTriage, AProcessThatHangsIsLate) {
   const std::vector<DrawTriage> all =
       triage_draws(tree_data(), std::vector<DrawName>{{clipping_tumble(folder_), 1}}, hangs, options);
   ASSERT_EQ(all.size(), 1u);
-  EXPECT_EQ(all[0].error_code, "the draw did not end within its time limit");
+  EXPECT_EQ(all[0].error_code, "the simulated run did not end within its time limit");
 }
 
 TEST_F(SuiteTriage, MemoryIsLimited) {
