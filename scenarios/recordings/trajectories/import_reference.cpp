@@ -80,7 +80,7 @@ void attach_poses(Imported& recording, std::vector<ReferencePose> poses, const E
     const auto shift_ns =
         clock_shift_ns({poses.front().time_ns, poses.back().time_ns}, span, {0, kExportOrigin_ns, -kExportOrigin_ns});
     for (ReferencePose& pose : poses) pose.time_ns += shift_ns.value_or(0);
-    if (shift_ns.value_or(0) != 0) recording.notes.push_back(clock_note("the stamps of the reference", *shift_ns));
+    if (shift_ns.value_or(0) != 0) recording.notes.push_back(clock_note("the reference", *shift_ns));
   }
   std::string remark = check_reference(poses, T_BA, sensors, where);
   move_to(poses, T_BA.inverse(Eigen::Isometry));

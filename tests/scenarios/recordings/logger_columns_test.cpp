@@ -122,7 +122,7 @@ TEST_F(LoggerTable, OneCutLineCostsOneReading) {
     SCOPED_TRACE(text.substr(text.size() - 40));
     const Imported imported = import(text);
     EXPECT_EQ(imported.sensors.imus.at(0).time_ns.size(), kept);
-    EXPECT_THAT(imported.notes, Contains(HasSubstr("caution: 1 of 50 readings is left out")));
+    EXPECT_THAT(imported.notes, Contains(HasSubstr("caution: the import leaves out 1 of 50 readings")));
   };
   one_lost(whole.substr(0, whole.size() - 5), 49);
   one_lost(whole.substr(0, whole.size() - 1), 49);

@@ -153,7 +153,7 @@ const Lie kLies[] = {
        s.crcs = false;
        s.footer = [](mcap::Footer& f) { f.summary_offset_start = f.summary_start; };
      },
-     "is not allowed at this position"},
+     "is not allowed in the summary offset section"},
     {"PlaceOfAMessage", [](McapShape& s) { s.index = [](mcap::MessageIndex& i) { i.entries[3].second += 1; }; },
      "the chunk index names 20 messages of channel 1, but the chunk has 20: the file is damaged"},
     {"TimeOfAMessage", [](McapShape& s) { s.index = [](mcap::MessageIndex& i) { i.entries[3].first += 1; }; },
@@ -173,9 +173,9 @@ const Lie kLies[] = {
      "the index names a chunk of 18446744073709551615 bytes"},
     {"PlaceOfAChunk",
      [](McapShape& s) { s.chunk_index = [](auto& all) { --all[0].chunk_length, ++all[0].chunk_start_offset; }; },
-     "this record must be a chunk"},
+     "refers to a record that is not a chunk"},
     {"TimesOfAChunk", [](McapShape& s) { s.chunk_index = [](auto& all) { --all[0].message_end_time; }; },
-     "the chunk differs from its index"},
+     "differs from its entry in the chunk index"},
     {"PlaceOfAnIndex", [](McapShape& s) { s.chunk_index = [](auto& all) { all[0].message_index_offsets[1] = 8; }; },
      "must follow its chunk at byte "},
     {"PlaceWithinAnIndex",

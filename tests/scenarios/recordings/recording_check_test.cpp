@@ -73,7 +73,7 @@ TEST(RecordingCheck, NamesWhatContradicts) {
       {[](auto& s) { s.lidars[0].sweep_first.front() = 1; }, "must increase from 0"},
       {[](auto& s) { s.lidars[0].point_times = sim::PointTimes::unknown; },
        "offset_ns is 3125 at point 1; it must be 0 if points have no time stamps"},
-      {[](auto& s) { s.lidars[0].point_times = static_cast<sim::PointTimes>(3); }, "point_times is not one of"},
+      {[](auto& s) { s.lidars[0].point_times = static_cast<sim::PointTimes>(3); }, "point_times must be measured"},
       {[](auto& s) { s.lidars[0].sweep_start_ns[1] = 0; }, "sweep_start_ns does not increase"},
       {[](auto& s) { s.series[0].time_ns.pop_back(); },
        "sensors/series/0: quantities/0: values has 5 rows, but time_ns has 4; the numbers must be equal"},
@@ -84,11 +84,12 @@ TEST(RecordingCheck, NamesWhatContradicts) {
       {[](auto& s) { s.series[0].quantities[1].name = ""; },
        "the name must consist of letters, digits and _, and must not be empty"},
       {[](auto& s) { s.series[0].quantities[1].unit = "\x1b"; }, "unit must be UTF-8 text without control characters"},
-      {[](auto& s) { s.series[0].quantities[1].name = "pressure_pa"; }, "quantities/1: the name is used twice"},
+      {[](auto& s) { s.series[0].quantities[1].name = "pressure_pa"; },
+       "quantities/1: two entries of the list have the same name"},
       {[](auto& s) {
          s.series[0].constants.push_back({"ground_pressure_pa", 1.0});
        },
-       "sensors/series/0: constants/1: the name is used twice"},
+       "sensors/series/0: constants/1: two entries of the list have the same name"},
       {[](auto& s) { s.series[0].constants[0].name = "a b"; },
        "constants/0: the name must consist of letters, digits and _, and must not be empty"},
       {[nan](auto& s) { s.series[0].constants[0].value = nan; }, "constants/0: the value is not finite"},
