@@ -25,8 +25,7 @@ void require_own_kind(const std::string& format, const std::filesystem::path& ou
 struct ExportChoices {
   bool truth = false;
   SweepLayout sweeps = own_sweep_layout();
-  /// Adds estimates to a bag (scoring/estimate_in_bag.hpp); may be empty. In the arguments, points and truth are on
-  /// disk.
+  /// Writes estimates to the bag (scoring/estimate_in_bag.hpp), if set; points and truth in its arguments are on disk.
   std::function<void(const sim::Sensors&, BagWriting&)> more = {};
   std::string frame = "body";  ///< for `tum` and `kitti`: frame of the true poses, see true_mounting
 };
@@ -58,10 +57,9 @@ void export_tum(const StoredTruth& truth, const std::filesystem::path& file, std
 /// Throws BadInput for a reference with gaps, because a KITTI file has no time stamps.
 void export_kitti(const sim::Truth& truth, const std::filesystem::path& file, const std::string& frame = "body");
 
-/// Writes one CSV file per sensor. The columns of an IMU are those of sensor_msgs/Imu: rate [rad/s] and specific force
-/// [m/s^2], each with its covariance; the attitude is unknown. Other sensors have the columns stamp s, stamp ns, frame,
-/// and one column per quantity. If `truth` is not null, truth.csv contains time, T_WB, v_WB_W, w_WB_B, f_B and contact
-/// label.
+/// The columns of an IMU are those of sensor_msgs/Imu: rate [rad/s] and specific force [m/s^2], each with its
+/// covariance; the attitude is unknown. Other sensors have the columns stamp s, stamp ns, frame, and one column per
+/// quantity. If `truth` is not null, truth.csv contains time, T_WB, v_WB_W, w_WB_B, f_B and contact label.
 void export_csv(const sim::Sensors& sensors, const sim::Truth* truth, const std::filesystem::path& folder,
                 std::int64_t origin_ns = 0);
 

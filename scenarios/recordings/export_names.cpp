@@ -10,13 +10,11 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// These names belong to topics and frames of a bag (bag.hpp), and to the truth of a CSV export.
 const std::set<std::string>& own_names() {
   static const std::set<std::string> names = {"body", "clock", "tf", "tf_static", "truth", "world"};
   return names;
 }
 
-/// Readers of bags do not treat these frames as sensors.
 const std::set<std::string>& frames_of_no_sensor() {
   static const std::set<std::string> names = {"base_link", "map", "odom"};
   return names;

@@ -24,7 +24,6 @@ struct ExportNames {
 ExportNames export_names(const sim::Sensors& sensors);
 ExportNames export_names(const sim::Truth& truth);
 
-/// Returns the first free name of `name`, `name`_2, `name`_3 …, and adds it to `taken`.
 std::string free_name(const std::string& name, std::set<std::string>& taken);
 
 }  // namespace tumble::scenarios

@@ -10,10 +10,10 @@ namespace tumble::scenarios::hdf5 {
 
 namespace {
 
-/// Without this limit, a damaged text length could exhaust the memory.
+/// A damaged text length without a limit could exhaust the memory.
 constexpr std::size_t kLongestText = std::size_t{16} << 20;
 
-/// The text is zero-padded UTF-8. The HDF5 library rejects text types of length 0.
+/// The HDF5 library rejects text types of length 0.
 Handle text_type(std::size_t length) {
   Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
   H5Tset_size(type.get(), std::max<std::size_t>(length, 1));

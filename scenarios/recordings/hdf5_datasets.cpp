@@ -24,7 +24,6 @@ std::size_t size_of(Scalar scalar) {
   return H5Tget_size(memory_type(scalar));
 }
 
-/// The byte order may differ, because HDF5 converts the byte order.
 bool matches(hid_t type, Scalar scalar) {
   const hid_t wanted = memory_type(scalar);
   const H5T_class_t kind = H5Tget_class(wanted);

@@ -66,7 +66,6 @@ std::uint64_t stated_length(const void* image) {
 }
 
 Handle create_file(const std::string& name, const std::string& label, const Handle& access) {
-  // The file format of HDF5 1.10 has checksums on all metadata.
   if (H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG) < 0 ||
       H5Pset_libver_bounds(access.get(), H5F_LIBVER_V110, H5F_LIBVER_V110) < 0) {
     throw BadInput(fmt::format("{}: the file cannot be prepared for writing{}", name, last_error()));
@@ -135,8 +134,7 @@ Handle::~Handle() {
 }
 
 Silence::Silence() {
-  // After reading some damaged files, the cleanup of the HDF5 library at exit fails and prints messages. The handles
-  // already close all files.
+  // After reading some damaged files, the cleanup of the HDF5 library at exit fails and prints messages.
   static const herr_t once = H5dont_atexit();
   (void)once;
   H5Eget_auto2(H5E_DEFAULT, &function_, &data_);

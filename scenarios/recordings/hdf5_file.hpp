@@ -10,7 +10,6 @@
 #include "scenarios/recordings/hdf5_group.hpp"
 #include "scenarios/recordings/hdf5_layout.hpp"
 
-/// Every error of the HDF5 functions is a BadInput with the message "FILE: PLACE: what".
 namespace tumble::scenarios::hdf5 {
 
 class InputFile {
@@ -27,7 +26,6 @@ class InputFile {
 /// MemoryFile creates an HDF5 file in memory, because the HDF5 library cannot recover from a write to a full disk.
 class MemoryFile {
  public:
-  /// Error messages start with `name`.
   explicit MemoryFile(const std::string& name);
   ~MemoryFile();
   MemoryFile(const MemoryFile&) = delete;
@@ -48,14 +46,13 @@ class MemoryFile {
 /// DiskFile reserves the maximum disk space first, because the HDF5 library cannot recover from a write to a full disk.
 class DiskFile {
  public:
-  /// Error messages start with `name`. Throws BadInput if disk space is missing.
+  /// Throws BadInput if disk space is missing.
   DiskFile(const std::string& name, const std::filesystem::path& path, std::uint64_t most_bytes);
   ~DiskFile();
   DiskFile(const DiskFile&) = delete;
   DiskFile& operator=(const DiskFile&) = delete;
 
   const Group& root() const { return root_; }
-  /// Closes all HDF5 objects and releases unused disk space.
   void close();
 
  private:

@@ -61,7 +61,7 @@ class Group {
     rows.resize(count_rows(dataset, name, RowLayout<Row>::columns, RowLayout<Row>::scalar));
     read_rows(dataset, name, rows.data(), rows.size(), RowLayout<Row>::scalar);
   }
-  /// Reads a dataset into a scratch file, chunk by chunk. `rows` must be empty and have a folder.
+  /// The column `rows` must be empty and have a folder for its scratch file.
   template <class Row>
   void read(const std::string& name, ColumnFile<Row>& rows) const {
     const Handle dataset = open_dataset(name);

@@ -13,7 +13,6 @@
 
 namespace tumble::scenarios::hdf5 {
 
-/// Handle owns an identifier of the HDF5 library.
 class Handle {
  public:
   using Close = herr_t (*)(hid_t);
@@ -85,7 +84,6 @@ constexpr std::size_t rows_in_chunk(std::size_t row_bytes) {
 
 hid_t memory_type(Scalar scalar);
 
-/// Returns " (reason)" for the last error of the HDF5 library, or an empty text.
 std::string last_error();
 
 }  // namespace tumble::scenarios::hdf5

@@ -55,8 +55,8 @@ Imported import_imu_csv(const std::filesystem::path& path, const sim::ImuRecord&
                         AccelUnit unit = AccelUnit::m_s2, GyroUnit gyro_unit = GyroUnit::rad_s,
                         const std::string& columns = "");
 
-/// Reads all IMU tables (.csv) in a folder. Each IMU has the name of its file; the first IMU by name is the primary
-/// IMU. Tables without IMU readings are skipped. Throws BadInput like import_imu_csv, and if no table has IMU readings.
+/// Each IMU has the name of its file; the first IMU by name is the primary IMU. Tables without IMU readings are
+/// skipped. Throws BadInput like import_imu_csv, and if no table has IMU readings.
 Imported import_csv_folder(const std::filesystem::path& folder, const sim::ImuRecord& device, AccelUnit unit,
                            GyroUnit gyro_unit);
 
@@ -88,8 +88,7 @@ struct ReferenceSource {
   std::int64_t steady_ns = 0;   ///< pose period of a KITTI file without sweeps
 };
 
-/// Reads a pose file as a recording without sensor data. Time 0 follows the rule of import_sweeps. Throws BadInput if
-/// the file is invalid.
+/// Time 0 follows the rule of import_sweeps.
 Imported import_trajectory(const ReferenceSource& source);
 
 /// Uses the poses of a file as the truth of `recording`, up to the end of the sensor data. The stamps of the poses are

@@ -10,13 +10,12 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr std::size_t kNoIndex = ~std::size_t{0};
-/// Fewer time stamps do not determine the duration of a recording.
+/// Fewer than ten time stamps do not determine the duration of a recording.
 constexpr std::size_t kLeastForEnds = 10;
 /// A gap of more than a day between a few stamps and the others indicates that the clock was set.
 constexpr std::uint64_t kClockSet_ns = 86'400'000'000'000;
 
-/// Returns the indices of a longest increasing subsequence of the stamps (Fredman 1975). The search starts at the end,
-/// so early stamps are preferred.
+/// Returns the indices of a longest increasing subsequence of the stamps (Fredman 1975).
 std::vector<std::size_t> longest_increasing(std::span<const std::int64_t> stamps_ns) {
   std::vector<std::size_t> first_of_length, after(stamps_ns.size(), kNoIndex);
   for (std::size_t k = stamps_ns.size(); k-- > 0;) {
@@ -35,7 +34,6 @@ std::vector<std::size_t> longest_increasing(std::span<const std::int64_t> stamps
   return indices;
 }
 
-/// Drops a few stamps at the start or end if the gap to the other stamps exceeds the duration of the others.
 void drop_far_ends(std::span<const std::int64_t> stamps_ns, std::vector<std::size_t>& indices) {
   const std::size_t all = indices.size();
   if (all < kLeastForEnds) return;

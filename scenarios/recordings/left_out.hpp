@@ -22,7 +22,6 @@ bool may_leave_out(std::size_t count, std::size_t all);
 
 class LeftOut {
  public:
-  /// The argument `items` is the plural name of the items in messages.
   explicit LeftOut(std::string items) : items_(std::move(items)) {}
 
   /// Counts a faulty item. `cause` completes the note "the import leaves out 1 of 150 readings: 1 with ..."; `error`
@@ -31,7 +30,6 @@ class LeftOut {
   /// Counts an item that was skipped for a cause that does not limit the number of items, such as empty messages in
   /// place of lost readings.
   void add_unlimited(const std::string& cause, const std::string& error);
-  /// Counts an item with faulty data if `read` throws BadInput.
   template <class Read>
   void guard(Read&& read) {
     try {
@@ -42,7 +40,6 @@ class LeftOut {
   }
 
   std::size_t count() const { return faulty_ + unlimited_; }
-  /// Throws BadInput with the first error if too many items are faulty.
   void require_few(std::size_t kept) const;
   std::string note(std::size_t kept) const;
 

@@ -8,7 +8,6 @@
 
 namespace tumble::scenarios {
 
-/// The extension includes its dot.
 inline std::string lower_extension(const std::filesystem::path& file) {
   std::string out = file.extension().string();
   std::transform(out.begin(), out.end(), out.begin(), [](unsigned char c) { return std::tolower(c); });

@@ -15,7 +15,6 @@ namespace {
 
 class RecordingReader {
  public:
-  /// Columns that stay on disk are stored in the folder `scratch`.
   explicit RecordingReader(hdf5::Group group, std::filesystem::path scratch = {})
       : group_(std::move(group)), scratch_(std::move(scratch)) {}
 

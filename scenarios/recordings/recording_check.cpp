@@ -57,7 +57,6 @@ std::string first_of(std::initializer_list<std::string> problems) {
   return found == problems.end() ? "" : *found;
 }
 
-/// An array may be empty if the sensor lacks the data.
 std::string optional_length_problem(const char* name, std::size_t length, std::size_t needed) {
   if (length == 0 || length == needed) return "";
   return fmt::format("{} has {} rows; it must have {} or none", name, length, needed);
@@ -229,7 +228,6 @@ std::string series_mismatch(const sim::SeriesRecord& series, const sim::SeriesTr
   return problem;
 }
 
-/// The template accepts an IMU's truth in memory or on disk.
 template <class Imu>
 std::string imu_truth_problem(const Imu& imu) {
   return first_of(

@@ -21,7 +21,6 @@ std::string find_problem(const StoredTruth& truth);
 /// Returns true if the file contains a digest of its sensor data, by which the reader detects damage.
 bool states_digest(const std::filesystem::path& path);
 
-/// Describes how the structure of the truth differs from the sensors; empty if they match.
 std::string find_mismatch(const sim::Sensors& sensors, const sim::Truth& truth);
 
 }  // namespace tumble::scenarios

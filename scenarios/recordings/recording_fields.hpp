@@ -23,7 +23,6 @@ namespace tumble::scenarios {
 /// compressed (FORMAT.md).
 enum class Storage { plain, deflated };
 
-/// StoredLidar is a lidar record with its points on disk.
 struct StoredLidar {
   sim::LidarRecord sweeps;
   PointStore points;

@@ -32,8 +32,7 @@ struct RecordingInfo {
 /// treats a stamp of 0 as missing.
 inline constexpr std::int64_t kExportOrigin_ns = 1'000'000'000'000'000'000;
 
-/// Returns the time stamp of time 0 in every export. Origins before 1970 are replaced by kExportOrigin_ns, because bags
-/// cannot store earlier stamps.
+/// Origins before 1970 are replaced by kExportOrigin_ns, because bags cannot store earlier stamps.
 inline std::int64_t export_origin_ns(std::int64_t origin_ns) {
   return origin_ns > 0 ? origin_ns : kExportOrigin_ns;
 }

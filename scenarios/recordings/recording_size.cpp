@@ -8,7 +8,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// The bounds cover the header of an object or attribute, and an empty file.
 constexpr std::uint64_t kHead_bytes = 4096, kFile_bytes = std::uint64_t{1} << 20;
 
 class SizeBound {

@@ -8,7 +8,6 @@
 
 namespace tumble::scenarios {
 
-/// ImportOption is an option of `tumble import`, such as {"--gyro-unit", "deg/s"}.
 struct ImportOption {
   std::string name, value;
 };

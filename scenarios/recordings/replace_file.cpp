@@ -58,7 +58,6 @@ std::optional<struct stat> status_of(const fs::path& path) {
   return found;
 }
 
-/// Follows all symbolic links; the target may be missing.
 fs::path behind_links(const fs::path& path) {
   fs::path place = path;
   std::error_code error;
@@ -95,7 +94,6 @@ void require_outside(const fs::path& output, std::span<const fs::path> inputs) {
   }
 }
 
-/// The file name of a temporary file identifies its process by ".tumble-HOST-PID.".
 std::string process_mark(const std::string& pid) {
   std::array<char, 17> host{};  // longer names are truncated
   if (gethostname(host.data(), host.size() - 1) != 0) host[0] = '\0';

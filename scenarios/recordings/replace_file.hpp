@@ -22,7 +22,6 @@ class OutputFile {
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
-  /// Libraries that write to a named file use this temporary path.
   const std::filesystem::path& unfinished() const { return unfinished_; }
   void write(std::span<const std::byte> bytes);
   /// Flushes the file to disk and renames it, so the final path always has the complete old or new file.

@@ -32,8 +32,6 @@ class StampLine {
     }
   }
 
-  /// Returns the value at index k of a line fitted to the stamps `first` to `end` - 1, relative to the first stamp of
-  /// the series.
   double at_ns(std::size_t first, std::size_t end, std::size_t k) const {
     std::array<double, 4> sum{};
     for (std::size_t s = 0; s < sum.size(); ++s) sum[s] = sums_[end][s] - sums_[first][s];

@@ -16,7 +16,6 @@ bool are_rounded(std::span<const std::int64_t> stamps_ns);
 /// that is fitted to the half second on either side, up to the next gap. The cost is O(N).
 std::vector<std::int64_t> evened(std::span<const std::int64_t> stamps_ns);
 
-/// Gaps are not counted. The cost is O(N).
 std::int64_t mean_step_ns(std::span<const std::int64_t> stamps_ns);
 
 }  // namespace tumble::scenarios

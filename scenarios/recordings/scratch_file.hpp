@@ -53,13 +53,11 @@ class ColumnFile {
   void read(std::size_t first, std::span<Row> rows) const {
     if (!rows.empty()) file_->read(first * sizeof(Row), std::as_writable_bytes(rows));
   }
-  /// Reads the rows from `first` to `last` - 1.
   std::vector<Row> rows(std::size_t first, std::size_t last) const {
     std::vector<Row> out(last - first);
     read(first, out);
     return out;
   }
-  /// Calls `take(first, rows)` for consecutive parts of `length` rows; the last part may be shorter.
   template <class Take>
   void for_segments(std::size_t length, Take&& take) const {
     std::vector<Row> rows;

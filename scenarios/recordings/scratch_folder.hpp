@@ -12,8 +12,7 @@ namespace tumble::scenarios {
 /// ScratchFolder is removed with the object, even if a signal ends the program.
 class ScratchFolder {
  public:
-  /// The name of the folder contains the text `use`. Throws std::filesystem::filesystem_error if the folder cannot be
-  /// created.
+  /// Throws std::filesystem::filesystem_error if the folder cannot be created.
   explicit ScratchFolder(const std::string& use);
   ~ScratchFolder();
   ScratchFolder(const ScratchFolder&) = delete;

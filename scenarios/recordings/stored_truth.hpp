@@ -39,7 +39,6 @@ struct StoredLidarTruth {
   ColumnFile<std::int32_t> surface_id;
 };
 
-/// StoredTruth is a sim::Truth whose rows are in scratch files (ColumnFile).
 struct StoredTruth {
   /// Returns the body states of the rows `first` to `last` - 1, with the mountings and `p_BG_m`, but without sensors
   /// and contacts.

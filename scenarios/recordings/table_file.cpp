@@ -21,7 +21,6 @@ namespace {
 
 constexpr std::size_t kBlock = 1 << 16;
 
-/// A table with blanks, such as a TUM file, may also use these separators.
 bool is_separator(char c) {
   return c == '\t' || c == ',' || c == ';';
 }

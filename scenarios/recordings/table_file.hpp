@@ -12,7 +12,7 @@
 namespace tumble::scenarios {
 
 /// TableWriter writes numbers as TUM (blanks, no header) or CSV (commas, one header line). Reading restores doubles
-/// exactly. Time stamps are integers, or seconds with nine decimals.
+/// exactly.
 class TableWriter {
  public:
   /// An empty `header` is not written. Only `close` replaces an existing file; without `close`, the table is discarded.
@@ -22,7 +22,6 @@ class TableWriter {
   void number(double value);
   void time_s(std::int64_t time_ns);  ///< exact: "12.000000345"
   void end_row();
-  /// Throws BadInput if any write failed.
   void close();
 
  private:

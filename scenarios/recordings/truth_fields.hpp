@@ -68,7 +68,6 @@ void series_truth_fields(Archive& archive, Series& series) {
   });
 }
 
-/// The archive visits `contacts` in place of truth.contacts.
 template <class Archive, class Truth, class Contacts>
 void truth_fields(Archive& archive, Truth& truth, Contacts& contacts) {
   archive.value("period_ns", truth.period_ns);

@@ -16,7 +16,6 @@ class Unfinished {
   ~Unfinished();
   Unfinished(const Unfinished&) = delete;
   Unfinished& operator=(const Unfinished&) = delete;
-  /// Ends the registration: signals then leave the path.
   void keep();
 
  private:

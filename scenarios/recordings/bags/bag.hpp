@@ -48,7 +48,6 @@ struct BagWriting {
   const StoredTruth* truth = nullptr;  ///< true motion; null: not written
   std::vector<BagTrack> tracks = {};   ///< estimates; names are unique and not in `taken` of export_names
   SweepLayout sweeps = own_sweep_layout();
-  /// Null if the points are in memory.
   const std::vector<PointStore>* points = nullptr;
   std::optional<ReaderNames> names = {};  ///< if set: writes only the first IMU and lidar, with these names
   bool empty_sweeps = true;               ///< false: omits sweeps without points
@@ -101,8 +100,7 @@ struct BagReading {
   GyroUnit gyro_unit = GyroUnit::rad_s;
   StampSource stamps = StampSource::header;
   SweepReading sweeps;
-  /// true: an unreadable topic is skipped with a note if another topic of the same kind is readable. A topic that the
-  /// caller chose is never skipped.
+  /// true: an unreadable topic is skipped with a note if another topic of the same kind is readable.
   bool leave_out_topics = false;
 };
 

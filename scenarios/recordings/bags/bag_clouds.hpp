@@ -9,8 +9,7 @@
 
 namespace tumble::scenarios {
 
-/// The messages of livox_ros_driver, livox_ros_driver2 and livox_interfaces have the same fields. `type` is a ROS 1
-/// name.
+/// The messages of livox_ros_driver, livox_ros_driver2 and livox_interfaces have the same fields.
 bool is_livox_type(const std::string& type);
 
 /// Each field must contain one number per point. Throws BadInput, with a message that starts with `where`, for
@@ -21,7 +20,7 @@ Cloud cloud_of(const ros::PointCloud2& message, const std::string& where);
 /// a message that starts with `where`, if the header states another number of points.
 Cloud cloud_of(const ros::LivoxCustomMsg& message, const std::string& where);
 
-/// Equal digests identify duplicate messages. The cost is O(number of bytes).
+/// Point clouds with equal digests are duplicate messages.
 std::uint64_t content_of(const ros::PointCloud2& message);
 std::uint64_t content_of(const ros::LivoxCustomMsg& message);
 

@@ -30,7 +30,6 @@ struct SweepLayout {
 SweepLayout own_sweep_layout();
 SweepLayout livox_sweep_layout();
 
-/// ReaderNames contains the names that a program with one IMU and one lidar expects in a bag.
 struct ReaderNames {
   std::string imu_topic, imu_frame;
   std::string points_topic, lidar_frame;

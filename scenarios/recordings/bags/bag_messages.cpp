@@ -24,7 +24,6 @@ std::array<double, 9> covariance_of(double density_sqrt_hz, std::int64_t period_
   return {variance, 0, 0, 0, variance, 0, 0, 0, variance};
 }
 
-/// The variance -1 means unknown.
 void set_unknown(std::size_t first_row, std::array<double, 36>& covariance) {
   constexpr std::size_t kRows = 6;
   for (std::size_t row = first_row; row < first_row + 3; ++row) covariance[row * kRows + row] = -1.0;

@@ -17,7 +17,6 @@ constexpr const char* kOdometry = "nav_msgs/Odometry";
 constexpr const char* kPoseStamped = "geometry_msgs/PoseStamped";
 constexpr const char* kTransformStamped = "geometry_msgs/TransformStamped";
 
-/// `frame` is empty if the messages name no frame.
 struct NamedPoses {
   std::vector<ReferencePose> poses;
   std::string frame;
@@ -65,7 +64,6 @@ NamedPoses reference_poses(const OpenedBag& bag, const std::string& topic, Stamp
                              topic, type, kOdometry, kPoseStamped, kTransformStamped));
 }
 
-/// The user's choice of the frame takes precedence over the frame in the messages.
 Eigen::Isometry3d pose_of_reference(const std::string& topic, const std::string& frame, const SensorMountings& places,
                                     const BagReading& reading, Imported& out) {
   const Eigen::Isometry3d body = Eigen::Isometry3d::Identity();

@@ -22,7 +22,6 @@ class BagStamps {
   std::int64_t chosen(std::int64_t header_ns, std::int64_t record_ns, const std::string& where) const;
   void add(std::int64_t header_ns, std::int64_t record_ns);
   const std::vector<std::int64_t>& times_ns() const { return source_ == StampSource::header ? header_ns_ : record_ns_; }
-  /// Describes how the stamp of message `k`, which is out of order, differs from the previous stamp.
   std::string disorder(std::size_t k) const;
 
   /// A message with the header stamp of the previous message is a duplicate if also the contents are equal.
@@ -33,8 +32,7 @@ class BagStamps {
   /// Describes the delay from header stamps to record stamps, over the messages in order; empty if it is always below
   /// one millisecond. The text is a warning if the delay reaches a second, is negative, or changes.
   std::string remark() const;
-  /// Returns true if header stamps are later than record stamps, or at least a second earlier. Only messages in order
-  /// are compared.
+  /// Returns true if header stamps are later than record stamps, or at least a second earlier.
   bool other_clock() const;
 
  private:

@@ -19,10 +19,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// The import reports a larger difference between header and record stamps.
 constexpr double kClocksApart_s = 1e-3;
-/// Clocks of two computers may differ by up to 10 ms. If points are even later than their record, the import reports
-/// it.
+/// Clocks of two computers may differ by up to 10 ms.
 constexpr double kAhead_s = 0.01;
 
 template <class Take>
@@ -48,7 +46,6 @@ void note_points_to_come(const std::string& topic, const BuiltSweeps& built, con
                   topic, std::to_string(middle_s)));
 }
 
-/// `numbers` contains the positions of the messages with these stamps.
 void keep_in_order(const OpenedBag& bag, const std::string& topic, const BagStamps& stamps,
                    const std::vector<std::size_t>& numbers, CloudHeaders& out) {
   const std::vector<bool> in_order = stamps_in_order(stamps.times_ns());

@@ -31,7 +31,6 @@ struct CloudHeaders {
 
 CloudHeaders read_headers(const OpenedBag& bag, const std::string& topic, const BagReading& reading);
 
-/// Single faulty clouds are skipped with a note.
 BuiltSweeps read_lidar(const OpenedBag& bag, SensorMountings& places, const std::string& topic,
                        const CloudHeaders& headers, const BagReading& reading, std::vector<std::string>& notes);
 

@@ -13,7 +13,6 @@
 
 #include "scenarios/recordings/bags/ros1_archives.hpp"
 
-/// The library Fast-CDR encodes messages in the CDR format of ROS 2.
 namespace tumble::scenarios::ros {
 
 /// CdrBound computes an upper bound of the message size in bytes, including padding.

@@ -27,7 +27,6 @@ struct Event {
   std::size_t of, index;  ///< index of the sensor or track, and index of the reading
 };
 
-/// Times at which a reference is unknown are omitted.
 void add_truth(const StoredTruth& truth, std::vector<Event>& events) {
   constexpr std::size_t kSegment = 16384;
   const auto step = static_cast<std::size_t>(std::max<std::int64_t>(kTruthStep_ns / truth.period_ns, 1));
@@ -208,7 +207,6 @@ class Export {
     bag_.write("/tf", stamp, ros::TFMessage{{transform_message(pose.p_WB_m, pose.q_WB, child, header)}});
   }
 
-  /// A cloud that turns out to be empty is omitted.
   void write_cloud(const Event& event) {
     const BagTrack& track = writing_.tracks[event.of];
     const BagCloud cloud = track.cloud(track, event.index);

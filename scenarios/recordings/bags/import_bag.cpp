@@ -45,7 +45,6 @@ StaticFrames read_frames(const OpenedBag& bag) {
   return frames;
 }
 
-/// Raw packets, compressed clouds, and the old message type PointCloud cannot be read.
 void note_unread_clouds(const OpenedBag& bag, std::vector<std::string>& notes) {
   for (const BagTopic& topic : bag.topics) {
     const auto has = [&](const char* word) { return topic.type.find(word) != std::string::npos; };
@@ -91,7 +90,6 @@ void require_one_clock(const sim::Sensors& sensors, bool by_headers, const std::
   }
 }
 
-/// If the user chose no topics, an error message names the option that skips the faulty topic.
 class TopicsOfKind {
  public:
   TopicsOfKind(const std::vector<std::string>& topics, bool chosen, bool leave_out, const char* option)

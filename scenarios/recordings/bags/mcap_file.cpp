@@ -15,7 +15,6 @@ namespace tumble::scenarios::mcap {
 
 namespace {
 
-/// The limit applies to a chunk (compressed or not), a record outside chunks, and the summary.
 constexpr std::uint64_t kBytesMax = 1u << 28;
 constexpr std::uint64_t kLooseBytes = 1u << 22;
 constexpr std::uint64_t kFooterBytes = kHeadBytes + 20, kDataEndBytes = kHeadBytes + 4;
@@ -178,7 +177,6 @@ void File::check_groups(std::string_view summary, std::string_view groups) const
   });
 }
 
-/// If the chunk index is incomplete, the file is scanned instead.
 void File::take_indexed(std::vector<ChunkIndex> chunks) {
   if (chunks.empty()) return;
   std::sort(chunks.begin(), chunks.end(),

@@ -16,12 +16,10 @@
 /// The reader checks every length, position, time and checksum before use.
 namespace tumble::scenarios::mcap {
 
-/// A segment is one chunk, or consecutive records outside chunks.
 struct Segment {
   std::uint64_t at = 0, bytes = 0;  ///< position in the file, including the heads of records
   std::uint64_t first_ns = 0, last_ns = 0;
   std::optional<ChunkIndex> chunk;  ///< set for a chunk; has an index if the file has a summary
-  /// Returns true if the segment may contain messages of the channel.
   bool may_hold(std::uint16_t channel) const {
     return !chunk || chunk->message_index_offsets.empty() || chunk->message_index_offsets.contains(channel);
   }
@@ -43,17 +41,12 @@ class File {
 
   const std::map<std::uint16_t, Schema>& schemas() const { return schemas_; }
   const std::map<std::uint16_t, Channel>& channels() const { return channels_; }
-  /// The segments have the order of their first messages.
   const std::vector<Segment>& segments() const { return segments_; }
-  /// Returns the number of messages according to the statistics record; empty if the file has none.
   std::optional<std::uint64_t> stated_messages(std::uint16_t channel) const;
 
-  /// Decompresses the records after a check of the checksum.
   std::string records(const Segment& segment);
-  /// Returns the message index of the channel after the segment's chunk, if present.
   std::optional<MessageIndex> index_of(const Segment& segment, std::uint16_t channel);
 
-  /// For uncompressed records, `at` is their position in the file.
   template <class Call>
   void walk(std::string_view records, std::uint64_t at, Call&& take) const {
     for (std::uint64_t place = 0; place < records.size();) {
@@ -62,7 +55,6 @@ class File {
       place += kHeadBytes + record.content.size();
     }
   }
-  /// Throws BadInput with the offset in the file if the content is damaged.
   template <class Content>
   Content as(const Record& record, std::uint64_t at) const {
     try {

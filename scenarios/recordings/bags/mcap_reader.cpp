@@ -26,8 +26,7 @@ bool is_ros1(const Channel& channel, const Schema& schema) {
   return channel.message_encoding == "ros1" && schema.encoding == "ros1msg";
 }
 
-/// TopicWalk iterates over the messages of one topic by time. Memory contains one chunk, and the chunks that overlap it
-/// in time.
+/// Memory contains one chunk, and the chunks that overlap it in time.
 class TopicWalk {
  public:
   TopicWalk(File& file, std::set<std::uint16_t> channels, const BagReader::Take& take)
@@ -104,7 +103,6 @@ class TopicWalk {
     while (!waiting_.empty() && waiting_.begin()->first < time_ns) give_first();
   }
   void give_first() {
-    // Times of ROS messages are limited to int64.
     const std::uint64_t time_ns = std::min<std::uint64_t>(waiting_.begin()->first, INT64_MAX);
     ros::Bytes bytes = std::move(waiting_.begin()->second);
     waiting_bytes_ -= bytes.size();
@@ -176,7 +174,6 @@ class McapReader : public BagReader {
     return channel.schema_id == 0 ? none : file.schemas().at(channel.schema_id);
   }
 
-  /// Messages that are not ROS messages get a type name with their encoding, which no reader accepts.
   static std::string type_of(const File& file, const Channel& channel) {
     const Schema& schema = schema_of(file, channel);
     if (is_cdr(channel, schema)) return ros1_type(schema.name);

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// MCAP files whose summary is missing or incomplete are scanned.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,7 +10,6 @@ namespace tumble::scenarios::mcap {
 namespace {
 
 constexpr std::uint64_t kRecordMax = 1u << 28;
-/// Records outside chunks are read in segments of this size.
 constexpr std::uint64_t kSegmentBytes = 1u << 22;
 
 void cover(Segment& segment, bool& empty, std::uint64_t time_ns) {

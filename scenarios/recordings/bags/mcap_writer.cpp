@@ -20,13 +20,11 @@ namespace mcap {
 
 namespace {
 
-/// A chunk that reaches this size is closed.
 constexpr std::size_t kChunkBytes = 1u << 20;
 
 class Output {
  public:
   explicit Output(const std::filesystem::path& path) : file_(path) { put(kMagic); }
-  /// Returns the position of the first appended byte.
   std::uint64_t put(std::string_view bytes) {
     file_.write(std::as_bytes(std::span(bytes.data(), bytes.size())));
     crc_ = crc32_of(bytes, crc_);

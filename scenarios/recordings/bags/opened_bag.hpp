@@ -12,14 +12,12 @@
 
 namespace tumble::scenarios {
 
-/// `where` is the location of a message for error messages; `record_ns` is the time of its record.
 struct MessageOrigin {
   std::string where;
   std::int64_t record_ns;
   std::size_t number;  ///< index of the message in its topic
 };
 
-/// `place` is the location of the bag for error messages.
 struct OpenedBag {
   BagReader& reader;
   std::string place;

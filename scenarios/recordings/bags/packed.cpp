@@ -21,7 +21,6 @@ namespace {
 constexpr std::uint64_t kRatioMax = 255;
 constexpr std::uint64_t kFirstRoom = 1u << 20;
 
-/// Room is an output buffer that doubles its size when needed, up to the expected size.
 class Room {
  public:
   explicit Room(std::uint64_t promised) : promised_(promised), out_(std::min(promised, kFirstRoom), '\0') {}

@@ -15,7 +15,6 @@ namespace tumble::scenarios::ros {
 using Bytes = std::vector<std::uint8_t>;
 static_assert(std::endian::native == std::endian::little, "ROS 1 messages are written in the byte order of memory");
 
-/// BadMessage reports a message that is shorter than its fields.
 struct BadMessage : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

@@ -39,7 +39,6 @@ struct TypedBytes {
 
 }  // namespace tumble::scenarios
 
-// librosbag requires these traits of a message type.
 namespace ros {
 using tumble::scenarios::TypedBytes;
 namespace message_traits {
@@ -74,7 +73,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// QuietBag suppresses the log messages of librosbag during its lifetime.
 class QuietBag {
  public:
   QuietBag() { console_bridge::noOutputHandler(); }
@@ -161,7 +159,7 @@ class Ros1BagWriter : public BagWriter {
   }
 
  private:
-  /// The last message of a latched topic is sent to new subscribers. Null selects the default of librosbag.
+  /// The last message of a latched topic is sent to new subscribers.
   boost::shared_ptr<::ros::M_string> connection_of(const std::string& topic, const TypedBytes& message) {
     if (topic != "/tf_static") return nullptr;
     return boost::make_shared<::ros::M_string>(::ros::M_string{{"topic", topic},
@@ -199,7 +197,7 @@ class Ros1BagWriter : public BagWriter {
   std::unique_ptr<rosbag::Bag> bag_;
 };
 
-/// Bag files that are farther apart in time are separate recordings.
+/// Two bag files that are more than a minute apart in time are separate recordings.
 constexpr double kPartsApart_s = 60.0;
 
 class Ros1BagReader : public BagReader {

@@ -28,7 +28,6 @@ struct CheckedRecord {
   std::uint64_t end() const { return data_at + data_bytes; }
 };
 
-/// Walk checks that each range is within the file.
 class Walk {
  public:
   explicit Walk(const std::filesystem::path& path) : path_(path), stream_(open_regular_file(path)) {
@@ -73,7 +72,6 @@ class Walk {
     return out;
   }
 
-  /// Throws BadInput if the item with the length stored at `at` extends beyond `end`.
   std::uint32_t length(std::uint64_t at, std::uint64_t end, const char* what, std::uint32_t most) {
     if (end - at < sizeof(std::uint32_t))
       fail(at, fmt::format("the file ends within the length of {}; the bag may be truncated", what));
@@ -205,7 +203,6 @@ class Walk {
     return count;
   }
 
-  /// Message offsets refer to the preceding chunk.
   void index(const CheckedRecord& record) {
     constexpr std::uint32_t kEntry = 12, kPlace = 8;
     if (chunks_.empty()) fail(record.at, "an index record precedes the first chunk: the file is damaged");

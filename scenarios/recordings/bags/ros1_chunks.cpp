@@ -18,13 +18,11 @@ namespace {
 
 constexpr std::uint64_t kMagicBytes = 13;  // "#ROSBAG V2.0\n"
 
-/// The header of a record is stored as bytes, so that a field can be changed in place.
 struct RawRecord {
   std::uint64_t at = 0;
   std::string header;
   std::uint32_t data_bytes = 0;
 
-  /// Returns offset and length of a field's value in the header.
   std::optional<std::pair<std::size_t, std::size_t>> find(const std::string& name) const {
     for (std::size_t place = 0; place + 4 <= header.size();) {
       std::uint32_t size = 0;
@@ -65,7 +63,6 @@ std::string bytes_of(Number value) {
   return {reinterpret_cast<const char*>(&value), sizeof(value)};
 }
 
-/// The bag must have passed check_ros1_bag.
 class Records {
  public:
   explicit Records(const std::filesystem::path& path) : path_(path), stream_(path, std::ios::binary) {
@@ -149,7 +146,6 @@ std::string changed_chunk(RawRecord& record, std::string data, const std::functi
   Ros1Chunk chunk{record.text("compression"), record.number<std::uint32_t>("size"), std::move(data)};
   change(chunk);
   record.header.clear();
-  // The header fields have the same order as in bags of ROS.
   append_field(record.header, "compression=" + chunk.compression);
   append_field(record.header, "op=" + std::string(1, static_cast<char>(ros1::kChunk)));
   append_field(record.header, "size=" + bytes_of(chunk.unpacked_bytes));

@@ -52,7 +52,6 @@ const std::map<std::string, std::string>& definitions() {
   return all;
 }
 
-/// Each definition is appended once, outer before inner.
 void append_inner(const std::string& text, std::set<std::string>& there, std::string& out) {
   std::istringstream words(text);
   for (std::string word; words >> word;) {

@@ -19,9 +19,7 @@ struct Ros2Summary {
   std::vector<Topic> topics = {};
   std::int64_t first_ns = 0, last_ns = 0;
 
-  /// Appends the topic to the list if it is new.
   std::size_t place_of(const BagTopic& topic);
-  /// Extends the time range of the bag to the stamp of the message.
   void count(const BagTopic& topic, std::int64_t stamp_ns);
 };
 

@@ -81,7 +81,6 @@ struct LivoxPoint {
   std::uint8_t reflectivity = 0, tag = 0, line = 0;
 };
 
-/// LivoxCustomMsg is the message type "CustomMsg" of the vendor's drivers.
 struct LivoxCustomMsg {
   Header header;
   std::uint64_t timebase = 0;  ///< time of the first point [ns]
@@ -91,7 +90,6 @@ struct LivoxCustomMsg {
   std::vector<LivoxPoint> points;
 };
 
-/// Type names are those of ROS 1.
 using Message = std::variant<Imu, PointCloud2, Odometry, TransformStamped, TFMessage, Clock, LivoxCustomMsg>;
 inline const char* type_of(const Imu&) {
   return "sensor_msgs/Imu";

@@ -13,10 +13,8 @@ namespace tumble::scenarios {
 /// Converts "/imu/data" to imu_data and "/lidar/points" to lidar.
 std::string sensor_name(std::string topic);
 
-/// The mountings of sensors on the body come from /tf_static or from the user.
 class SensorMountings {
  public:
-  /// `where` is the location of the topic for error messages.
   SensorMountings(StaticFrames frames, std::string where) : frames_(std::move(frames)), where_(std::move(where)) {}
 
   /// Sets the mounting T_BA of a sensor from /tf_static. If the user has set T_BA (`given`, or not the identity), only
@@ -25,9 +23,7 @@ class SensorMountings {
   void place(const std::string& topic, const std::string& frame, const char* option, bool given,
              Eigen::Isometry3d& T_BA, std::vector<std::string>& notes);
 
-  /// Returns the mounting of a frame that /tf_static connects to the body.
   std::optional<Eigen::Isometry3d> of(const std::string& frame) const;
-  /// Empty if the bag has no body frame.
   std::string body() const { return frames_.body(); }
 
  private:
@@ -37,7 +33,6 @@ class SensorMountings {
   };
   void mounting_in_body(const std::string& topic, const Eigen::Isometry3d& stated, bool given, Eigen::Isometry3d& T_BA,
                         std::vector<std::string>& notes) const;
-  /// Returns the first earlier sensor that /tf_static connects to the frame.
   const Placed* neighbour(const std::string& frame) const;
 
   StaticFrames frames_;

@@ -11,7 +11,6 @@
 
 namespace tumble::scenarios {
 
-/// ROS 1 frame names may start with a slash.
 std::string without_slash(const std::string& frame);
 
 /// The tree of sensor frames comes from /tf_static; each frame has at most one parent.
@@ -42,7 +41,6 @@ class StaticFrames {
     Eigen::Isometry3d T_parent;
     std::string problem;  ///< why the transform is invalid; empty if valid
   };
-  /// Each entry contains the pose of `frame` in one ancestor, up to the root of the tree.
   std::vector<FrameLink> path_to_root(const std::string& frame, const std::string& where) const;
   std::map<std::string, FrameLink> frames_;
   std::vector<std::string> remarks_;

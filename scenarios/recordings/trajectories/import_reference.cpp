@@ -12,7 +12,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Returns the times of the poses of a KITTI file without sweeps.
 std::vector<std::int64_t> own_times(const ReferenceSource& source) {
   if (!source.times.empty()) return read_stamps(source.times);
   if (source.steady_ns <= 0) {
@@ -34,7 +33,6 @@ std::vector<ReferencePose> poses_of(const ReferenceSource& source, const std::ve
       fmt::format("the pose format '{}' is not supported; supported: tum, kitti and odometry", source.format));
 }
 
-/// Converts poses of frame A to poses of frame B.
 void move_to(std::vector<ReferencePose>& poses, const Eigen::Isometry3d& T_AB) {
   if (T_AB.matrix().isIdentity(0.0)) return;
   const Eigen::Quaterniond q_AB(T_AB.linear());

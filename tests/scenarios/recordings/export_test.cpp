@@ -81,7 +81,7 @@ TEST_F(Export, ATrajectoryIsOfTheFrameThatIsAskedFor) {
   EXPECT_THAT(fixture::bytes_of(folder_ / "b.tum"), HasSubstr("true pose of '" + choices.frame + "' in the world"));
   choices.frame = "wheel";
   EXPECT_THAT(fixture::complaint([&] { export_recording(folder_ / "a.h5", "kitti", folder_ / "c", choices); }),
-              HasSubstr("the truth has no frame 'wheel' (known frames: body centre " + truth.imus[0].name));
+              HasSubstr("the recording's truth has no frame 'wheel' (known frames: body centre " + truth.imus[0].name));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "c"));
 }
 

@@ -166,9 +166,11 @@ TEST_P(OddBag, ManyFaultyReadingsAreRefused) {
   change_imu_ = [&](int k, ros::Imu& imu) {
     if (k % 10 == 5) imu.angular_velocity[1] = std::nan("");
   };
-  EXPECT_THAT(complaint(),
-              HasSubstr("message 5 of /imu: a reading is not finite (15 of 150 readings are faulty; the import "
-                        "leaves out at most 5 % of a sensor's data)"));
+  EXPECT_THAT(
+      complaint(),
+      HasSubstr(
+          "message 5 of /imu: an IMU reading has a value that is not finite (15 of 150 readings are faulty; the import "
+          "leaves out at most 5 % of a sensor's data)"));
 }
 
 TEST_P(OddBag, ReadingsOfExactlyZeroAreMissing) {
@@ -221,7 +223,7 @@ TEST_P(OddBag, OneFaultyCloudCostsOneCloud) {
   expect_one_left_out(150, 14, note + "faulty data (first: ");
   change_cloud_ = nullptr;
   for (std::size_t p = 5 * kPoints; p < 6 * kPoints; ++p) recording_.sensors.lidars[0].position_L_m[p] *= 1e4f;
-  expect_one_left_out(150, 14, note + "most points farther than twice the lidar's range (first: ");
+  expect_one_left_out(150, 14, note + "points beyond the lidar's range (first: ");
 }
 
 TEST_P(OddBag, ManyFaultyCloudsAreRefused) {
@@ -237,9 +239,10 @@ TEST_P(OddBag, OneWildPointTimeCostsOnePoint) {
   const Imported imported = read();
   EXPECT_EQ(imported.sensors.lidars.at(0).sweep_start_ns.size(), 15u);
   EXPECT_EQ(imported.sensors.lidars.at(0).offset_ns.size(), static_cast<std::size_t>(15 * kPoints - 1));
-  EXPECT_THAT(imported.notes,
-              Contains(AllOf(HasSubstr("/points: caution: 1 point is left out because of times outside their sweep"),
-                             HasSubstr("message 5 of /points: point 3 is"))));
+  EXPECT_THAT(
+      imported.notes,
+      Contains(AllOf(HasSubstr("/points: caution: the import leaves out 1 point with times outside their sweep"),
+                     HasSubstr("message 5 of /points: the time of point 3 is"))));
   for (std::size_t p = 5 * kPoints; p < 5 * kPoints + 20; ++p) offsets[p] = 4'200'000'000u;
   expect_one_left_out(150, 14, "1 with faulty data (first: ");
 }

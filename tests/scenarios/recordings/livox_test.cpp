@@ -147,7 +147,7 @@ TEST(LivoxMessage, NumbersThatAreNoneAreRefused) {
     writing.sweeps = livox_sweep_layout();
     const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "tumble_livox_finite.bag";
     EXPECT_THAT(fixture::complaint([&] { export_ros1_bag(recording.sensors, writing, path); }),
-                HasSubstr("point 7 of 'lidar' is not finite"));
+                HasSubstr("point 7 of lidar 'lidar' is not finite"));
     EXPECT_FALSE(std::filesystem::exists(path));
   }
 }

@@ -208,7 +208,7 @@ const Lie kLies[] = {
      },
      "is longer than the stated size of 1000 bytes"},
     {"ChunkBeyondTheBound", [](McapShape& s) { s.chunk = [](mcap::Chunk& c) { c.uncompressed_size = 1ull << 40; }; },
-     "a chunk has 1099511627776 bytes; at most 256 MiB can be read"},
+     "a chunk has a size of 1099511627776 bytes; at most 256 MiB can be read"},
     {"LengthOfTheRecords", [](McapShape& s) { s.chunk = [](mcap::Chunk& c) { c.records_size = ~0ull; }; },
      "a chunk states 18446744073709551615 bytes"},
     {"LengthOfARecord", [](McapShape& s) { s.chunk_records = [](std::string& records) { records[8] = '\x7f'; }; },
