@@ -21,7 +21,8 @@ struct CloudHeaders {
   std::vector<std::optional<std::int64_t>> starts;
   LeftOut left_out{"clouds"};
   std::string remark;
-  bool follow_records = true;  ///< true: sweeps may start one period before their record stamps
+  bool follow_records =
+      true;  ///< true: record stamps seem to use the headers' clock, and are later than the header stamps
   std::string frame;
   /// Unless the caller chose the topic, clouds in a world frame are a map or transformed points, not raw sensor data.
   bool left_out_as_map(const BagReading& reading) const {

@@ -24,8 +24,8 @@ constexpr std::size_t kNumberBins = 16;
 /// Valid coordinates in metres and valid intensities have magnitudes from 1e-20 to 1e7, or are 0. The lower limit is
 /// low, because the sine of 180 degrees times a range is about 1e-16.
 constexpr double kLargest = 1e7, kSmallest = 1e-20, kOddShareMax = 0.01;
-/// In valid sweeps, the difference between columns grows by at most a factor of 1.08 with another number of columns,
-/// for a lidar in which every second ring looks down.
+/// In valid sweeps, the difference between columns grows by at most 0.08 with another number of columns, for a lidar in
+/// which every second ring looks down.
 constexpr double kMultipleDiffers = 1.5;
 constexpr double kClearlyMore = 1.25, kClearlyMoreBy = 0.05;
 
