@@ -27,11 +27,9 @@ constexpr double kRateMax_rad_s = 1e6;
 constexpr double kAnswerNormTolerance = 1e-2;
 constexpr double kCorrelationTolerance = 1e-3;  // tolerance for covariances written with few digits
 
-constexpr std::size_t kStampsToJudge = 10;  // minimum; fewer stamps could span a short time by chance
+constexpr std::size_t kStampsToJudge = 10;  // fewer stamps could span a short time by chance
 constexpr double kUnitsApart = 100.0;       // a span of a hundredth indicates another unit or a broken answer
 
-/// Returns "; the values seem to be in UNIT" if another unit than `unit` fits the time stamps; empty if none fits. The
-/// parameter `times` is the duration of the time stamps, relative to the duration of the recording.
 std::string unit_like(std::string_view unit, double times) {
   constexpr std::array<std::pair<const char*, double>, 4> kUnits = {
       {{"nanoseconds", 1e-9}, {"microseconds", 1e-6}, {"milliseconds", 1e-3}, {"seconds", 1.0}}};
@@ -65,18 +63,18 @@ void require_attitude(const Eigen::Quaterniond& q, const std::string& where) {
                              kAnswerNormTolerance));
 }
 
-/// Checks that a covariance is finite, with variances of at least 0 and correlations of at most 1.
 template <int N>
 void require_covariance(const Eigen::Matrix<double, N, N>& C, const std::string& where) {
   if (!C.allFinite()) throw BadInput(fmt::format("{}: the covariance has a value that is not finite", where));
   if (const double least = C.diagonal().minCoeff(); least < 0.0)
-    throw BadInput(fmt::format("{}: a variance is {:g}; it must be at least 0", where, least));
+    throw BadInput(
+        fmt::format("{}: the covariance has a variance of {:g}; variances must be at least 0", where, least));
   for (int i = 0; i < N; ++i) {
     for (int j = i + 1; j < N; ++j) {
       const double most = std::sqrt(C(i, i)) * std::sqrt(C(j, j));
       if (std::abs(C(i, j)) > (1.0 + kCorrelationTolerance) * most)
         throw BadInput(
-            fmt::format("{}: a covariance is {:g}, with the variances {:g} and {:g}; the magnitude of the covariance "
+            fmt::format("{}: the covariance of two components is {:g}, with the variances {:g} and {:g}; its magnitude "
                         "must be at most {:g}",
                         where, C(i, j), C(i, i), C(j, j), most));
     }
@@ -114,22 +112,23 @@ void AnswerBounds::require_size(const std::filesystem::path& file, std::uintmax_
   const std::string name = file.filename().string();
   // Symbolic links are rejected, because they could lead to files that the method did not write.
   if (!std::filesystem::is_regular_file(std::filesystem::symlink_status(file)))
-    throw BadInput(fmt::format("{}: this path is not a regular file; the method must write a regular file", name));
+    throw BadInput(
+        fmt::format("{}: the output path is not a regular file; the method must write a regular file", name));
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(file, error);
   if (error) throw BadInput(name + ": " + error.message());
   if (size > bytes)
-    throw BadInput(
-        fmt::format("{}: the file has {} bytes; for this recording, it may have at most {}", name, size, bytes));
+    throw BadInput(fmt::format("{}: the output file has {} bytes; for this recording, it may have at most {} bytes",
+                               name, size, bytes));
 }
 
 void AnswerBounds::require_time(std::int64_t time_ns, const std::string& where) const {
   if (time_ns >= first_ns_ - kMargin_ns && time_ns <= last_ns_ + kMargin_ns) return;
   const auto seconds = [](std::int64_t ns) { return static_cast<double>(ns) * 1e-9; };
-  throw BadInput(
-      fmt::format("{}: the stamp is {:.9g} s; it must be within {:.9g} and {:.9g} s (the time of the recording with a "
-                  "margin of 10 s)",
-                  where, seconds(time_ns), seconds(first_ns_ - kMargin_ns), seconds(last_ns_ + kMargin_ns)));
+  throw BadInput(fmt::format(
+      "{}: the time stamp is {:.9g} s; it must be within {:.9g} and {:.9g} s (the time of the recording with a "
+      "margin of 10 s)",
+      where, seconds(time_ns), seconds(first_ns_ - kMargin_ns), seconds(last_ns_ + kMargin_ns)));
 }
 
 void AnswerBounds::require_unit(std::span<const double> stamps_s, const char* unit, const Place& place) const {
@@ -145,10 +144,10 @@ void AnswerBounds::require_unit(std::span<const double> stamps_s, const char* un
   const std::string like = unit_like(unit, times);
   if (far && like.empty()) return;  // probably a few wrong stamps
   const std::size_t row = far ? static_cast<std::size_t>(outside - stamps_s.begin()) : stamps_s.size() - 1;
-  throw BadInput(
-      fmt::format("{}: the stamp is {:.9g} s, and all {} stamps span {:.3g} s, but the recording lasts {:.3g} s; "
-                  "stamps must be in {}{}",
-                  place(row), stamps_s[row], stamps_s.size(), most - least, length_s_, unit, like));
+  throw BadInput(fmt::format(
+      "{}: the time stamp is {:.9g} s, and all {} time stamps span {:.3g} s, but the recording lasts {:.3g} s; "
+      "time stamps must be in {}{}",
+      place(row), stamps_s[row], stamps_s.size(), most - least, length_s_, unit, like));
 }
 
 void AnswerBounds::require_unit(const Estimate& estimate, const char* unit, const Place& place) const {

@@ -7,12 +7,11 @@
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/method.hpp"
 
-/// Every attitude method calls run_attitude_filter, which runs a filter sample by sample on the primary IMU.
 namespace tumble::scenarios {
 
-/// Runs an attitude filter over the primary IMU and stores one attitude per sample, in the IMU's frame. The type
-/// `Filter` must have the types Params and State (with q_WI) and the function step(sample, state). The first error of
-/// the filter ends the run; the estimate keeps the earlier attitudes.
+/// Stores one attitude per sample of the primary IMU. The first error of the filter ends the run; the estimate keeps
+/// the earlier attitudes. The type `Filter` must have the types Params and State (with q_WI) and the function
+/// step(sample, state).
 template <typename Filter>
 Estimate run_attitude_filter(const sim::Sensors& sensors, const typename Filter::Params& params) {
   const Filter filter(params);

@@ -22,7 +22,7 @@ TumbleAttitude::Params stated(const sim::Sensors& sensors) {
   return params;
 }
 
-/// Estimates the attitude of a sphere from all IMUs, merged in body axes. The rolling motion measures the velocity.
+/// The attitude of a sphere comes from all IMUs, merged in body axes; the rolling motion measures the velocity.
 Estimate run_sphere(const sim::Sensors& sensors, const sim::Values& parameters) {
   Estimate estimate;
   estimate.frame = Frame::body;
@@ -49,7 +49,6 @@ Estimate run_sphere(const sim::Sensors& sensors, const sim::Values& parameters) 
   return estimate;
 }
 
-/// Estimates the attitude of the rig from the primary IMU, in the axes of this IMU.
 Estimate run_rig(const sim::Sensors& sensors, const sim::Values& parameters) {
   Estimate estimate;
   std::vector<ImuSample> samples;
@@ -100,16 +99,13 @@ void report_unknown_attitude(Estimate& estimate) {
   }
   SensorHealth health;
   if (unknown_s > 0.0)
-    health.add({HealthFinding::Kind::attitude_unknown, "", "", "time in s with a standard deviation above 0.5 rad",
-                unknown_s, 0.0, since_ns, ended});
+    health.add({HealthFinding::Kind::attitude_unknown, "", "",
+                "time in s with an attitude standard deviation above 0.5 rad", unknown_s, 0.0, since_ns, ended});
   add_findings(health, {}, estimate);
 }
 
 namespace {
 
-/// Estimates one attitude per sample of the recording. On a rig, the filter uses the primary IMU with recovered clipped
-/// rates. On a sphere, the filter uses all IMUs, merged into one. The status is the first error of the sensor records
-/// or of the filter. The estimate keeps the attitudes that precede an error.
 Estimate run_attitude_tumble(const sim::Sensors& sensors, const sim::Values& parameters,
                              const OracleInput& /*oracle*/) {
   return sensors.sphere_radius_m > 0.0 ? run_sphere(sensors, parameters) : run_rig(sensors, parameters);

@@ -33,14 +33,11 @@ void report_carried(const HandHeldSmoother::Report& report, std::map<std::string
   health["revolutions_failed"] = report.revolutions_failed;
 }
 
-/// Returns the settings of the method, with the library's defaults.
 const Settings<HandHeldSmoother::Params>& carried_settings() {
   static const Settings<HandHeldSmoother::Params> all(HandHeldSmoother::Params{}, {.stated = {"gravity_m_s2"}});
   return all;
 }
 
-/// Finds the saturated sensing elements in each sample, from the readings and the measurement ranges of the IMU. Adds
-/// the detected saturation limits to `health` (report_rails.hpp).
 ClippedReadings find_clipped(const sim::ImuRecord& record, std::span<const ImuSample> samples,
                              std::map<std::string, double>& health) {
   ClippingFinder::Params params;
@@ -50,7 +47,6 @@ ClippedReadings find_clipped(const sim::ImuRecord& record, std::span<const ImuSa
   return to_clipped_readings(samples, found);
 }
 
-/// The values in `parameters` override the values of the recording.
 HandHeldSmoother::Params carried_params(const sim::Sensors& sensors, const sim::Values& parameters) {
   HandHeldSmoother::Params params;
   params.gravity_m_s2 = sensors.gravity_m_s2;
@@ -58,8 +54,6 @@ HandHeldSmoother::Params carried_params(const sim::Sensors& sensors, const sim::
   return params;
 }
 
-/// Runs the hand-held smoother over the primary IMU. On an error of the IMU record or of the smoother, the outputs are
-/// empty.
 Status run_carried(const sim::Sensors& sensors, const sim::Values& parameters, std::vector<RateState>& rates,
                    std::vector<AttitudeState>& attitudes, std::map<std::string, double>& health) {
   std::vector<ImuSample> samples;
@@ -74,13 +68,11 @@ Status run_carried(const sim::Sensors& sensors, const sim::Values& parameters, s
   return status;
 }
 
-/// The hand-held smoother replaces the rate smoother if the probability of hand-held motion in clipped intervals
-/// exceeds kCarried. During hand-held motion, the motion limits of the hand-held smoother give better rates than the
-/// rate smoother.
+/// In clipped intervals with a higher probability of hand-held motion, the motion limits of the hand-held smoother give
+/// better rates than the rate smoother.
 constexpr double kCarried = 0.5;
 
-/// Smooths the attitude with the recovered rates as gyro readings, for a body that was not hand-held while its gyro
-/// clipped. The vector `rates` is the output of the rate smoother.
+/// Smooths the attitude of a body that was not hand-held while its gyro clipped.
 Status run_thrown(const sim::Sensors& sensors, const sim::Values& parameters, const std::vector<ImuSample>& samples,
                   const RecoveredRates& recovered, std::vector<RateState>& rates, Estimate& estimate) {
   const std::vector<Eigen::Matrix3d>& covariances = recovered.covariances_rad2_s2;

@@ -15,8 +15,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Returns the rate covariance to add to the attitude covariance. The covariance is zero for measured rates, because
-/// the filter models their white noise and bias. For recovered rates, the rate stream reports the covariance.
+/// The additional covariance is zero for measured rates, because the attitude filter models their white noise and bias.
 Eigen::Matrix3d beyond_noise(const RateState& rate) {
   const bool as_read = rate.clipped_axes == 0 && rate.source == RateSource::measured;
   return as_read ? Eigen::Matrix3d::Zero() : rate.covariance_rad2_s2;

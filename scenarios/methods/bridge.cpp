@@ -19,7 +19,7 @@ namespace tumble::scenarios::bridge {
 
 namespace {
 
-// An explicit table: a change of the flag bits in either library causes an error.
+// The explicit table makes a change of the flag bits in either library an error.
 constexpr std::array<std::pair<int, ClipFlag>, 6> kClipBits = {
     {{0, kClipGyroX}, {1, kClipGyroY}, {2, kClipGyroZ}, {3, kClipAccelX}, {4, kClipAccelY}, {5, kClipAccelZ}}};
 
@@ -31,8 +31,7 @@ std::uint8_t clip_flags(std::uint8_t sim_bits) {
   return flags;
 }
 
-// kPeriodsMax is the largest accepted ratio of median time step and stated sample period. A wrong unit of the time
-// stamps gives a ratio of 1000 or 1/1000; a device that is read slowly stays below kPeriodsMax.
+// A wrong unit of the time stamps gives a ratio of 1000 or 1/1000; a device that is read slowly stays below the limit.
 constexpr double kPeriodsMax = 20.0;
 
 Status check_period(const sim::ImuRecord& record, std::span<const ImuSample> samples) {
@@ -59,8 +58,8 @@ bool in_range(const sim::ImuRecord& record, const ImuSample& sample) {
   return check_range(record, sample.angular_velocity_rad_s, sample.specific_force_m_s2).ok();
 }
 
-// Marks usable readings: finite, within the range of any sensor, and with increasing time stamps. If too many readings
-// are faulty, the function marks all as usable, so that a later check rejects the recording.
+// Usable readings are finite, within the range of any sensor, and in order of time. If too many readings are faulty,
+// all count as usable, so that a later check rejects the recording.
 std::vector<bool> find_usable(std::span<const ImuSample> samples) {
   std::vector<bool> usable(samples.size(), true);
   std::vector<TimeNs> stamps_ns;
@@ -81,8 +80,8 @@ std::vector<bool> find_usable(std::span<const ImuSample> samples) {
   return usable;
 }
 
-// Removes faulty readings, and isolated readings that exceed the device's range. Frequent or lasting readings beyond
-// the range stay, so that a later check rejects the recording.
+// Isolated readings that exceed the device's range are removed. Frequent or lasting readings beyond the range stay, so
+// that a later check rejects the recording.
 void leave_out_faulty(const sim::ImuRecord& record, std::vector<ImuSample>& samples) {
   std::vector<bool> kept = find_usable(samples);
   std::size_t beyond = 0;
@@ -94,8 +93,6 @@ void leave_out_faulty(const sim::ImuRecord& record, std::vector<ImuSample>& samp
   keep_rows(kept, samples);
 }
 
-// Checks that readings are finite and within the device's range, and that time stamps increase at the given period,
-// without gaps longer than `gap_max_s`.
 Status check_stream(const sim::ImuRecord& record, std::span<const ImuSample> samples, double gap_max_s) {
   if (samples.empty()) return {ErrorCode::empty, "time_ns", 0.0, 1.0};
   if (const Status status = check_samples(samples, gap_max_s); !status.ok()) return status;
@@ -203,7 +200,6 @@ std::size_t sweep_count(const sim::LidarRecord& record) {
   const std::size_t sweeps = record.sweep_start_ns.size();
   const std::size_t points = record.position_L_m.size();
   const std::string place = "lidar '" + record.name + "'";
-  // The arrays of a lidar record without sweeps may be empty.
   if (sweeps == 0 && record.sweep_first.empty()) return 0;
   require_length(place, "sweep_first", record.sweep_first.size(), sweeps + 1);
   require_length(place, "offset_ns", record.offset_ns.size(), points);

@@ -27,7 +27,7 @@ void require_stamps(const Table& table, const std::vector<std::int64_t>& stamps_
   for (std::size_t k = 0; k < stamps_ns.size(); ++k) {
     const Table::Row& row = table.rows[k];
     if (table.integer(row, 0) == stamps_ns[k]) continue;
-    throw BadInput(fmt::format("{}:{}: the time is {}; it must be {}, the time of the pose in the same row", path,
+    throw BadInput(fmt::format("{}:{}: the time is {} ns; it must be {} ns, the time of the pose in the same row", path,
                                row.line, table.integer(row, 0), stamps_ns[k]));
   }
 }

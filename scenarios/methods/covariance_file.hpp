@@ -8,17 +8,14 @@
 
 #include "scenarios/recordings/table_file.hpp"
 
-/// covariance_file.hpp writes and reads the covariances of poses or attitudes, one row per time stamp. TUM files have
-/// no columns for covariances, so the covariances have a separate file (columns: ESTIMATE.md).
+/// TUM files have no columns for covariances, so the covariances have a separate file (columns: ESTIMATE.md).
 namespace tumble::scenarios {
 
-/// Writes one covariance per time stamp: the upper triangle, row by row. Writes no file if all covariances are zero
-/// (not estimated). Throws BadInput if writing fails.
+/// Writes the upper triangle of each covariance, row by row. Writes no file if all covariances are zero (not
+/// estimated). Throws BadInput if writing fails.
 void write_covariances(const std::filesystem::path& path, const std::vector<std::int64_t>& stamps_ns,
                        const std::vector<Eigen::Matrix3d>& covariances);
 
-/// Reads one covariance per time stamp. Throws BadInput with path and line if the rows of the file do not match the
-/// time stamps.
 std::vector<Eigen::Matrix3d> read_covariances(const std::filesystem::path& path,
                                               const std::vector<std::int64_t>& stamps_ns);
 

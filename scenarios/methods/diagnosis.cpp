@@ -19,18 +19,15 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// kApart_s is the largest accepted time between the starts of two sensors. A sensor whose driver needs several seconds
-/// to boot exceeds kApart_s.
+/// A sensor whose driver needs several seconds to boot starts later than this after the other sensors.
 constexpr double kApart_s = 0.5;
-/// kLostShareMax is the largest accepted fraction of lost readings or sweeps. A single lost reading costs no accuracy;
-/// many lost readings indicate a fault of the bus, the driver or the recorder.
+/// A single lost reading costs no accuracy; many lost readings indicate a fault of the bus, the driver or the recorder.
 constexpr double kLostShareMax = 0.005;
 constexpr std::int64_t kLeastLost = 2;
-/// A reading is lost if the time step between two readings exceeds kLostStep sample periods.
+/// A reading is lost if the time step between two readings exceeds 1.5 sample periods.
 constexpr double kLostStep = 1.5;
-/// The estimators initialise attitude and gyro bias in the first kStart_s seconds of a recording.
+/// The estimators initialise attitude and gyro bias in the first second of a recording.
 constexpr double kStart_s = 1.0;
-/// kRegisteredShareMin is the smallest accepted fraction of sweeps that are registered to the map.
 constexpr double kRegisteredShareMin = 0.8;
 
 double seconds_between(std::int64_t from_ns, std::int64_t to_ns) {
@@ -41,7 +38,6 @@ std::string percent_text(double share) {
   return rounded(100.0 * share) + " %";
 }
 
-/// Describes lost readings or sweeps if their fraction exceeds kLostShareMax; otherwise returns nothing.
 std::optional<RecordingFinding> lost_items(const std::string& name, const char* items, std::int64_t period_ns,
                                            std::span<const std::int64_t> times_ns) {
   if (times_ns.size() < 2 || period_ns <= 0) return std::nullopt;
@@ -56,7 +52,7 @@ std::optional<RecordingFinding> lost_items(const std::string& name, const char* 
   if (missing < kLeastLost || share <= kLostShareMax) return std::nullopt;
   return RecordingFinding{
       name,
-      fmt::format("{} of {} {} are lost ({}, limit {}); the longest gap lasts {} s", missing,
+      fmt::format("in the recording, {} of {} {} are lost (share {}, limit {}); the longest gap lasts {} s", missing,
                   missing + std::ssize(times_ns), items, percent_text(share), percent_text(kLostShareMax),
                   rounded(1e-9 * static_cast<double>(longest_ns))),
       "record without loss, for example with larger queues or a faster disk; the estimators bridge gaps up to 1 s"};
@@ -72,7 +68,7 @@ std::optional<RecordingFinding> late_start(const sim::Sensors& sensors) {
   const bool lidar_late = late_s > 0.0;
   return RecordingFinding{
       lidar_late ? lidar.name : imu.name,
-      fmt::format("the sensor starts {} s after '{}' (limit {} s)", rounded(std::abs(late_s)),
+      fmt::format("this sensor starts {} s after '{}' (limit {} s)", rounded(std::abs(late_s)),
                   lidar_late ? imu.name : lidar.name, rounded(kApart_s)),
       lidar_late ? "start the recording after the lidar has started; the map starts at the first sweep"
                  : "start the recording after the IMU has started; sweeps before the first IMU reading are left out"};
@@ -108,7 +104,7 @@ std::optional<RecordingFinding> moving_start(const sim::ImuRecord& imu) {
 void add_saturation(const sim::ImuRecord& imu, std::vector<RecordingFinding>& out) {
   const Saturation found = saturation_of(imu);
   const auto range = [](double stated, const char* unit) {
-    return stated > 0.0 ? fmt::format("; the stated range is {} {}", rounded(stated), unit) : std::string();
+    return stated > 0.0 ? fmt::format(" (stated range: {} {})", rounded(stated), unit) : std::string();
   };
   if (found.gyro_share > 0.0)
     out.push_back({imu.name,
@@ -207,9 +203,9 @@ std::vector<RecordingFinding> findings_in_estimate(const Estimate& estimate, std
   const double share = sweeps > 0 ? static_cast<double>(registered) / static_cast<double>(sweeps) : 0.0;
   if (share < kRegisteredShareMin)
     out.push_back({"odometry",
-                   fmt::format("only {} of {} sweeps are registered with the map ({}, minimum {})", registered, sweeps,
-                               percent_text(share), percent_text(kRegisteredShareMin)),
-                   "check --T-body-lidar and the other findings"});
+                   fmt::format("the odometry registered only {} of {} sweeps with the map ({}, minimum {})", registered,
+                               sweeps, percent_text(share), percent_text(kRegisteredShareMin)),
+                   "check the lidar pose in the option --T-body-lidar, and the other findings"});
   for (const HealthFinding& finding : estimate.faults.findings) {
     const bool mounting = finding.kind == HealthFinding::Kind::lidar_calibration;
     out.push_back({"odometry", report_text(finding),

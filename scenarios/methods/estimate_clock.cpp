@@ -14,7 +14,6 @@ void shift(States& states, std::int64_t by_ns) {
   for (auto& state : states) state.time_ns += by_ns;
 }
 
-/// Returns the first and last time stamp of the states in the estimate.
 std::optional<StampSpan> span_of(const Estimate& estimate) {
   if (!estimate.poses.empty()) return StampSpan{estimate.poses.front().time_ns, estimate.poses.back().time_ns};
   if (!estimate.attitudes.empty())

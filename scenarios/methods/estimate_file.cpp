@@ -48,7 +48,7 @@ Eigen::Vector3d read_vector(const Table& table, const Table::Row& row, std::size
   return {table.number(row, first), table.number(row, first + 1), table.number(row, first + 2)};
 }
 
-// Reads a quaternion x y z w; throws BadInput if the norm differs from 1. A diverged method may write NaN.
+// Quaternions with NaN are accepted, because a diverged method may write NaN.
 Eigen::Quaterniond read_quaternion(const Table& table, const Table::Row& row, std::size_t first, bool normalise) {
   Eigen::Quaterniond q(table.number(row, first + 3), table.number(row, first), table.number(row, first + 1),
                        table.number(row, first + 2));
@@ -111,7 +111,7 @@ void read_rates(const std::filesystem::path& path, std::vector<RateState>& rates
   }
 }
 
-// Contact modes: 0 air, 1 grip, 2 slip, 3 slide, as in a recording's truth.
+// Contact modes are 0 air, 1 grip, 2 slip, 3 slide, as in a recording's truth.
 void write_contacts(const std::filesystem::path& path, const Estimate& estimate) {
   const bool flagged = !estimate.uncertain.empty();
   TableWriter table(path, ',', flagged ? kFlaggedContactsHeader : kContactsHeader);
@@ -227,14 +227,13 @@ void read_sweeps(const std::filesystem::path& folder, Estimate& estimate) {
   for (const Table::Row& row : poses.rows) {
     const std::int64_t index = poses.integer(row, 0);
     if (index < 0 || index >= static_cast<std::int64_t>(estimate.sweeps.size())) {
-      throw BadInput(fmt::format("{}:{}: the row belongs to a sweep that the estimate does not contain: sweep {}",
+      throw BadInput(fmt::format("{}:{}: the row belongs to sweep {}, which the estimate does not contain",
                                  poses.path.string(), row.line, index));
     }
     estimate.sweeps[static_cast<std::size_t>(index)].trajectory.push_back(read_pose(poses, row, 1, 2));
   }
 }
 
-/// Reads the poses of a TUM file. If `all_finite` is true, NaN and infinity are errors.
 void read_tum(const std::filesystem::path& path, std::vector<PoseState>& poses, bool all_finite = false) {
   const Table table = Table::read(path, ' ', "", 8);
   for (const Table::Row& row : table.rows) {
@@ -328,7 +327,7 @@ void write_estimate(const std::filesystem::path& folder, const std::string& meth
                     const std::string& sensors_digest, std::int64_t origin_ns) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
-  if (error) throw BadInput(fmt::format("{}: cannot create the folder: {}", folder.string(), error.message()));
+  if (error) throw BadInput(fmt::format("{}: the folder cannot be created: {}", folder.string(), error.message()));
   // Files of an earlier estimate would be read as part of this estimate.
   for (const char* name : kEstimateFiles) std::filesystem::remove(folder / name, error);
   if (!estimate.rates.empty()) write_rates(folder / "rates.csv", estimate.rates);
@@ -358,7 +357,7 @@ void write_estimate(const std::filesystem::path& folder, const std::string& meth
   if (!estimate.map.empty()) write_map(folder / "map.ply", estimate.map);
   if (!estimate.transcript.empty()) replace_file(folder / "transcript.txt", estimate.transcript);
 
-  // estimate.json is written last; its presence marks a complete folder.
+  // The presence of estimate.json marks a complete folder, so it is written last.
   replace_file(folder / "estimate.json", header_of(method, kind, estimate, sensors_digest, origin_ns).dump(2) + '\n');
 }
 

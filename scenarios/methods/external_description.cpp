@@ -48,7 +48,7 @@ ExternalDescription::Output output_named(const YamlNode& node) {
   node.fail("unknown output '" + name + "'" + suggestion(name, known));
 }
 
-/// Returns the robot's name after checking that it exists. A method for a misspelt robot would otherwise never run.
+/// A method for a misspelt robot would never run, so the robot must exist.
 std::string robot_named(const YamlNode& node) {
   const std::string name = node.identifier();
   std::vector<std::string> known;
@@ -58,14 +58,13 @@ std::string robot_named(const YamlNode& node) {
   return name;
 }
 
-/// Returns the arguments of a command, after a check of their placeholders.
 std::vector<std::string> words_of(const YamlNode& node) {
   std::vector<std::string> words;
   for (const YamlNode& item : node.items()) {
     words.push_back(item.text());
     if (words.back().size() > kWordMax)
-      item.fail(
-          fmt::format("an argument has {} characters; an argument may have at most {}", words.back().size(), kWordMax));
+      item.fail(fmt::format("an argument of the command has {} characters; it may have at most {}", words.back().size(),
+                            kWordMax));
     try {
       placeholders_in(words.back());
     } catch (const BadInput& error) {
@@ -86,8 +85,7 @@ std::string digest_of(const std::string& text) {
   return fmt::format("{:016x}", XXH3_64bits(text.data(), text.size()));
 }
 
-/// Returns the files that the arguments name with the placeholder {folder}, sorted. An argument may be the file name,
-/// such as "{folder}/mine", or contain the name in a shell command.
+/// Arguments name files with the placeholder {folder}, such as "{folder}/mine", or inside a shell command.
 std::set<std::filesystem::path> own_files(const std::vector<std::string>& command,
                                           const std::filesystem::path& folder) {
   static const std::regex pattern(R"(\{folder\}/([^\s{}"';|&<>()]{1,512}))");
@@ -113,7 +111,7 @@ std::uint64_t digest_of_file(const std::filesystem::path& file) {
   return XXH3_64bits_digest(state.get());
 }
 
-/// Returns a digest of the description and of the files that the command names with {folder}. A recompiled program is
+/// The digest covers the description and the files that the command names with {folder}. A recompiled program is
 /// therefore another version of the method.
 std::string digest_of_command(const std::string& text, const ExternalDescription& description) {
   std::string all = text;
@@ -122,7 +120,6 @@ std::string digest_of_command(const std::string& text, const ExternalDescription
   return digest_of(all);
 }
 
-/// kOfCommands lists the keys for commands only; kOfPython lists the keys for Python functions only.
 constexpr std::array<const char*, 2> kOfCommands = {"version", "output"};
 constexpr std::array<const char*, 2> kOfPython = {"function", "interpreter"};
 
@@ -134,7 +131,7 @@ bool names_output(const std::vector<std::string>& command) {
 void read_command(const std::map<std::string, YamlNode>& fields, ExternalDescription& out) {
   for (const char* key : kOfPython)
     if (fields.contains(key))
-      fields.at(key).fail("this key applies only to a Python function, but the method is a command");
+      fields.at(key).fail("this key of the description applies only to a Python function, but the method is a command");
   out.command = words_of(fields.at("command"));
   if (!names_output(out.command))
     fields.at("command").fail(
@@ -151,16 +148,15 @@ void read_command(const std::map<std::string, YamlNode>& fields, ExternalDescrip
 void read_python(const std::map<std::string, YamlNode>& fields, ExternalDescription& out) {
   for (const char* key : kOfCommands)
     if (fields.contains(key))
-      fields.at(key).fail("this key applies only to a command, but the method is a Python function");
+      fields.at(key).fail("this key of the description applies only to a command, but the method is a Python function");
   out.python = out.file.parent_path() / fields.at("python").text();
   if (!std::filesystem::is_regular_file(out.python))
-    fields.at("python").fail(fmt::format("this path is not a file: {}", out.python.string()));
+    fields.at("python").fail(fmt::format("the path of the Python function is not a file: {}", out.python.string()));
   out.function = fields.contains("function") ? fields.at("function").text() : to_string(out.kind);
   if (fields.contains("interpreter"))
     for (const YamlNode& item : fields.at("interpreter").items()) out.interpreter.push_back(item.text());
 }
 
-/// Returns the kinds of methods that the second group of `pattern` matches in the text.
 std::vector<Kind> kinds_found(const std::string& text, const std::regex& pattern) {
   std::vector<Kind> found;
   for (std::sregex_iterator it(text.begin(), text.end(), pattern), end; it != end; ++it)
@@ -169,8 +165,7 @@ std::vector<Kind> kinds_found(const std::string& text, const std::regex& pattern
   return found;
 }
 
-/// Returns the kind of the only method function in a Python file. Without a function, an assignment such as `slam =
-/// ...` determines the kind.
+/// Without a function, an assignment such as `slam = ...` determines the kind.
 Kind kind_of_function(const std::string& text, const std::string& file) {
   static const std::regex defined(R"((^|\n)def[ \t]{1,8}(rate|attitude|position|slam)[ \t]{0,8}\()");
   static const std::regex assigned(R"((^|\n)(rate|attitude|position|slam)[ \t]{0,8}=(?!=))");

@@ -10,12 +10,11 @@
 
 namespace tumble::scenarios {
 
-/// kExternalTimeLimit_s is the default time limit (wall time) of an external method. A Python file always has this
-/// limit, because it has no description.
+/// A Python file always has this wall-time limit, because it has no description.
 inline constexpr double kExternalTimeLimit_s = 600.0;
 
-/// ExternalDescription describes an external method: a command (NAME.yaml) or a Python function (NAME.py). EXTERNAL.md
-/// describes the keys and placeholders.
+/// An external method is a command (NAME.yaml) or a Python function (NAME.py). EXTERNAL.md describes the keys and
+/// placeholders.
 struct ExternalDescription {
   enum class Output { rates, tum, estimate };
 
@@ -24,10 +23,10 @@ struct ExternalDescription {
   Kind kind = Kind::rate;
   Frame frame = Frame::imu;  ///< frame of the poses in a TUM file
   std::vector<std::string> robots;
-  std::vector<std::string> command;      ///< empty for a Python function
-  std::filesystem::path python;          ///< file of the Python function
-  std::string function;                  ///< name of the Python function
-  std::vector<std::string> interpreter;  ///< interpreter that calls the function; empty: the user's Python
+  std::vector<std::string> command;  ///< empty for a Python function
+  std::filesystem::path python;
+  std::string function;
+  std::vector<std::string> interpreter;  ///< empty: the user's Python
   std::vector<std::string> version;      ///< command that prints the program's version; may be empty
   std::map<std::string, std::string> environment;
   Output output = Output::tum;
@@ -36,20 +35,17 @@ struct ExternalDescription {
   std::string digest;  ///< digest of this file and of the files that the command names with {folder}
 };
 
-/// Returns the names of the placeholders that a command may contain in braces: "recording", "csv", "output".
+/// Returns the names that a command may contain in braces: "recording", "csv", "output".
 std::vector<std::string> external_placeholders();
 
-/// Returns the placeholders in one argument of a command, in order. Throws BadInput for an unknown placeholder; the
-/// message suggests the nearest name.
 std::vector<std::string> placeholders_in(const std::string& word);
 
-/// Returns the argument with each placeholder replaced by its value.
 std::string filled(const std::string& word, const std::map<std::string, std::string>& values);
 
-/// Reads a description NAME.yaml, or a file NAME.py with exactly one function `rate`, `attitude`, `position` or `slam`,
-/// whose name is the kind of the method. Throws BadInput with file, line and reason for an unknown or missing key, and
-/// for an unknown kind, frame or placeholder. Also throws BadInput for a command without the placeholder of its output,
-/// a limit out of range, and a Python file without exactly one such function.
+/// Reads NAME.yaml, or a file NAME.py with exactly one function `rate`, `attitude`, `position` or `slam`, whose name is
+/// the kind of the method. Throws BadInput with file, line and reason for an unknown or missing key, an unknown kind,
+/// frame or placeholder, a command without the placeholder of its output, a limit out of range, or a Python file
+/// without exactly one such function.
 ExternalDescription read_external(const std::filesystem::path& file);
 
 }  // namespace tumble::scenarios

@@ -26,11 +26,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Provision is one format in which a command can receive the sensor data. The data are written in this format if the
-/// command contains its placeholder.
+/// The sensor data are written in a format only if the command contains its placeholder.
 struct Provision {
   const char* placeholder;
-  const char* name;  ///< name of the file or folder in the scratch folder
+  const char* name;  ///< name in the scratch folder
   std::function<void(const sim::Sensors&, const fs::path&)> write;
 };
 
@@ -66,7 +65,6 @@ std::set<std::string> named_in(const std::vector<std::string>& words) {
   return out;
 }
 
-/// Returns the path in the scratch folder for each placeholder.
 std::map<std::string, std::string> places(const ExternalDescription& description, const fs::path& scratch) {
   const bool folder = description.output == ExternalDescription::Output::estimate;
   const bool rates = description.output == ExternalDescription::Output::rates;
@@ -91,7 +89,6 @@ Command command_of(const ExternalDescription& description, const std::vector<std
   return command;
 }
 
-/// Writes the sensor data in the formats that the command requests, then runs the command until it ends.
 CommandEnd provide_and_run(const ExternalDescription& description, const sim::Sensors& sensors,
                            const std::map<std::string, std::string>& values, const fs::path& scratch) {
   const std::set<std::string> wanted = named_in(description.command);
@@ -129,7 +126,7 @@ Estimate run(const ExternalDescription& description, const sim::Sensors& sensors
   }
 }
 
-/// Returns the version of an external method: the output of its version command, the Python file, and the digest of the
+/// The version of an external method is the output of its version command, the Python file, and the digest of the
 /// description.
 std::string version_of(const ExternalDescription& description) {
   const std::string own = "description " + description.digest;

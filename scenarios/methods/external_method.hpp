@@ -15,7 +15,7 @@
 namespace tumble::scenarios {
 
 /// NoAnswer means that an external program gave no result, because of a crash, a failed start, a time-out, or a lack of
-/// memory or disk space. The message contains the output of the program.
+/// memory or disk space.
 class NoAnswer : public std::runtime_error {
  public:
   enum class Why { crashed, timed_out, machine };
@@ -29,8 +29,7 @@ class NoAnswer : public std::runtime_error {
   std::string transcript_;
 };
 
-/// RefusedAnswer means that the result of an external program is invalid. The message contains the output of the
-/// program.
+/// RefusedAnswer means that the result of an external program is invalid.
 class RefusedAnswer : public BadInput {
  public:
   RefusedAnswer(const std::string& what, std::string transcript) : BadInput(what), transcript_(std::move(transcript)) {}
@@ -40,21 +39,18 @@ class RefusedAnswer : public BadInput {
   std::string transcript_;
 };
 
-/// Creates the method that a file NAME.yaml or NAME.py describes (EXTERNAL.md). A command receives the sensor data in a
-/// scratch folder, in the formats that it requests. The command runs in a separate process with limits of time and
-/// memory, and writes its result to a file. A Python function exchanges sensor data and result through shared memory.
-/// External programs never receive the truth.
+/// A command receives the sensor data in a scratch folder, in the formats that it requests, and writes its result to a
+/// file (EXTERNAL.md). The command runs in a separate process with limits of time and memory. A Python function
+/// exchanges sensor data and result through shared memory. External programs never receive the truth.
 ///
 /// The time limit is that of the description, but at most `time_limit_s`. Throws BadInput if the description is invalid
 /// or the version command fails. Running the method throws NoAnswer or RefusedAnswer.
 Method external_method(const std::filesystem::path& file,
                        double time_limit_s = std::numeric_limits<double>::infinity());
 
-/// Returns true if `name` has the form NAME.yaml or NAME.py of an external method.
 bool is_method_file(const std::string& name);
 
-/// Finds the methods in a list of names, like find_methods (method.hpp). The time limit of external methods is at most
-/// `time_limit_s`.
+/// Finds methods like find_methods (method.hpp).
 std::vector<MethodPointer> find_methods_within(std::span<const std::string> names, double time_limit_s);
 
 }  // namespace tumble::scenarios

@@ -45,7 +45,6 @@ Eigen::Matrix3d covariance(const Table& table, const Table::Row& row) {
   return out;
 }
 
-/// Reads one rate per sample of the first IMU, in the order of the samples.
 std::vector<RateState> read_rates(const std::filesystem::path& file, const sim::Sensors& sensors) {
   if (sensors.imus.empty()) throw BadInput("the recording has no IMU; a rate method needs the samples of an IMU");
   const std::vector<std::int64_t>& stamps = sensors.imus.front().time_ns;
@@ -57,16 +56,17 @@ std::vector<RateState> read_rates(const std::filesystem::path& file, const sim::
         file.filename().string(), header.substr(0, 120), kRateColumns));
   const Table table = Table::read(file, ',', header, with_covariance ? 10 : 4);
   if (table.rows.size() != stamps.size())
-    throw BadInput(fmt::format("{}: the file has {} rows; it must have {}, one per sample of {}",
+    throw BadInput(fmt::format("{}: the file has {} rows of rates; it must have {} rows, one per sample of the IMU {}",
                                file.filename().string(), table.rows.size(), stamps.size(), sensors.imus.front().name));
   std::vector<RateState> rates(stamps.size());
   for (std::size_t k = 0; k < rates.size(); ++k) {
     const Table::Row& row = table.rows[k];
     const std::int64_t time_ns = table.integer(row, 0);
     if (time_ns < stamps[k] - kStampTolerance_ns || time_ns > stamps[k] + kStampTolerance_ns)
-      throw BadInput(fmt::format(
-          "{}:{}: the time is {} ns, but sample {} of the recording has the time {} ns; the times must be equal",
-          file.filename().string(), row.line, time_ns, k, stamps[k]));
+      throw BadInput(
+          fmt::format("{}:{}: the time of the rate is {} ns, but sample {} of the recording has the time {} ns; the "
+                      "times must be equal",
+                      file.filename().string(), row.line, time_ns, k, stamps[k]));
     rates[k].time_ns = stamps[k];
     rates[k].w_WI_I_rad_s = {table.number(row, 1), table.number(row, 2), table.number(row, 3)};
     if (with_covariance) rates[k].covariance_rad2_s2 = covariance(table, row);
@@ -74,8 +74,6 @@ std::vector<RateState> read_rates(const std::filesystem::path& file, const sim::
   return rates;
 }
 
-/// Returns the time stamps of a TUM file: the first number of each line. Stops at the first invalid line, which the TUM
-/// reader then reports.
 std::vector<double> stamps_of(const std::filesystem::path& file) {
   std::vector<double> stamps_s;
   std::ifstream stream(file);
@@ -94,7 +92,6 @@ std::vector<double> stamps_of(const std::filesystem::path& file) {
   return stamps_s;
 }
 
-/// Reads poses from a TUM file, in the frame that the description names.
 Estimate read_poses(const ExternalDescription& description, const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(file))
     throw BadInput(fmt::format("{}: the command did not write this file", file.filename().string()));
@@ -130,7 +127,6 @@ void require_sizes(const AnswerBounds& bounds, ExternalDescription::Output outpu
   }
 }
 
-/// Returns a function that maps row k to its line in the file. The function reads the file only for an error message.
 AnswerBounds::Place rows_of(const std::filesystem::path& file, bool headed) {
   return [file, headed](std::size_t row) {
     std::ifstream stream(file);
@@ -155,7 +151,6 @@ void require_sense(const AnswerBounds& bounds, const Estimate& estimate, Externa
   bounds.require_slam(estimate);
 }
 
-/// Reads map points from a PLY file with x, y and z. Normals and standard deviations are optional.
 std::vector<MapPoint> read_points(const std::filesystem::path& file) {
   const Cloud cloud = read_cloud(file);
   const auto column = [&](const char* name) { return cloud.find(name); };
@@ -189,8 +184,7 @@ Estimate read_external_result(const ExternalDescription& description, const std:
       estimate.rates = read_rates(output, sensors);
       break;
     case ExternalDescription::Output::tum:
-      // The unit is checked before parsing, because time stamps in a wrong unit can overflow the time type, with an
-      // unhelpful error message.
+      // The unit is checked before parsing, because time stamps in a wrong unit can overflow the time type.
       bounds.require_unit(stamps_of(output), "seconds", rows_of(output, false));
       estimate = read_poses(description, output);
       break;

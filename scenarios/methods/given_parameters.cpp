@@ -30,8 +30,8 @@ GivenParameter parsed(const std::string& text) {
     good = error == std::errc() && stop == end;
   }
   if (!good)
-    throw BadInput(
-        fmt::format("'{}' must have the form METHOD.PARAMETER=NUMBER, for example rate/tumble_lag.lag_s=0.5", text));
+    throw BadInput(fmt::format(
+        "the parameter '{}' must have the form METHOD.PARAMETER=NUMBER, for example rate/tumble_lag.lag_s=0.5", text));
   return out;
 }
 

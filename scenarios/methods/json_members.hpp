@@ -10,8 +10,7 @@
 
 namespace tumble::scenarios {
 
-/// JsonMembers reads the members of a JSON object. Each error is a BadInput with file, member and value. Both
-/// constructor arguments must outlive JsonMembers.
+/// Each error is a BadInput with file, member and value. Both constructor arguments must outlive JsonMembers.
 class JsonMembers {
  public:
   JsonMembers(const std::filesystem::path& path, const nlohmann::json& object) : path_(path), object_(object) {}

@@ -22,21 +22,16 @@ namespace {
 constexpr std::size_t kSpans = 10, kSweepsOfSpan = 12;
 constexpr double kSlowest_rad_s = 0.1, kFastest_rad_s = 2.0;
 constexpr std::size_t kLeastPairs = 12;
-/// kAgrees is the largest accepted rotation error between lidar and gyro, relative to the median rotation. A larger
-/// error indicates that lidar and gyro do not measure the same motion. The relative error of the lidar's rotation is
-/// about 0.1.
+/// A larger rotation error, relative to the median rotation, indicates that lidar and gyro do not measure the same
+/// motion. The relative error of the lidar's rotation is about 0.1.
 constexpr double kAgrees = 0.3;
-/// A correction of the gyro is reported only if it reduces the error below this fraction. kConclusive applies to units
-/// and axes, and kDelayConclusive applies to a delay.
+/// A correction of the gyro's units, axes or delay is reported only if it clearly reduces the rotation error.
 constexpr double kConclusive = 0.5, kDelayConclusive = 0.6;
 constexpr double kDegreesPerRadian = 57.29577951308232;
 constexpr double kDelayMost_s = 0.5, kDelayStep_s = 0.01, kDelaySaid_s = 0.03;
 constexpr std::int64_t kGap_ns = 100'000'000;
-/// kInverted is the largest relative difference at which an attitude counts as the inverse of the given attitude, about
-/// 10 degrees.
 constexpr double kInverted = 0.2;
 
-/// Returns a recording that contains only this lidar, with the sweeps `first` to `last` - 1.
 sim::Sensors span_alone(const sim::LidarRecord& lidar, const PointStore* aside, std::size_t first, std::size_t last) {
   sim::LidarRecord out = sweep_alone(lidar, aside, first);
   const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
@@ -69,8 +64,7 @@ void add_rotations(const Estimate& estimate, std::vector<SeenRotation>& out) {
   }
 }
 
-/// Integral integrates the angular rate of each gyro axis over time. Between two sweeps, the rotation is a few
-/// hundredths of a radian, so integrating each axis alone is accurate.
+/// Between two sweeps, the rotation is a few hundredths of a radian, so integrating each gyro axis alone is accurate.
 class Integral {
  public:
   explicit Integral(const sim::ImuRecord& imu) : imu_(imu) {
@@ -81,7 +75,6 @@ class Integral {
     }
   }
 
-  /// Returns the integral from `from_ns` to `to_ns`, or nothing if readings are missing in this interval.
   std::optional<Eigen::Vector3d> between(std::int64_t from_ns, std::int64_t to_ns) const {
     const auto first = sample_at(from_ns), last = sample_at(to_ns);
     if (!first || !last) return std::nullopt;
@@ -93,7 +86,6 @@ class Integral {
 
  private:
   std::int64_t start(std::size_t k) const { return k == 0 ? imu_.time_ns[0] - imu_.period_ns : imu_.time_ns[k - 1]; }
-  /// Returns the index of the sample whose averaging window contains `time_ns`.
   std::optional<std::size_t> sample_at(std::int64_t time_ns) const {
     const auto at = std::lower_bound(imu_.time_ns.begin(), imu_.time_ns.end(), time_ns);
     if (at == imu_.time_ns.end() || time_ns < start(0)) return std::nullopt;
@@ -107,12 +99,10 @@ class Integral {
   std::vector<Eigen::Vector3d> sum_;
 };
 
-/// Pairs contains the rotations that lidar and gyro measured over the same time intervals, both in IMU axes.
 struct Pairs {
   std::vector<Eigen::Vector3d> seen, said;
   double rotation_rad = 0.0;  // median of the lidar's rotations
 
-  /// Returns the median over all pairs k of error(k), divided by the median rotation.
   template <class Error>
   double share(Error&& error) const {
     std::vector<double> errors;
@@ -139,8 +129,7 @@ Pairs pairs_at(const Integral& integral, const Eigen::Matrix3d& R_IL, std::span<
   return out;
 }
 
-/// Computes the orthogonal matrix with the given determinant, 1 or -1, that best maps the gyro's rotations to the
-/// lidar's rotations (Wahba 1965, by singular values).
+/// The orthogonal matrix with the given determinant, 1 or -1, solves Wahba's problem (1965) by singular values.
 Eigen::Matrix3d best_orthogonal(const Pairs& pairs, double determinant) {
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   for (std::size_t k = 0; k < pairs.seen.size(); ++k) sum += pairs.seen[k] * pairs.said[k].transpose();
@@ -150,8 +139,6 @@ Eigen::Matrix3d best_orthogonal(const Pairs& pairs, double determinant) {
   return svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
 }
 
-/// Searches for the gyro unit and delay with the smallest error of rotation angles, which is independent of mounting
-/// and axes.
 void fit_unit(const Pairs& pairs, double delay_s, RotationAgreement& best, double& best_error) {
   RotationAgreement at;
   at.pairs = pairs.seen.size();
@@ -193,10 +180,9 @@ std::string percent(double share) {
 }
 
 std::string pairs_text(const RotationAgreement& found) {
-  return fmt::format(" over {} pairs of sweeps", found.pairs);
+  return fmt::format(" over {} sweep pairs", found.pairs);
 }
 
-/// Throws BadInput if gyro and lidar agree only after a conversion of the gyro's unit.
 std::string unit_text(const std::string& where, const RotationAgreement& found, GyroUnit unit) {
   const bool degrees = unit == GyroUnit::deg_s;
   const std::string read = fmt::format(
@@ -299,8 +285,6 @@ std::string agreement_text(const std::string& where, const RotationAgreement& fo
 
 namespace {
 
-/// Computes the attitude of the lidar on the body at which lidar and gyro agree. Returns nothing if lidar and gyro
-/// agree with the calibrated attitude, or if no attitude makes them agree.
 std::optional<Eigen::Matrix3d> better_attitude(const sim::ImuRecord& imu, const sim::LidarRecord& lidar,
                                                const RotationAgreement& found) {
   const bool agrees = found.error_as_read <= kAgrees && kConclusive * found.error_as_read <= found.axes_error;
@@ -317,8 +301,6 @@ bool is_inverse(const Eigen::Matrix3d& R, const Eigen::Matrix3d& other) {
   return R.transpose().isApprox(other, kInverted);
 }
 
-/// Returns the corrected pose of the lidar: the calibrated pose with the attitude `R_BL`. If the attitude `R_BL` is the
-/// inverse of the calibrated attitude, the function inverts the whole calibrated pose.
 Eigen::Isometry3d better_pose(const sim::LidarRecord& lidar, const Eigen::Matrix3d& R_BL) {
   if (is_inverse(lidar.T_BL.linear(), R_BL)) return lidar.T_BL.inverse();
   Eigen::Isometry3d out = lidar.T_BL;
@@ -326,7 +308,6 @@ Eigen::Isometry3d better_pose(const sim::LidarRecord& lidar, const Eigen::Matrix
   return out;
 }
 
-/// Returns the program option that sets the corrected lidar pose; a remark follows if the calibrated pose is inverted.
 std::string pose_text(const sim::LidarRecord& lidar, const Eigen::Isometry3d& better_BL) {
   const Eigen::Quaterniond q(better_BL.linear());
   const Eigen::Vector3d p = better_BL.translation();

@@ -13,24 +13,22 @@
 #include "scenarios/recordings/import.hpp"
 #include "sim/recording.hpp"
 
-/// The functions in lidar_rotation.hpp compare a gyro's unit, signs, axes, mounting and clock with the lidar's rotation
-/// between sweeps. If the body tilts little, gravity does not reveal wrong axes or units, but the lidar does.
+/// If the body tilts little, gravity does not reveal wrong axes or units of the gyro, but the lidar's rotation between
+/// sweeps does.
 namespace tumble::scenarios {
 
-/// SeenRotation is the rotation of a lidar between two instants.
 struct SeenRotation {
   std::int64_t from_ns = 0, to_ns = 0;
   Eigen::Vector3d rotation_L_rad = Eigen::Vector3d::Zero();  ///< rotation vector, lidar axes
 };
 
-/// Estimates the rotations between the ends of consecutive sweeps from the lidar alone, by the method
-/// `slam/constant_velocity`. The function processes at most ten parts of a dozen sweeps, spread over the recording,
-/// each with a separate map. Only pairs of registered sweeps with rates of 0.1 to 2 rad/s are kept. Slower rotations
-/// are mostly noise, and faster rotations distort the sweeps. The points are in `lidar`, or on disk in `aside` if
-/// `aside` is not null. The cost is about 10 ms per sweep.
+/// The rotations between the ends of consecutive sweeps come from the lidar alone, by the method
+/// `slam/constant_velocity`. At most ten parts of a dozen sweeps, spread over the recording, are processed, each with a
+/// separate map. Only pairs of registered sweeps with rates of 0.1 to 2 rad/s are kept, because slower rotations are
+/// mostly noise, and faster rotations distort the sweeps. The cost is about 10 ms per sweep.
 std::vector<SeenRotation> seen_rotations(const sim::LidarRecord& lidar, const PointStore* aside);
 
-/// SignedAxes is a signed permutation of axes: true axis i is `sign[i]` times axis `axis[i]` of the readings.
+/// True axis i is `sign[i]` times axis `axis[i]` of the readings.
 struct SignedAxes {
   std::array<int, 3> axis{0, 1, 2};
   std::array<int, 3> sign{1, 1, 1};
@@ -39,42 +37,36 @@ struct SignedAxes {
   std::string text() const;  ///< "(-x, y, z)"
 };
 
-/// RotationAgreement describes how well the rotations of a gyro agree with the rotations of a lidar. Each error is the
-/// median over the pairs of sweeps, relative to the median rotation.
+/// Each error is the median rotation error over the pairs of sweeps, relative to the median rotation.
 struct RotationAgreement {
   std::size_t pairs = 0;
   double unit = 1.0;        ///< 1, 57.3 or 1/57.3: factor from the gyro's integral to the lidar's rotation
   double unit_error = 1.0;  ///< error of the rotation angles, independent of the mounting
   double delay_s = 0.0;     ///< delay of the lidar relative to the gyro, within half a second
   double error_as_read = 1.0;
-  SignedAxes axes;  ///< best fitting axes
+  SignedAxes axes;
   double axes_error = 1.0;
   double next_error = 1.0;  ///< error of the second-best axes; close to `axes_error` if undetermined
   Eigen::Quaterniond turned = Eigen::Quaterniond::Identity();  ///< lidar rotation = `turned` times gyro rotation
   double turned_error = 1.0;
 };
 
-/// Compares the gyro's rotations with the lidar's rotations `seen`. Returns nothing if the gyro readings cover fewer
-/// than a dozen pairs of sweeps. Returns nothing if no unit, axes or mounting rotation makes gyro and lidar agree
-/// within 30 %. The comparison uses the mountings of `imu` and `lidar`. The cost is proportional to the number of
-/// pairs.
+/// Returns nothing if the gyro readings cover fewer than a dozen pairs of sweeps, or if no unit, axes or mounting
+/// rotation makes gyro and lidar agree within 30 %. The cost is O(pairs).
 std::optional<RotationAgreement> rotation_agreement(const sim::ImuRecord& imu, const sim::LidarRecord& lidar,
                                                     std::span<const SeenRotation> seen);
 
-/// Describes the result: gyro and lidar agree, a warning with a better interpretation of the gyro, or "" if the result
-/// is undetermined. Throws BadInput if the rates are in deg/s instead of rad/s or vice versa. The message of BadInput
-/// starts with `where`.
+/// Returns a note on agreement or a warning with a better interpretation of the gyro; empty if undetermined. Throws
+/// BadInput, with a message that starts with `where`, if the rates are in deg/s instead of rad/s or vice versa.
 std::string agreement_text(const std::string& where, const RotationAgreement& agreement, GyroUnit unit);
 
-/// LidarRotationCheck is the result of comparing all IMUs of a recording with the first lidar.
 struct LidarRotationCheck {
   std::vector<std::string> notes;              ///< at most one for each IMU
-  std::optional<RotationAgreement> primary;    ///< of the primary IMU; empty if undetermined
+  std::optional<RotationAgreement> primary;    ///< for the primary IMU; empty if undetermined
   std::optional<Eigen::Isometry3d> better_BL;  ///< pose of the first lidar that makes lidar and primary IMU agree
 };
 
-/// Compares each IMU of a recording with the first lidar. The result is empty unless the recording has a lidar and an
-/// IMU. Throws BadInput if the rates are in a wrong unit; the message starts with `where`, the path of the recording.
+/// Throws BadInput, with a message that starts with `where`, if the rates are in a wrong unit.
 LidarRotationCheck check_lidar_rotation(const std::string& where, const Imported& recording, GyroUnit unit);
 
 }  // namespace tumble::scenarios

@@ -35,13 +35,13 @@ std::vector<std::string> header(std::size_t points) {
   return lines;
 }
 
-// Reads the header of a PLY file and returns its number of points.
 std::size_t read_header(std::istream& file, const std::filesystem::path& path) {
   const std::vector<std::string> expected = header(0);
   std::size_t points = 0;
   for (const std::string& line : expected) {
     std::string found;
-    if (!std::getline(file, found)) throw BadInput(fmt::format("{}: the header is truncated", path.string()));
+    if (!std::getline(file, found))
+      throw BadInput(fmt::format("{}: the header of the map file is truncated", path.string()));
     const std::string prefix = "element vertex ";
     if (line.starts_with(prefix) && found.starts_with(prefix)) {
       const char* end = found.data() + found.size();
@@ -49,8 +49,8 @@ std::size_t read_header(std::istream& file, const std::filesystem::path& path) {
       if (error == std::errc() && stop == end) continue;
     }
     if (found != line)
-      throw BadInput(
-          fmt::format("{}: a line of the header is '{}'; it must be '{}'", path.string(), shortened(found), line));
+      throw BadInput(fmt::format("{}: a line of the map file's header is '{}'; it must be '{}'", path.string(),
+                                 shortened(found), line));
   }
   return points;
 }
@@ -90,8 +90,8 @@ std::vector<MapPoint> read_map(const std::filesystem::path& path) {
   file.seekg(0, std::ios::end);
   const auto bytes = static_cast<std::uintmax_t>(file.tellg() - data);
   if (bytes / sizeof(Row) != points || bytes % sizeof(Row) != 0) {
-    throw BadInput(
-        fmt::format("{}: the file is truncated: it has {} bytes of data for {} points", path.string(), bytes, points));
+    throw BadInput(fmt::format("{}: the map file is truncated: it has only {} bytes of data for {} points",
+                               path.string(), bytes, points));
   }
   file.seekg(data);
   std::vector<MapPoint> map(points);

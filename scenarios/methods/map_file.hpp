@@ -9,15 +9,13 @@
 
 namespace tumble::scenarios {
 
-/// Writes a map as binary little-endian PLY: x y z nx ny nz sigma, float32 each. Throws BadInput if writing fails.
+/// The file is binary little-endian PLY: x y z nx ny nz sigma, float32 each.
 void write_map(const std::filesystem::path& path, std::span<const MapPoint> map);
 
-/// Writes a map as binary PCD 0.7: x y z normal_x normal_y normal_z sigma, float32 each. Throws BadInput if writing
-/// fails.
+/// The file is binary PCD 0.7: x y z normal_x normal_y normal_z sigma, float32 each.
 void write_map_pcd(const std::filesystem::path& path, std::span<const MapPoint> map);
 
-/// Reads a map from a PLY file that write_map wrote. Throws BadInput with path and reason if the file is missing or
-/// truncated, or has another layout.
+/// Throws BadInput with path and reason if the file is missing, truncated, or has another layout.
 std::vector<MapPoint> read_map(const std::filesystem::path& path);
 
 }  // namespace tumble::scenarios

@@ -15,7 +15,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Prepared contains the merged IMUs of a sphere and the smoother's parameters from the recording.
 struct Prepared {
   std::vector<ImuSample> samples;
   RollingSmoother::Params params;
@@ -36,21 +35,18 @@ bool prepare(const sim::Sensors& sensors, Prepared& out, Estimate& estimate) {
   return true;
 }
 
-/// Returns the smoother's settings without the parameters in `fixed`, whose values come from the truth.
 Settings<RollingSmoother::Params> oracle_settings(std::vector<std::string> fixed) {
   RollingSmoother::Params params;
   params.filter.radius_m = presets::kSphereRadius_m;
   fixed.insert(fixed.end(), {"lag_s", "rate_max_hz", "known_distance_*"});
   return Settings<RollingSmoother::Params>(
       params, {.stated = {"radius_m", "gravity_m_s2", "lever_arm_x_m", "lever_arm_y_m", "lever_arm_z_m",
-                          "gyro_range_rad_s", "accel_range_m_s2", "recovered_rate_sigma_rad_s",
-                          // The values of the following parameters depend on whether the device has a data sheet.
-                          "gyro_bias_sigma_rad_s", "accel_bias_sigma_m_s2", "tilt_sigma_rad", "accel_scale_sigma",
-                          "gyro_scale_sigma", "accel_delay_sigma_s", "lever_arm_sigma_m", "incline_begins_per_s"},
+                          "gyro_range_rad_s", "accel_range_m_s2", "recovered_rate_sigma_rad_s", "gyro_bias_sigma_rad_s",
+                          "accel_bias_sigma_m_s2", "tilt_sigma_rad", "accel_scale_sigma", "gyro_scale_sigma",
+                          "accel_delay_sigma_s", "lever_arm_sigma_m", "incline_begins_per_s"},
                .fixed = std::move(fixed)});
 }
 
-/// Smooths all samples of a recording.
 void smooth(const Prepared& prepared, Estimate& estimate) {
   const RollingSmoother smoother(prepared.params);
   const auto state = std::make_unique<RollingSmoother::State>();
@@ -76,7 +72,6 @@ std::size_t physics_index(const sim::Truth& truth, std::int64_t time_ns, std::si
   return std::min(static_cast<std::size_t>(std::max<std::int64_t>(time_ns, 0) / truth.period_ns), count - 1);
 }
 
-/// A method with the true attitude has no parameters of the attitude estimate.
 const Settings<RollingSmoother::Params>& settings_with_attitude() {
   static const Settings<RollingSmoother::Params> all =
       oracle_settings({"gyro_range_rad_s", "tilt_sigma_rad", "gyro_bias_sigma_rad_s", "gyro_scale_sigma",
@@ -91,7 +86,7 @@ Estimate run_exact_attitude(const sim::Sensors& sensors, const sim::Values& para
   const sim::Truth& truth = *oracle.truth;
   const std::vector<std::int64_t>& times_ns = sensors.imus.front().time_ns;
   if (truth.imus.empty() || truth.imus.front().rate_rad_s.size() != times_ns.size() || truth.q_WB.empty()) {
-    throw BadInput("the truth contains no rates of the primary IMU, so it does not belong to this recording");
+    throw BadInput("the truth lacks rates for all samples of the primary IMU, so it does not belong to this recording");
   }
   const Eigen::Matrix3d R_BI = truth.imus.front().T_BI.linear();
   std::size_t next = 0;

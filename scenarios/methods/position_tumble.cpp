@@ -26,17 +26,14 @@ Settings<RollingOdometry::Params> odometry_settings(double lag_s, std::vector<st
   RollingOdometry::Params params;
   params.radius_m = presets::kSphereRadius_m;
   params.lag_s = lag_s;
-  // Other parameters of RollingOdometry determine these parameters.
   fixed.insert(fixed.end(),
                {"merge_count", "merge_gyro_range_rad_s", "merge_accel_range_m_s2", "rolling_radius_m",
                 "rolling_gravity_m_s2", "rolling_lever_arm_*", "rolling_gyro_range_rad_s", "rolling_accel_range_m_s2",
                 "rolling_recovered_rate_sigma_rad_s", "rolling_lag_s", "rolling_rate_max_hz"});
   return Settings<RollingOdometry::Params>(
-      params, {.stated = {"radius_m", "gravity_m_s2",
-                          // The priors below depend on whether the device has a data sheet.
-                          "centre_sigma_m", "rolling_gyro_bias_sigma_rad_s", "rolling_accel_bias_sigma_m_s2",
-                          "rolling_tilt_sigma_rad", "rolling_accel_scale_sigma", "rolling_gyro_scale_sigma",
-                          "rolling_accel_delay_sigma_s", "rolling_incline_begins_per_s"},
+      params, {.stated = {"radius_m", "gravity_m_s2", "centre_sigma_m", "rolling_gyro_bias_sigma_rad_s",
+                          "rolling_accel_bias_sigma_m_s2", "rolling_tilt_sigma_rad", "rolling_accel_scale_sigma",
+                          "rolling_gyro_scale_sigma", "rolling_accel_delay_sigma_s", "rolling_incline_begins_per_s"},
                .fixed = std::move(fixed)});
 }
 
@@ -55,7 +52,7 @@ const Settings<RollingOdometry::Params>& live_settings() {
   return all;
 }
 
-/// Returns true if rolling speed and travel speed differ; a short flight then belongs to a slip.
+/// If rolling speed and travel speed differ, a short flight belongs to a slip.
 bool spins(double radius_m, const RollingOdometry::Pose& pose) {
   const double rolling_m_s = radius_m * (pose.pose.q_WA * pose.angular_velocity_rad_s).head<2>().norm();
   const double speed_m_s = pose.pose.v_WA_m_s.norm();
@@ -68,7 +65,6 @@ sim::ContactLabel contact_label(double radius_m, const RollingOdometry::Pose& po
   return slip_or_slide(radius_m, pose.pose.q_WA, pose.angular_velocity_rad_s, pose.pose.v_WA_m_s);
 }
 
-/// Adds the calibration of the IMUs from the whole recording to the health.
 void report_whole(const MergedFindings& whole, std::span<const std::string> names, Estimate& estimate) {
   if (whole.merged.lever_arm_agreement) estimate.health["imu_arm_share"] = *whole.merged.lever_arm_agreement;
   estimate.health["imu_readings_left_out"] = static_cast<double>(whole.merged.excluded_readings);
@@ -81,7 +77,6 @@ void report_whole(const MergedFindings& whole, std::span<const std::string> name
   }
 }
 
-/// Passes the readings of all IMUs to the odometry, in order of time, and collects the poses.
 Status replay(const std::vector<UnitRecording>& recordings, RollingOdometry& odometry, double radius_m,
               std::span<const std::string> names, Estimate& estimate) {
   TimeNs checked_ns = 0;

@@ -18,7 +18,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// VectorColumns points to the three columns of a vector; null if a column is missing.
 struct VectorColumns {
   const std::vector<double>*x = nullptr, *y = nullptr, *z = nullptr;
 
@@ -33,7 +32,7 @@ VectorColumns find(const Cloud& cloud, const std::string& prefix) {
 std::vector<MapPoint> from_cloud(const std::filesystem::path& path) {
   const Cloud cloud = read_cloud(path);
   const VectorColumns position = find(cloud, "");
-  if (!position) throw BadInput(fmt::format("{}: the file has no columns x y z", path.string()));
+  if (!position) throw BadInput(fmt::format("{}: the map file has no columns x y z", path.string()));
   VectorColumns normal = find(cloud, "n");
   if (!normal) normal = find(cloud, "normal_");
   if (!normal) {
@@ -68,7 +67,8 @@ std::vector<MapPoint> read_prior_map(const std::filesystem::path& path) {
   std::vector<MapPoint> points;
   const Status status = load_map(std::as_bytes(std::span(text)), points);
   if (!status.ok())
-    throw BadInput(fmt::format("{}: {}; a map is a .tumblemap, .pcd or .ply file", path.string(), status.message()));
+    throw BadInput(fmt::format("{}: the map cannot be read: {}; a map must be a .tumblemap, .pcd or .ply file",
+                               path.string(), status.message()));
   return points;
 }
 

@@ -9,15 +9,13 @@
 
 namespace tumble::scenarios {
 
-/// Name of the file in the folder of an estimate that contains the map for later runs (save_map).
+/// The folder of an estimate contains the map for later runs in this file (save_map).
 inline constexpr const char* kPriorMapName = "map.tumblemap";
 
-/// Writes map points to a file that later runs can use as prior map. Throws BadInput if writing fails.
 void write_prior_map(const std::filesystem::path& path, std::span<const MapPoint> points);
 
-/// Reads a map from a file of write_prior_map, or from the points of a PCD or PLY file. The normals come from the
-/// columns nx ny nz or normal_x normal_y normal_z; without these columns, they are fitted to the points. The column
-/// `sigma` contains the standard deviation of each point. Throws BadInput with path and reason if reading fails.
+/// Reads a file of write_prior_map, or a PCD or PLY file. Without the columns nx ny nz or normal_x normal_y normal_z,
+/// the normals are fitted to the points. The column `sigma` contains the standard deviation of each point.
 std::vector<MapPoint> read_prior_map(const std::filesystem::path& path);
 
 }  // namespace tumble::scenarios

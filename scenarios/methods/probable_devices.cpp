@@ -20,11 +20,10 @@ namespace {
 
 constexpr double kDegree_rad = 0.017453292519943295;
 constexpr double kRingOff_rad = 0.5 * kDegree_rad;
-/// Points closer than kNear_m may belong to the robot, or their beam may start at the mirror instead of the origin.
+/// Points closer than 0.5 m may belong to the robot, or their beam may start at the mirror instead of the origin.
 constexpr float kNear_m = 0.5f;
 constexpr std::size_t kSweepsUsed = 10, kLeastPointsOfRing = 20;
 
-/// Returns the letters and digits of a name, in lower case.
 std::string letters_of(const std::string& name) {
   std::string out;
   for (const char c : name) {
@@ -34,7 +33,6 @@ std::string letters_of(const std::string& name) {
   return out;
 }
 
-/// Returns the elevations of the beams in a data sheet, in rising order; empty for a lidar without rings.
 std::vector<double> elevations(const DataSheet& sheet) {
   std::vector<double> out;
   const sim::Values values = sheet.values();
@@ -52,7 +50,6 @@ std::vector<double> elevations(const DataSheet& sheet) {
   return out;
 }
 
-/// Returns the median elevation of each ring of the lidar, in rising order; empty if a ring has too few points.
 std::vector<double> seen_elevations(const sim::LidarRecord& lidar) {
   const std::size_t sweeps = std::min(kSweepsUsed, lidar.sweep_start_ns.size());
   if (sweeps == 0 || lidar.ring.size() != lidar.position_L_m.size()) return {};
@@ -74,7 +71,6 @@ bool is_kind(const DataSheet& sheet, const char* ending) {
   return sheet.sensor_kind.ends_with(ending);
 }
 
-/// Returns the data sheet with the longest device name that the sensor's name contains.
 std::optional<ProbableDevice> by_name(const std::string& name, std::span<const DataSheet> sheets, const char* kind) {
   std::optional<ProbableDevice> out;
   for (const DataSheet& sheet : sheets) {
@@ -84,7 +80,6 @@ std::optional<ProbableDevice> by_name(const std::string& name, std::span<const D
   return out;
 }
 
-/// Returns whether the readings of the IMU fit the ranges of the data sheet.
 bool fits(const DataSheet& sheet, const sim::ImuRecord& imu) {
   sim::ImuRecord stated = imu;
   apply_sheet(sheet, stated);

@@ -11,11 +11,9 @@
 
 namespace tumble::scenarios {
 
-/// Returns the settings of the published mapping chain (PublishedChain) for the rig.
 const Settings<baselines::PublishedChain::Params>& published_settings();
 
-/// Runs the published mapping chain. `estimate.rates` must contain one rate per sample, which replaces the gyro
-/// reading.
+/// `estimate.rates` must contain one rate per sample, which replaces the gyro reading.
 void run_published_chain(const sim::Sensors& sensors, std::span<const ImuSample> samples, const sim::Values& parameters,
                          Estimate& estimate);
 

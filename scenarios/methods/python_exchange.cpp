@@ -31,7 +31,7 @@ std::size_t aligned(std::size_t size) {
   return (size + kAlignment - 1) / kAlignment * kAlignment;
 }
 
-/// Arrays collects arrays that are written to shared memory one after another. The data must outlive Arrays.
+/// The data must outlive Arrays.
 class Arrays {
  public:
   template <typename Value>
@@ -40,7 +40,6 @@ class Arrays {
     if (columns > 0) shape.push_back(columns);
     return place(dtype, shape, std::as_bytes(std::span(rows)));
   }
-  /// Adds the matrix of a pose, row by row.
   json add(const Eigen::Isometry3d& T) {
     const Eigen::Matrix<double, 4, 4, Eigen::RowMajor> rows = T.matrix();
     matrices_.emplace_back(rows.data(), rows.data() + rows.size());
@@ -142,7 +141,6 @@ json of_series(const sim::SeriesRecord& series, Arrays& arrays) {
           {"constants", std::move(constants)}};
 }
 
-/// Answer reads a result from shared memory: a JSON text, and the arrays that it describes.
 class Answer {
  public:
   Answer(const SharedMemory& memory, const AnswerBounds& bounds) {
@@ -150,7 +148,8 @@ class Answer {
     const std::uintmax_t most = bounds.table_bytes() + bounds.map_bytes();
     if (memory.size() > most)
       throw BadInput(
-          fmt::format("the result has {} bytes; for this recording, it may have at most {}", memory.size(), most));
+          fmt::format("the result of the Python function has {} bytes; for this recording, it may have at most {}",
+                      memory.size(), most));
     bytes_ = memory.contents();
     if (bytes_.empty()) throw BadInput("the Python interpreter ended before the function returned a result");
     std::uint64_t length = 0;
@@ -167,8 +166,6 @@ class Answer {
   }
   bool has(const char* name) const { return text_.contains("arrays") && text_["arrays"].contains(name); }
 
-  /// Returns the array `name` with `columns` values per row. The array must have `rows` rows; an empty `rows` allows
-  /// any number.
   template <typename Value>
   std::vector<Value> array(const char* name, const char* dtype, std::size_t columns,
                            std::optional<std::size_t> rows) const {
@@ -194,7 +191,7 @@ class Answer {
 
  private:
   [[noreturn]] static void fail() {
-    throw BadInput("the result in memory is damaged; check whether the function wrote into the result");
+    throw BadInput("the result in shared memory is damaged; check whether the Python function wrote into the result");
   }
 
   std::string bytes_;
@@ -222,7 +219,6 @@ void read_rates(const Answer& answer, const sim::Sensors& sensors, Estimate& est
   }
 }
 
-/// Reads the poses of a method of kind position, slam or attitude. Poses of kind attitude have no positions.
 std::vector<PoseState> read_poses(const Answer& answer) {
   const auto times_ns = answer.array<std::int64_t>("time_ns", "<i8", 1, {});
   const auto quaternions = answer.array<double>("quaternion", "<f8", 4, times_ns.size());
@@ -234,7 +230,8 @@ std::vector<PoseState> read_poses(const Answer& answer) {
     poses[k].p_WA_m = row_of(positions, k);
     const Eigen::Quaterniond q{Eigen::Map<const Eigen::Vector4d>(&quaternions[4 * k])};
     if (!(std::abs(q.coeffs().stableNorm() - 1.0) <= kQuaternionTolerance) || (k > 0 && times_ns[k] <= times_ns[k - 1]))
-      throw BadInput(fmt::format("pose {} of the result has an invalid attitude or a time that does not increase", k));
+      throw BadInput(
+          fmt::format("pose {} of the result has a quaternion without norm 1, or a time that does not increase", k));
     poses[k].q_WA = q.normalized();
   }
   return poses;

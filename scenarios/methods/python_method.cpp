@@ -28,8 +28,6 @@ except ImportError:
 print("Python", sys.version.split()[0] + ", numpy", numpy.__version__)
 )";
 
-/// Returns the command that starts Python with the arguments `words`. The description or the user selects the
-/// interpreter.
 Command interpreter(const ExternalDescription& description, const ScratchFolder& scratch,
                     const std::vector<std::string>& words) {
   Command command{.words = description.interpreter,
@@ -40,7 +38,7 @@ Command interpreter(const ExternalDescription& description, const ScratchFolder&
                   .memory_limit_mib = description.memory_limit_mib};
   const char* own = std::getenv("TUMBLE_PYTHON");
   if (command.words.empty()) command.words = {own != nullptr && *own != '\0' ? own : "python3"};
-  command.environment.emplace("PYTHONDONTWRITEBYTECODE", "1");  // Avoids a __pycache__ folder next to the user's file.
+  command.environment.emplace("PYTHONDONTWRITEBYTECODE", "1");  // avoids a __pycache__ folder next to the user's file
   command.words.insert(command.words.end(), words.begin(), words.end());
   return command;
 }

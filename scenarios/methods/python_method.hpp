@@ -5,12 +5,11 @@
 
 #include "scenarios/methods/external_description.hpp"
 
-/// python_method.hpp runs a method that is one function of a Python file (EXTERNAL.md). The function receives the
-/// sensor data in shared memory, in a separate interpreter that only needs numpy.
+/// The Python function runs in a separate interpreter that only needs numpy (EXTERNAL.md).
 namespace tumble::scenarios {
 
-/// Calls the Python function with the sensor data and returns the estimate. `transcript` receives the printed output,
-/// even if the function throws. Throws NoAnswer and RefusedAnswer (external_method.hpp).
+/// `transcript` receives the printed output, even if the function throws. Throws NoAnswer and RefusedAnswer
+/// (external_method.hpp).
 Estimate call_python(const ExternalDescription& description, const sim::Sensors& sensors, std::string& transcript);
 
 /// Returns the versions of Python and numpy, and a digest of the method's Python file (without imported modules).

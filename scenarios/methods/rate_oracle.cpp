@@ -19,12 +19,13 @@ Estimate run_rate_oracle(const sim::Sensors& sensors, const sim::Values&, const 
 
 Status unclipped_rates(const sim::Sensors& sensors, const sim::Truth& truth, std::vector<RateState>& out) {
   out.clear();
-  // The clipped readings are checked too: where no method can succeed, the oracle (a method with true input) must also
-  // fail.
+  // The clipped readings are checked too, because the oracle (a method with true input) must fail where no method can
+  // succeed.
   std::vector<ImuSample> samples;
   Status status = bridge::primary_imu_samples(sensors, samples);
   if (!status.ok()) return status;
-  if (truth.imus.empty()) throw BadInput("the truth has no IMU");
+  if (truth.imus.empty())
+    throw BadInput("the truth contains no IMU, but this method needs the unclipped readings of an IMU");
   status = bridge::unclipped_samples(sensors.imus.front(), truth.imus.front(), samples);
   if (!status.ok()) return status;
   return raw_rates(sensors, samples, out);

@@ -11,16 +11,12 @@
 #include "tumble/common/imu.hpp"
 #include "tumble/common/status.hpp"
 
-/// The rate method and the slam methods of Saave share the functions in rate_saave.hpp.
 namespace tumble::scenarios {
 
 const Settings<Saave::Params>& saave_settings();
-/// Returns Saave's settings for a method with another stage, whose parameters are `others`. A parameter name that both
-/// stages use gets the prefix `rate_`.
 Settings<Saave::Params> other_saave_settings(std::span<const sim::Parameter> others);
 
-/// Estimates the angular rate of each sample by Saave's method, and writes one RateState per sample to `out`. On error,
-/// `out` is empty.
+/// Estimates one rate per sample by Saave's method. On error, `out` is empty.
 Status saave_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples,
                    const Settings<Saave::Params>& settings, const sim::Values& parameters, std::vector<RateState>& out);
 

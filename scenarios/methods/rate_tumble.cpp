@@ -41,7 +41,7 @@ Status auxiliary_recordings(const sim::Sensors& sensors, std::vector<AuxiliaryRe
   const sim::ImuRecord& primary = sensors.imus.front();
   for (std::size_t i = 1; i < sensors.imus.size() && out.size() < kAuxiliaryImusMax; ++i) {
     const sim::ImuRecord& record = sensors.imus[i];
-    if (record.name == "imu_reference") continue;  // reference IMU, only for comparisons
+    if (record.name == "imu_reference") continue;  // the reference IMU is only for comparisons
     AuxiliaryRecording& added = out.emplace_back();
     if (Status status = bridge::imu_samples(record, added.samples, bridge::kAnyGapS); !status.ok()) return status;
     added.imu.T_IC = primary.T_BI.inverse(Eigen::Isometry) * record.T_BI;
@@ -70,8 +70,8 @@ const CalibratedRig* RigCalibrationUse::found() const {
 
 namespace {
 
-/// Compares a saved calibration with that of a run without the saved calibration. If the two calibrations cannot belong
-/// to one rig, returns false and adds a failed health check.
+/// Returns false, and adds a failed health check, if the saved calibration and the calibration of a run without it
+/// cannot belong to one rig.
 bool may_be_of_this_rig(const CalibratedRig& given, const std::optional<CalibratedRig>& fresh, Estimate& result) {
   constexpr double kDistanceMax = 2.0;  // standard deviations; see calibration_distance
   if (!fresh || fresh->only_rails) return true;

@@ -24,8 +24,7 @@ const Settings<RegimeStream::Params>& rate_tumble_lag_settings() {
     std::vector<std::string> stated = stated_densities();
     stated.insert(stated.end(),
                   {"period_s", "evidence_gravity_m_s2", "carried_gravity_m_s2", "hand_held_probability_min"});
-    // RegimeStream sets the parameters below from its RateStream. The HandHeldStream of RegimeStream makes one
-    // iteration per node of the trajectory.
+    // The HandHeldStream of RegimeStream makes one iteration per node of the trajectory.
     const std::vector<std::string> fixed = {"carried_period_s", "carried_lag_s", "carried_gap_max_s",
                                             "carried_iterations_max"};
     return Settings<RegimeStream::Params>(RegimeStream::Params{}, {.stated = stated, .fixed = fixed});
@@ -54,7 +53,7 @@ RegimeStream::Params stream_params(const sim::Sensors& sensors, const sim::Value
   return params;
 }
 
-/// Restarts the stream after a gap with its current calibration, as TumblingOdometry does.
+/// Like TumblingOdometry, the stream restarts after a gap with its current calibration.
 void restart_after_gap(RegimeStream::Params& params, RegimeStream& joined, RegimeStream::State& all) {
   const RigCalibration calibration = joined.rate().calibration(all.rate);
   if (check_calibration(calibration).ok()) params.rate.model.calibration = calibration;
@@ -126,7 +125,7 @@ Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& paramet
     if (std::optional<CalibratedRig> rig = learnt(stream, params.rate, given, state)) *found = std::move(rig);
   }
   if (estimate.status.ok()) {
-    // The method only reports the findings, because the rates are already final.
+    // The rates are already final, so the method only reports the findings.
     (void)check_imu(sensors, samples, estimate.rates, carried_share, estimate);
   }
   count_sources(estimate.rates, estimate.health);

@@ -9,9 +9,8 @@
 
 namespace tumble::scenarios {
 
-/// Replaces the gyro readings of a rig by the rates that rate/tumble recovers (recover_rates). Adds the saturation
-/// limits and the number of replaced samples to the health. If the data of one auxiliary IMU are invalid, no auxiliary
-/// IMU is used.
+/// The rates that rate/tumble recovers replace the gyro readings of a rig. If the data of one auxiliary IMU are
+/// invalid, no auxiliary IMU is used.
 RecoveredRates recovered_readings(const sim::Sensors& sensors, std::span<const ImuSample> samples,
                                   ReplacedReadings replaced, Estimate& estimate);
 

@@ -33,7 +33,7 @@ std::vector<Method> all_methods() {
       attitude_tumble(),
       attitude_tumble_lag(),
       attitude_tumble_batch(),
-      position_rolling(),  // Without a baseline, the first method of a kind is the reference.
+      position_rolling(),  // without a baseline, the first method of a kind is the reference
       position_autogain_fusion(),
       position_tumble(),
       position_tumble_lag(),
@@ -56,13 +56,12 @@ std::vector<Method> all_methods() {
   return all;
 }
 
-/// Rejects an external method with the name of a built-in method, because its results would be ambiguous.
 MethodPointer method_of_file(const std::string& file, double time_limit_s) {
   auto method = std::make_shared<const Method>(external_method(file, time_limit_s));
   for (const Method& own : methods()) {
     if (full_name(own.info) == full_name(method->info))
-      throw BadInput(
-          fmt::format("{}: {} is the name of a built-in method; choose another name", file, full_name(own.info)));
+      throw BadInput(fmt::format("{}: the method name {} belongs to a built-in method; choose another name", file,
+                                 full_name(own.info)));
   }
   return method;
 }
@@ -79,7 +78,7 @@ std::vector<MethodPointer> find_within(const std::string& name, double time_limi
   if (found.empty()) {
     const std::string near = sim::nearest_name(name, known);
     throw BadInput("unknown method '" + name + "'; " +
-                   (near.empty() ? "'tumble list methods' lists all methods" : "did you mean '" + near + "'?"));
+                   (near.empty() ? "see 'tumble list methods'" : "did you mean '" + near + "'?"));
   }
   return found;
 }
@@ -106,7 +105,7 @@ Method make_method(MethodInfo info, RunCore run) {
       std::make_shared<const std::vector<sim::Parameter>>(joined_rows(settings, info.parameters_first));
   info.parameters = *parameters;
   const bool needs_truth = info.needs_truth;
-  // `info` refers to `parameters`, so the lambda keeps them alive.
+  // The lambda keeps the parameters alive, because `info` refers to them.
   RunMethod wrapped = [name, settings, parameters, needs_truth, run](
                           const sim::Sensors& sensors, const sim::Values& given, const OracleInput& oracle) {
     if (needs_truth && oracle.truth == nullptr) {

@@ -23,14 +23,11 @@ using nlohmann::json;
 constexpr double kMost = 1e6;
 constexpr const char* kKeys[] = {"lever_arm_m", "gyro_bias_rad_s", "accel_bias_m_s2", "inertia",
                                  "covariance",  "gyro_rail_rad_s", "accel_rail_m_s2"};
-// Files of early versions lack this key and have fewer covariance rows.
+// Files of early versions lack the gyro elements and their covariance rows.
 constexpr const char* kElementsKey = "gyro_elements";
-// Files of early versions lack this key.
 constexpr const char* kPlanesKey = "gyro_planes_rad_s";
-// Files of early versions lack these keys.
 constexpr const char* kAccelPlanesKey = "accelerometer_planes_m_s2";
 constexpr const char* kAccelElementsKey = "accelerometer_elements";
-// Files of early versions lack these keys.
 constexpr const char *kErrorsKey = "device_errors", *kErrorsCovarianceKey = "device_errors_covariance";
 constexpr int kWithoutElements = RigConstants::kElements;
 
@@ -53,7 +50,6 @@ json rails(const CalibratedRig& rig, std::size_t first) {
   return out;
 }
 
-// CalibrationReader reads the arrays in a calibration file. Error messages contain the key and the fault.
 class CalibrationReader {
  public:
   CalibrationReader(const std::filesystem::path& path, const json& object) : path_(path), object_(object) {}
@@ -73,10 +69,11 @@ class CalibrationReader {
     const json& values = array(key, static_cast<std::size_t>(into.size()));
     for (std::size_t i = 0; i < values.size(); ++i) {
       if (!values[i].is_number() || !std::isfinite(values[i].get<double>()))
-        complain(key, "an element is not a number; all elements must be numbers");
-      // Larger numbers cannot be rig constants, and would dominate all others.
+        complain(key, "an element of the array is not a number; all elements must be numbers");
+      // Numbers above 1e6 cannot be rig constants, and would dominate all others.
       if (std::abs(values[i].get<double>()) > kMost) {
-        complain(key, fmt::format("an element is {}; its magnitude must be at most 1e6", values[i].dump()));
+        complain(key,
+                 fmt::format("an element of the array is {}; its magnitude must be at most 1e6", values[i].dump()));
       }
       into.data()[i] = values[i].get<double>();
     }
@@ -87,7 +84,7 @@ class CalibrationReader {
     for (std::size_t j = 0; j < 3; ++j) {
       if (values[j].is_null()) continue;
       if (!values[j].is_number() || !(values[j].get<double>() > 0.0))
-        complain(key, "a saturation limit is invalid; it must be a positive number or null");
+        complain(key, "a saturation limit is not a positive number; it must be a positive number or null");
       rig.rail[first + j] = values[j].get<double>();
     }
   }
@@ -157,7 +154,7 @@ void read_device_errors(const CalibrationReader& reader, const json& object, Cal
   const SensorErrors::Matrix scaled = over.asDiagonal() * known.covariance * over.asDiagonal();
   if (!scaled.allFinite() || (scaled - scaled.transpose()).cwiseAbs().maxCoeff() > 1e-9 ||
       Eigen::LLT<SensorErrors::Matrix>(scaled).info() != Eigen::Success) {
-    reader.complain(kErrorsCovarianceKey, "the matrix is not symmetric and positive definite");
+    reader.complain(kErrorsCovarianceKey, "the covariance matrix must be symmetric and positive definite");
   }
   rig.device_errors = known;
 }
@@ -197,7 +194,7 @@ CalibratedRig read_rig_calibration(const std::filesystem::path& path) {
   const double asymmetry = (covariance - covariance.transpose()).cwiseAbs().maxCoeff();
   if (asymmetry > 1e-9 * covariance.cwiseAbs().maxCoeff() ||
       Eigen::LLT<RigConstants::Matrix>(covariance).info() != Eigen::Success) {
-    reader.complain("covariance", "the matrix is not symmetric and positive definite");
+    reader.complain("covariance", "the covariance matrix must be symmetric and positive definite");
   }
   reader.read_rails("gyro_rail_rad_s", 0, rig);
   reader.read_rails("accel_rail_m_s2", 3, rig);

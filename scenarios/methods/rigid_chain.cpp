@@ -22,15 +22,13 @@ constexpr double kRestMaxS = 1.0;
 /// The rig counts as stationary from the first reading to the first motion. The thresholds are those of the mapper
 /// (`mapper_rest`), without the gravity test.
 constexpr RestDetector::Params kStart = {.rate_spread_rad_s = 0.05, .force_spread_m_s2 = 0.5, .rest_s = 0.0};
-constexpr double kVelocitySigmaMS = 1e-4;  // no velocity measurement: registration of a rigid sweep gives none
+constexpr double kVelocitySigmaMS = 1e-4;  // registration of a rigid sweep gives no velocity measurement
 
 TimeNs window_start(std::span<const ImuSample> samples, std::size_t k) {
   if (k > 0) return samples[k - 1].time_ns;
   return samples.size() > 1 ? 2 * samples[0].time_ns - samples[1].time_ns : samples[0].time_ns;
 }
 
-/// Calls `add(k, from, to)` for each IMU averaging window that overlaps the interval. The first window is extended back
-/// to the start of the interval.
 template <typename Add>
 void for_windows(std::span<const ImuSample> samples, TimeNs from_ns, TimeNs to_ns, Add add) {
   const auto first = std::upper_bound(samples.begin(), samples.end(), from_ns,

@@ -10,30 +10,26 @@
 #include "sim/parameters.hpp"
 #include "tumble/common/imu.hpp"
 
-/// rigid_chain.hpp contains building blocks of methods that register each sweep as a rigid body. A trajectory model
-/// predicts the motion within a sweep, then RigidOdometry registers the sweep. Each method defines its own trajectory
-/// model.
+/// Methods that register each sweep as a rigid body differ in their trajectory model, which predicts the motion within
+/// a sweep.
 namespace tumble::scenarios {
 
-/// TrajectoryModel predicts the motion of each sweep. The registered pose updates the trajectory model.
 class TrajectoryModel {
  public:
   virtual ~TrajectoryModel() = default;
   /// Predicts the motion from the end of the last sweep to `to_ns`. For the first sweep, the prediction starts at the
   /// start of the sweep.
   virtual baselines::RigidOdometry::Motion expect(TimeNs from_ns, TimeNs to_ns) = 0;
-  /// Updates the model after each sweep. `report.verdict` states whether the registration succeeded.
   virtual void learn(const baselines::RigidOdometry& odometry, const LidarInertialOdometry::SweepReport& report) = 0;
 };
 
-/// StartAtRest contains the initial values from the standstill at the start: the attitude from the specific force, with
-/// yaw 0, and the gyro bias.
+/// The standstill at the start determines the attitude, from the specific force with yaw 0, and the gyro bias.
 struct StartAtRest {
   Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
   Eigen::Vector3d gyro_bias_rad_s = Eigen::Vector3d::Zero();
 };
-/// Computes initial attitude and gyro bias from the first readings (one sample to one second), while the gyro stays
-/// below 0.05 rad/s. Returns `too_few` or `degenerate` if the readings do not determine an attitude.
+/// The computation uses the first readings (one sample to one second) while the gyro stays below 0.05 rad/s. Returns
+/// `too_few` or `degenerate` if the readings do not determine an attitude.
 Status start_at_rest(std::span<const ImuSample> samples, StartAtRest& out);
 
 /// Returns one motion sample per IMU averaging window in the interval, with constant rate and acceleration (without
@@ -41,16 +37,12 @@ Status start_at_rest(std::span<const ImuSample> samples, StartAtRest& out);
 std::vector<MotionSample> steady_motion(std::span<const ImuSample> samples, const Eigen::Vector3d& rate_I_rad_s,
                                         const Eigen::Vector3d& force_I_m_s2, TimeNs from_ns, TimeNs to_ns);
 
-/// Returns a large prior covariance, for registration with a weak motion model.
 Eigen::Matrix<double, 9, 9> loose_covariance(double sigma_m, double sigma_rad);
 
-/// Registers all sweeps of a recording as rigid bodies, with the motion predicted by the trajectory model. Sweeps after
-/// the last IMU reading are only counted. A sweep without points is not an error.
+/// Sweeps after the last IMU reading are only counted. A sweep without points is not an error.
 void run_rigid_chain(const sim::Sensors& sensors, std::span<const ImuSample> samples,
                      const baselines::RigidOdometry::Params& params, TrajectoryModel& model, Estimate& estimate);
 
-/// rigid_settings returns the settings of the rigid methods. rigid_params converts parameter values to the library's
-/// parameters; the lidar mounting T_IL comes from the calibration.
 const Settings<baselines::RigidOdometry::Params>& rigid_settings();
 baselines::RigidOdometry::Params rigid_params(const sim::Sensors& sensors, const sim::Values& parameters);
 

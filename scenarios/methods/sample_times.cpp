@@ -15,7 +15,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// SampleTimes contains the corrected sample times of an IMU record, and the jitter [s] that the correction removed.
 /// Decreasing time stamps are kept, so that a later check rejects them.
 struct SampleTimes {
   std::vector<std::int64_t> times_ns;

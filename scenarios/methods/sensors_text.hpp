@@ -7,9 +7,9 @@
 
 namespace tumble::scenarios {
 
-/// Returns the properties of the sensors as JSON, with gravity and the sphere's radius. An IMU has sample rate, ranges,
-/// noise densities and mounting T_BI. A lidar has period and mounting T_BL. A mounting has "translation_m" [x, y, z]
-/// and "quaternion_xyzw", and includes calibration errors.
+/// Returns gravity, the sphere's radius and the sensors as JSON. An IMU has sample rate, ranges, noise densities and
+/// mounting T_BI. A lidar has period and mounting T_BL. A mounting has "translation_m" [x, y, z] and "quaternion_xyzw",
+/// and includes calibration errors.
 std::string sensors_text(const sim::Sensors& sensors);
 
 }  // namespace tumble::scenarios

@@ -12,7 +12,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Returns the suffix of a parameter name for a unit: "_m_s2" for "m/s^2".
+/// The suffix for the unit "m/s^2" is "_m_s2".
 std::string suffix_of(std::string_view unit) {
   std::string out = "_";
   for (const char c : unit) {
@@ -96,7 +96,8 @@ sim::Values resolve_settings(const std::string& place, const sim::Values& given,
     };
     if (any(&SettingsTable::is_stated) && !given.has(name)) continue;
     if (any(&SettingsTable::is_whole) && value != std::floor(value)) {
-      throw sim::InvalidSituation(fmt::format("{}.{} is {:g}; it must be a whole number", place, name, value));
+      throw sim::InvalidSituation(
+          fmt::format("the parameter {}.{} is {:g}; it must be a whole number", place, name, value));
     }
     out.set(name, value);
   }

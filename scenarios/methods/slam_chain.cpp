@@ -38,11 +38,10 @@ LidarInertialOdometry::Params odometry_params(const sim::Sensors& sensors, const
   return odometry;
 }
 
-/// Adds the processed sweeps to the estimate. Returns false if a sweep without a pose ended the run.
 bool append_sweeps(std::vector<MappedSweep>& sweeps, Estimate& estimate) {
   for (MappedSweep& sweep : sweeps) {
     SweepReport& report = sweep.report;
-    // The sweep ended before the first IMU reading, so it has no pose.
+    // A sweep that ended before the first IMU reading has no pose.
     if (sweep.status.error_code == ErrorCode::too_few && report.trajectory.empty()) {
       leave_out_unfinished(estimate);
       continue;
@@ -95,7 +94,6 @@ SlamParams with_few_matches(SlamParams params) {
   return params;
 }
 
-// Adds typical uncertainties of a hand-assembled rig: mounting, clock offset and gravity.
 SlamParams with_calibration(SlamParams params) {
   const TumblingOdometry::Params door;
   params.odometry.mount_sigma_rad = door.mount_sigma_rad;

@@ -15,9 +15,8 @@ constexpr int kPosesPerSweep = 10;  // poses per sweep for recordings without IM
 constexpr double kVelocityPriorM = 1.0;
 constexpr double kVelocityPriorRad = 0.5;
 
-/// ConstantVelocity predicts that the pose change over the last sweep repeats, in translation and rotation.
-/// ConstantVelocity uses the IMU only for the times of the poses and the initial vertical. Without an IMU,
-/// ConstantVelocity assumes an upright start.
+/// The model predicts that the pose change over the last sweep repeats, in translation and rotation. The IMU gives only
+/// the times of the poses and the initial vertical; without an IMU, the start is assumed upright.
 class ConstantVelocity : public TrajectoryModel {
  public:
   ConstantVelocity(std::span<const ImuSample> samples, const Eigen::Quaterniond& q_WL) : samples_(samples) {
@@ -50,7 +49,6 @@ class ConstantVelocity : public TrajectoryModel {
   TimeNs from_ns_ = 0;
 };
 
-/// Returns evenly spaced times for the poses within each sweep, for a recording without IMU.
 std::vector<ImuSample> instants(const sim::LidarRecord& lidar) {
   std::vector<ImuSample> out;
   const std::size_t sweeps = bridge::sweep_count(lidar);

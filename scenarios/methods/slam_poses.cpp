@@ -5,13 +5,12 @@
 #include "scenarios/methods/sweep_log.hpp"
 #include "tumble/mapping/voxel_map.hpp"
 
-/// The methods in slam_poses.cpp build maps of a rolling sphere from the poses of a position method, without
-/// registration, as published.
+/// As published, these methods build maps of a rolling sphere from the poses of a position method, without
+/// registration.
 namespace tumble::scenarios {
 
 namespace {
 
-/// MapParams contains the parameters of the map, named as in the registration methods.
 struct MapParams {
   VoxelMap::Params map;
   double nearest_m = 0.3;
@@ -19,8 +18,8 @@ struct MapParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit.group("map_", p.map);
-    visit(p.nearest_m,
-          {"nearest_m", "m", 0.0, 100.0, "returns nearer than this range belong to the sphere itself and are dropped"});
+    visit(p.nearest_m, {"nearest_m", "m", 0.0, 100.0,
+                        "lidar returns nearer than this range belong to the sphere itself and are dropped"});
   }
 };
 
@@ -42,7 +41,6 @@ const Method& tumble() {
   return method;
 }
 
-/// Track interpolates poses of the body. The times must increase from call to call.
 class Track {
  public:
   Track(const std::vector<PoseState>& poses, const Eigen::Vector3d& centre_B_m)
@@ -66,8 +64,7 @@ class Track {
   std::size_t next_ = 1;
 };
 
-// The lidar's mounting refers to the centre of mass, a few millimetres from the sphere's centre. Methods that do not
-// estimate this offset have the offset zero.
+// The lidar's mounting refers to the centre of mass, a few millimetres from the sphere's centre.
 Estimate map_from_poses(const Method& position, const sim::Sensors& sensors, const sim::Values& parameters) {
   Estimate estimate = position.run(sensors, values_of(position, parameters), {});
   estimate.contacts.clear();
@@ -122,7 +119,6 @@ Estimate run_poses_tumble(const sim::Sensors& sensors, const sim::Values& parame
   return map_from_poses(tumble(), sensors, parameters);
 }
 
-/// Returns a slam method that builds its map from the poses of `position`.
 Method posed(MethodInfo info, const Method& position, RunCore run) {
   info.kind = Kind::slam;
   info.settings = stages_after({&map_settings()}, position);

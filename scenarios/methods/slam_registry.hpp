@@ -13,7 +13,6 @@
 #include "tumble/common/imu.hpp"
 #include "tumble/mapping/detail/prior_map.hpp"
 
-/// slam_registry.hpp declares further slam methods and their shared functions.
 namespace tumble::scenarios {
 
 Method slam_published();
@@ -26,7 +25,6 @@ Method slam_tumble_live();
 /// localised, or 0. The poses of earlier sweeps are in a local frame.
 std::optional<Method> localised_in(const Method& method, std::shared_ptr<const PriorMap> map);
 
-/// RigSlam contains the properties in which the slam methods of the rig differ.
 struct RigSlam {
   std::string name, doc;
   bool ours = false;
@@ -37,7 +35,6 @@ struct RigSlam {
 };
 Method rig_slam(RigSlam what, RunCore run);
 
-/// Creates an estimate with the rates that `rates` computes from the `samples` of the primary IMU, or with its error.
 Estimate begin_with_rates(const sim::Sensors& sensors, std::vector<ImuSample>& samples,
                           const std::function<Status(Estimate&)>& rates);
 

@@ -11,20 +11,16 @@
 #include "scenarios/methods/slam_settings.hpp"
 #include "scenarios/methods/sphere_attitude.hpp"
 
-/// The method maps with a rolling sphere: sweeps are registered as on the rig, with rolling as an odometer
-/// (add_reading).
+/// Sweeps of a rolling sphere are registered as on the rig, with rolling as an odometer (add_reading).
 namespace tumble::scenarios {
 
 namespace {
 
-/// Returns the settings of the lidar-inertial mapping chain for the sphere. The odometer sets the limits of
-/// corrections, and the position method sets gravity.
 const Settings<SlamParams>& prior_settings() {
   static const Settings<SlamParams> all = slam_settings({}, {"gravity_m_s2", "correction_max_m", "correction_max_rad"});
   return all;
 }
 
-/// AlongParams contains the parameters of the rolling odometer.
 struct AlongParams {
   double grip_sigma_ratio = 4e-3, still_sigma_m_s = 3e-4, loose_sigma_share = 0.1, loose_sigma_m_s = 0.03;
   double rotation_sigma_rad = 2e-4;
@@ -76,7 +72,6 @@ const Settings<AlongParams>& along_settings() {
   return all;
 }
 
-/// Returns the position method whose poses serve as rolling odometer.
 const Method& followed() {
   static const Method method = position_tumble();
   return method;
@@ -86,8 +81,8 @@ struct Radius {
   double m = 0.0, sigma_m = 0.0;
 };
 
-/// Estimates the radius at which the rolled distance equals the distance between registered sweeps, over segments of
-/// continuous contact. Returns nothing if there are fewer than two segments.
+/// The estimated radius makes the rolled distance equal to the distance between registered sweeps, over segments of
+/// continuous contact.
 std::optional<Radius> radius_by_lidar(const Estimate& rolled, const Estimate& registered, const sim::Sensors& sensors,
                                       double radius_m, const AlongParams& params) {
   const Eigen::Isometry3d T_IG =
@@ -128,7 +123,6 @@ std::optional<Radius> radius_by_lidar(const Estimate& rolled, const Estimate& re
 
 constexpr const char* kRadius = "radius_m";
 
-/// Estimates the poses of a rolling sphere with radius `radius_m`, without the lidar.
 Estimate roll(const sim::Sensors& sensors, const sim::Values& parameters, double radius_m) {
   sim::Sensors own;
   own.robot = sensors.robot;
@@ -140,8 +134,6 @@ Estimate roll(const sim::Sensors& sensors, const sim::Values& parameters, double
   return followed().run(own, values, {});
 }
 
-/// RolledMotion supplies the rolled motion as an odometer of the primary IMU. `loosely` increases its uncertainty,
-/// because the radius is uncertain.
 class RolledMotion {
  public:
   RolledMotion(const Estimate& rolled, const sim::Sensors& sensors, const AlongParams& params, bool loosely)
@@ -170,7 +162,6 @@ class RolledMotion {
     return static_cast<std::size_t>(found - rolled_.poses.begin());
   }
 
-  /// Interpolates the pose of the IMU between two samples.
   Eigen::Isometry3d pose_of_imu(TimeNs time_ns) const {
     const std::size_t k = index_at(time_ns);
     const PoseState& after = rolled_.poses[k];
@@ -182,7 +173,6 @@ class RolledMotion {
     return Eigen::Translation3d(p) * before.q_WA.slerp(share, after.q_WA) * T_GI_;
   }
 
-  /// Returns the largest standard deviation of the velocity in the interval.
   double velocity_sigma_m_s(TimeNs from_ns, TimeNs to_ns) const {
     double largest_m_s = 0.0;
     for (std::size_t k = index_at(from_ns); k < rolled_.poses.size() && rolled_.poses[k].time_ns <= to_ns; ++k) {
@@ -202,7 +192,6 @@ class RolledMotion {
   bool loosely_;
 };
 
-/// Returns the largest position correction that a registration may make.
 double correction_max_m(const Estimate& rolled, const AlongParams& params, bool loosely) {
   double variance_m2 = 0.0;
   for (const PoseState& pose : rolled.poses)
@@ -211,7 +200,6 @@ double correction_max_m(const Estimate& rolled, const AlongParams& params, bool 
   return params.correction_m + (loosely ? params.loose_correction_m : 0.0) + lost_m;
 }
 
-/// Registers all sweeps, with the motion in `rolled` as an odometer between the ends of consecutive sweeps.
 Estimate register_along(const Estimate& rolled, const sim::Sensors& sensors, std::span<const ImuSample> samples,
                         const sim::Values& parameters, bool loosely) {
   Estimate estimate;
@@ -229,7 +217,7 @@ Estimate register_along(const Estimate& rolled, const sim::Sensors& sensors, std
   return estimate;
 }
 
-/// Runs the method twice: first with an uncertain odometer to estimate the radius, then with the estimated radius.
+/// The first run, with an uncertain odometer, estimates the radius; the second run uses this radius.
 Estimate run_rolling_prior(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
   Estimate estimate;
   estimate.frame = Frame::imu;

@@ -29,7 +29,6 @@ Settings<TumblingOdometry::Params> odometry_settings(double lag_s, std::vector<s
   TumblingOdometry::Params params;
   params.lever_arm_I_m.setZero();  // the recording contains the lever arm
   params.lag_s = lag_s;
-  // TumblingOdometry has its own parameters for these quantities.
   fixed.insert(fixed.end(),
                {"rate_lever_arm_sigma_m", "rate_gyro_noise_density", "rate_accel_noise_density", "rate_rails_stated_*",
                 "rate_period_s", "rate_lag_s", "rate_evidence_gravity_m_s2", "rate_carried_gravity_m_s2",
@@ -42,7 +41,6 @@ Settings<TumblingOdometry::Params> odometry_settings(double lag_s, std::vector<s
 }
 
 const Settings<TumblingOdometry::Params>& whole_settings() {
-  // The parameters below apply only to streaming and to the second pass.
   static const auto all =
       odometry_settings(TumblingOdometry::kWholeRecording,
                         {"lag_s", "sweeps_max", "second_pass_*", "rate_accel_bias_sigma_m_s2", "rate_inertia_sigma",
@@ -67,7 +65,6 @@ TumblingOdometry::Params stated_params(const sim::Sensors& sensors, TumblingOdom
   return params;
 }
 
-/// Output selects which poses of TumblingOdometry the estimate contains.
 enum class Output {
   live,   ///< live pose at each IMU sample, when the sample is processed
   lag,    ///< final trajectory of each sweep, after a fixed lag
@@ -76,13 +73,11 @@ enum class Output {
 
 using SweepProgress = TumblingOdometry::SweepProgress;
 
-/// Collector stores the output of TumblingOdometry in an estimate.
 class Collector {
  public:
   Collector(Output output, const TumblingOdometry::Params& params, std::string imu, Estimate& estimate)
       : output_(output), given_(params.stated_calibration()), estimate_(estimate), names_{std::move(imu)} {}
 
-  /// Stores the live pose after each processed sample.
   void observe(const TumblingOdometry& odometry) {
     PoseState pose;
     if (output_ != Output::live || !odometry.newest(pose).ok()) return;
@@ -102,7 +97,6 @@ class Collector {
       apply_next(std::move(smoothed));
     }
   }
-  /// Stores the remaining trajectories and the findings at the end of the run.
   void conclude(const TumblingOdometry& odometry) {
     if (output_ != Output::whole) {
       for (std::vector<PoseState>& open : odometry.mapper().window_trajectories()) apply_next(std::move(open));
@@ -120,8 +114,7 @@ class Collector {
     apply_smoothed(std::move(smoothed), estimate_.sweeps[smoothed_++]);
   }
 
-  /// Replaces the trajectory of each sweep by its live poses. Sweeps before the first live pose (at rest about 0.3 s
-  /// after the start) keep their trajectory.
+  /// Sweeps before the first live pose (at rest about 0.3 s after the start) keep their trajectory.
   void replace_by_live() {
     auto next = live_.begin();
     for (SweepReport& sweep : estimate_.sweeps) {
@@ -143,9 +136,8 @@ class Collector {
   std::vector<PoseState> live_;
 };
 
-/// Passes the recording to TumblingOdometry in real-time order: each sample at the end of its averaging window, each
-/// sweep after its last point. Sweeps that end after the last sample are used if `whole` is true, and otherwise only
-/// counted.
+/// Each sample is passed in real-time order at the end of its averaging window, and each sweep after its last point.
+/// Sweeps that end after the last sample are used if `whole` is true, and otherwise only counted.
 Status replay(const sim::Sensors& sensors, std::span<const ImuSample> samples, bool whole, TumblingOdometry& odometry,
               Collector& collector, const SweepProgress& on_sweep, Estimate& estimate) {
   const sim::LidarRecord& lidar = sensors.lidars.front();
@@ -188,7 +180,6 @@ Status replay(const sim::Sensors& sensors, std::span<const ImuSample> samples, b
   return status;
 }
 
-/// Adds the results in RecordingEstimate to the estimate, except the sweeps.
 void report_whole(const RecordingEstimate& whole, const sim::Sensors& sensors, Estimate& estimate) {
   estimate.rates = whole.rates;
   estimate.suspect_rad2_s2 = whole.suspect_rad2_s2;

@@ -42,7 +42,7 @@ const Settings<RestParams>& rest_settings() {
 void require_sphere(const char* method, const sim::Sensors& sensors) {
   if (!(sensors.sphere_radius_m > 0.0)) {
     throw BadInput(fmt::format(
-        "method {} needs a recording of a sphere, but this recording states the radius sphere_radius_m = 0", method));
+        "the method {} needs a recording of a sphere, but this recording states sphere_radius_m = 0", method));
   }
 }
 

@@ -10,8 +10,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Returns the usable readings of an IMU: finite, in order of time, within the device's range. Throws BadInput if the
-/// arrays of the record differ in length.
 std::vector<ImuSample> readings_of(const sim::ImuRecord& record, Status& status, int& beyond_range) {
   std::vector<ImuSample> samples;
   status = bridge::imu_samples(record, samples, bridge::kAnyGapS);

@@ -13,8 +13,8 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr double kTurnsOtherwise = 0.5, kTurnsAsSaid = 0.15;
-/// kTurnsOnceCorrected is the largest accepted rotation difference after the correction of a delay; reference_check.cpp
-/// has the same limit.
+/// After the correction of a delay, a larger rotation difference is not accepted; reference_check.cpp has the same
+/// limit.
 constexpr double kTurnsOnceCorrected = 0.3;
 
 std::vector<TimedAttitude> attitudes_of(const Estimate& estimate) {
@@ -26,8 +26,6 @@ std::vector<TimedAttitude> attitudes_of(const Estimate& estimate) {
   return out;
 }
 
-/// Returns the rotation from IMU axes to the axes of the frame. Returns nothing if the recording has no sensor with
-/// this frame.
 std::optional<Eigen::Quaterniond> q_AI(Frame frame, const sim::Sensors& sensors) {
   const Eigen::Quaterniond q_BI(sensors.imus.front().T_BI.linear());
   if (frame == Frame::imu) return Eigen::Quaterniond::Identity();
@@ -50,8 +48,7 @@ std::string text_of(const TurningFit& fit, const std::string& frame) {
   return out + (out.empty() ? "the poses" : " and the poses") + " belonged to the frame " + frame;
 }
 
-/// Returns the frames to which the attitudes may belong; empty without an IMU, or without a sensor for the frame of the
-/// estimate. The frame of the estimate comes first, so that it is chosen if two frames have equal mountings.
+/// The frame of the estimate comes first, so that it is chosen if two frames have equal mountings.
 std::vector<CandidateFrame> candidates(const Estimate& estimate, const sim::Sensors& sensors) {
   std::vector<CandidateFrame> frames;
   if (sensors.imus.empty()) return frames;

@@ -5,22 +5,18 @@
 
 #include "scenarios/methods/method.hpp"
 
-/// The functions in turning_sense.hpp check the rotation convention and the clock of external attitudes against the
-/// gyro. A pose file does not specify its frame, quaternion convention or clock.
+/// A pose file does not specify its frame, quaternion convention or clock.
 namespace tumble::scenarios {
 
-/// Returns a message if the attitudes or poses of `estimate` use a wrong convention; otherwise returns "". The function
-/// detects quaternions with w first, inverse rotations (world in sensor), and a frame other than `estimate.frame`.
+/// Returns a message if the attitudes or poses have quaternions with w first, inverse rotations (world in sensor), or
+/// another frame than `estimate.frame`; otherwise an empty text.
 ///
-/// The function compares rotations between poses with the gyro of the first IMU (recordings/trajectories/turning.hpp).
-/// A wrong convention is reported if the rotation difference exceeds half of the rotation and the correction reduces
-/// the difference below 0.15. The function cannot detect combined errors, or errors that leave rotations about a single
-/// axis unchanged. The cost is proportional to the number of samples and poses.
+/// A wrong convention is reported if the rotations differ from the first IMU's gyro by more than half, and a correction
+/// reduces the difference below 0.15 (recordings/trajectories/turning.hpp). Combined errors, and errors that leave
+/// rotations about a single axis unchanged, are not detected. The cost is O(samples + poses).
 std::string turning_complaint(const Estimate& estimate, const sim::Sensors& sensors);
 
-/// Returns a message if the time stamps of the attitudes or poses have a constant error of 0.15 to 5 s; otherwise
-/// returns "". The check is the same as for references (recordings/trajectories/reference_check.hpp). The check takes
-/// about half a second.
+/// Returns a message if the time stamps of the attitudes or poses have a constant error of 0.15 to 5 s.
 std::string clock_complaint(const Estimate& estimate, const sim::Sensors& sensors);
 
 }  // namespace tumble::scenarios

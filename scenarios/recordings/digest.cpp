@@ -10,7 +10,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// FieldHasher visits every field of a recording and adds its name, length and bytes to the hash.
 class FieldHasher : public Hasher {
  public:
   void value(const char* name, const std::string& value) {

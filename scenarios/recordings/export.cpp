@@ -60,8 +60,9 @@ Notes write_bag(const path& recording, const path& out, const ExportChoices& cho
   ExportNames names = export_names(sensors);
   Notes left_out;
   for (const sim::SeriesRecord& series : sensors.series)
-    left_out.push_back(fmt::format("sensor '{}' ({}) is left out, because bags have no message type for this sensor",
-                                   series.name, series.kind));
+    left_out.push_back(
+        fmt::format("sensor '{}' of kind '{}' is left out, because ROS bags have no message type for this kind",
+                    series.name, series.kind));
   return joined(joined(std::move(names.imus.notes), names.lidars.notes), left_out);
 }
 
@@ -82,7 +83,6 @@ Notes write_sweeps(const path& recording, const path& out, const ExportChoices&)
   return export_names(sensors).lidars.notes;
 }
 
-/// The formats are sorted by name.
 const std::array<Format, 9> kFormats = {{
     {"csv", write_csv},
     {"kitti", write_kitti},
@@ -119,9 +119,9 @@ void require_own_kind(const std::string& format, const path& out) {
   const std::string ending = out.extension().string();
   if (own == kEndings.end() || ending.empty() || own->second.contains(ending)) return;
   if (!std::filesystem::is_regular_file(out)) return;
-  throw BadInput(
-      fmt::format("{}: the output exists and does not have the format '{}'; choose another output name that ends in {}",
-                  out.string(), format, fmt::join(own->second, " or ")));
+  throw BadInput(fmt::format(
+      "{}: the output file exists and has another format than '{}'; choose another output name that ends in {}",
+      out.string(), format, fmt::join(own->second, " or ")));
 }
 
 Notes export_recording(const path& recording, const std::string& format, const path& out,
@@ -132,8 +132,8 @@ Notes export_recording(const path& recording, const std::string& format, const p
   std::string known;
   for (const std::string& name : export_formats()) known += " " + name;
   const std::string near = sim::nearest_name(format, export_formats());
-  throw BadInput(fmt::format("unknown format '{}'{} (known formats:{})", format,
-                             near.empty() ? "" : fmt::format("; did you mean '{}'?", near), known));
+  throw BadInput(fmt::format("unknown export format '{}'{} (known formats:{})", format,
+                             near.empty() ? "" : fmt::format(" (did you mean '{}'?)", near), known));
 }
 
 }  // namespace tumble::scenarios

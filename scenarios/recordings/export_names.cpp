@@ -10,22 +10,19 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Names that bags (bag.hpp) and the truth of a CSV export use for other purposes.
 const std::set<std::string>& own_names() {
   static const std::set<std::string> names = {"body", "clock", "tf", "tf_static", "truth", "world"};
   return names;
 }
 
-/// Frames that readers of bags, including our own, do not treat as sensors.
 const std::set<std::string>& frames_of_no_sensor() {
   static const std::set<std::string> names = {"base_link", "map", "odom"};
   return names;
 }
 
-/// Claim is the name that a sensor should have in an export.
 struct Claim {
   std::string sensor, name;
-  bool own;  ///< true: the recording's own name; false: a number in place of an invalid name
+  bool own;  ///< true: the recording's own name; false: a number replaces an invalid name
   std::string given = {};
 };
 
@@ -42,13 +39,11 @@ void add_claims(const std::vector<Record>& records, const std::string& kind, con
 
 std::string why_another(const Claim& claim) {
   const bool sensors = !own_names().contains(claim.name) && !frames_of_no_sensor().contains(claim.name);
-  return fmt::format(
-      "'{}' is {}, so {} is written as '{}'", claim.name,
-      sensors ? "also the name of another sensor" : "the name of a topic or frame that does not belong to a sensor",
-      claim.sensor, claim.given);
+  return fmt::format("name conflict in the export: '{}' is {}, so the sensor {} is exported as '{}'", claim.name,
+                     sensors ? "the name of another sensor" : "reserved for another topic or frame", claim.sensor,
+                     claim.given);
 }
 
-/// Assigns unique names to sensors, or to the sensors of a truth.
 template <class Recorded>
 ExportNames names_of(const Recorded& recorded) {
   std::vector<Claim> claims;

@@ -18,11 +18,10 @@ namespace {
 constexpr std::size_t kBytesRead = 16;
 
 constexpr std::pair<std::string_view, const char*> kFirstBytes[] = {
-    {"#ROSBAG V", "a ROS 1 bag"}, {"\x89MCAP0", "an MCAP file"}, {"SQLite format 3", "a ROS 2 bag or a database"}};
+    {"#ROSBAG V", "a ROS 1 bag"}, {"\x89MCAP0", "an MCAP file"}, {"SQLite format 3", "a ROS 2 bag (SQLite)"}};
 constexpr std::pair<std::string_view, const char*> kEndings[] = {
     {".csv", "a table"}, {".tum", "a trajectory"}, {".txt", "a text file"}, {".kitti", "a trajectory"}};
 
-/// Returns a description of the file type; null if the file may be an HDF5 file.
 const char* kind_of(const std::filesystem::path& path) {
   std::array<char, kBytesRead> bytes{};
   std::ifstream stream = open_regular_file(path);
@@ -40,7 +39,7 @@ const char* kind_of(const std::filesystem::path& path) {
 
 [[noreturn]] void refuse(const std::filesystem::path& path, const std::string& kind) {
   throw BadInput(
-      fmt::format("{}: this path is {}; it must be a recording (FILE.h5); 'tumble import {} -o FILE.h5' converts bags, "
+      fmt::format("{}: the path is {}, but must be a recording (FILE.h5); 'tumble import {} -o FILE.h5' converts bags, "
                   "sweeps and tables",
                   path.string(), kind, path.string()));
 }

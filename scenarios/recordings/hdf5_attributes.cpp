@@ -10,10 +10,10 @@ namespace tumble::scenarios::hdf5 {
 
 namespace {
 
-/// Limit far above the length of any valid text. Without a limit, a damaged length could request all memory.
+/// A damaged text length without a limit could exhaust the memory.
 constexpr std::size_t kLongestText = std::size_t{16} << 20;
 
-/// Returns the HDF5 type of a zero-padded UTF-8 text of `length` bytes. The HDF5 library rejects length 0.
+/// The HDF5 library rejects text types of length 0.
 Handle text_type(std::size_t length) {
   Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
   H5Tset_size(type.get(), std::max<std::size_t>(length, 1));
@@ -37,7 +37,6 @@ void Group::write_attribute(const std::string& name, const std::string& value) c
   const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
   const Handle attribute(H5Acreate2(group_.get(), name.c_str(), type.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT),
                          H5Aclose);
-  // c_str ends in a zero byte; an empty text needs this byte in HDF5.
   if (!attribute.valid() || H5Awrite(attribute.get(), type.get(), value.c_str()) < 0)
     fail(name, "cannot be written" + last_error());
 }
@@ -81,7 +80,7 @@ std::string Group::text_attribute(const std::string& name) const {
     return out;
   }
   std::string text(H5Tget_size(type.get()), '\0');
-  if (text.size() > kLongestText) fail(name, "the text is longer than 16 MiB, which is the maximum");
+  if (text.size() > kLongestText) fail(name, "the text of this HDF5 attribute is longer than the maximum of 16 MiB");
   if (H5Aread(attribute.get(), type.get(), text.data()) < 0)
     fail(name, fmt::format("the attribute cannot be read{}", last_error()));
   return until_zero(text.data(), text.size());
@@ -105,7 +104,7 @@ std::int64_t Group::int_attribute(const std::string& name) const {
   std::int64_t value = 0;
   if (H5Aread(attribute.get(), H5T_NATIVE_INT64, &value) < 0)
     fail(name, fmt::format("the attribute cannot be read{}", last_error()));
-  // HDF5 limits values that exceed the range of the type to its largest value.
+  // If a stored integer exceeds the range of int64, the HDF5 library returns the largest int64.
   if (!is_signed(type) && value == std::numeric_limits<std::int64_t>::max())
     fail(name, "the attribute is too large for a signed 64-bit integer");
   return value;
@@ -117,7 +116,7 @@ std::uint64_t Group::uint_attribute(const std::string& name) const {
   if (H5Tget_class(type.get()) != H5T_INTEGER) fail(name, "the attribute must be an integer");
   if (is_signed(type)) {
     const std::int64_t value = int_attribute(name);
-    if (value < 0) fail(name, "the attribute must be at least 0");
+    if (value < 0) fail(name, "the HDF5 attribute is negative, but must be at least 0");
     return static_cast<std::uint64_t>(value);
   }
   std::uint64_t value = 0;
@@ -155,7 +154,8 @@ std::vector<std::string> Group::read_texts(const std::string& name) const {
   H5Sget_simple_extent_dims(space.get(), &count, nullptr);
   std::vector<std::string> texts;
   if (H5Tis_variable_str(type.get()) > 0) {
-    if (count > kLongestText / sizeof(char*)) fail(name, "the attribute has more rows than can be read");
+    if (count > kLongestText / sizeof(char*))
+      fail(name, "the HDF5 dataset of texts has more than 2 million rows, which is the maximum");
     std::vector<char*> rows(count, nullptr);
     if (count > 0 && H5Dread(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, rows.data()) < 0) {
       fail(name, "cannot be read" + last_error());
@@ -165,7 +165,8 @@ std::vector<std::string> Group::read_texts(const std::string& name) const {
     return texts;
   }
   const std::size_t length = H5Tget_size(type.get());
-  if (length == 0 || count > kLongestText / length) fail(name, "the text is longer than 16 MiB, which is the maximum");
+  if (length == 0 || count > kLongestText / length)
+    fail(name, "the texts of this HDF5 dataset are longer than the maximum of 16 MiB");
   std::vector<char> block(length * count);
   if (count > 0 && H5Dread(dataset.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, block.data()) < 0) {
     fail(name, "cannot be read" + last_error());

@@ -10,8 +10,8 @@ namespace tumble::scenarios::hdf5 {
 
 namespace {
 
-/// Deflate reduces the size by at most a factor of 1032. A dataset with a higher ratio was not written completely, and
-/// HDF5 would return zeros for the missing part.
+/// Deflate compresses by at most a factor of 1032. A dataset with a higher ratio is incomplete, and HDF5 would return
+/// zeros for the missing part.
 constexpr std::uint64_t kBestDeflation = 1100;
 
 const char* name_of(Scalar scalar) {
@@ -24,7 +24,6 @@ std::size_t size_of(Scalar scalar) {
   return H5Tget_size(memory_type(scalar));
 }
 
-/// Returns true if two number types have the same kind, width and sign. HDF5 converts the byte order.
 bool matches(hid_t type, Scalar scalar) {
   const hid_t wanted = memory_type(scalar);
   const H5T_class_t kind = H5Tget_class(wanted);
@@ -48,7 +47,6 @@ Handle space_of(std::size_t rows, std::size_t columns) {
   return Handle(H5Screate_simple(columns == 1 ? 1 : 2, extent.data(), nullptr), H5Sclose);
 }
 
-/// Selects `rows` rows of a dataset in the file, starting at row `first`.
 Handle segment_of(const Handle& dataset, std::size_t first, std::size_t rows, std::size_t columns) {
   Handle space(H5Dget_space(dataset.get()), H5Sclose);
   const std::array<hsize_t, 2> start = {first, 0}, count = {rows, columns};
@@ -93,7 +91,6 @@ Handle Group::create_rows(const std::string& name, std::size_t rows, std::size_t
 
 void Group::describe_rows(Handle dataset, const std::string& name, const std::string& unit,
                           const std::string& column_names) const {
-  // A dataset has attributes like a group, so Group writes them.
   const Group object(std::move(dataset), file_, place_ + "/" + name);
   object.write_attribute("unit", unit);
   if (!column_names.empty()) object.write_attribute("columns", column_names);
@@ -147,7 +144,9 @@ std::size_t Group::count_rows(const Handle& dataset, const std::string& name, st
   const std::uint64_t row_bytes = columns * size_of(scalar);
   const std::uint64_t most_rows = H5Dget_storage_size(dataset.get()) * kBestDeflation / row_bytes;
   if (extent[0] > most_rows) {
-    fail(name, fmt::format("the dataset states {} rows, but the file is shorter", extent[0]));
+    fail(name,
+         fmt::format("the HDF5 dataset states {} rows, which is more than the file contains; the file may be truncated",
+                     extent[0]));
   }
   return extent[0];
 }

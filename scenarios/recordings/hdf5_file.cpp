@@ -23,7 +23,7 @@ namespace {
 constexpr std::size_t kSuperblockBytes = 48;
 
 Handle open_file(const std::filesystem::path& path) {
-  require_recording_file(path);  // reports a missing permission, which HDF5 reports as damage
+  require_recording_file(path);  // HDF5 would report a missing permission as damage
   require_survivable(path);
   Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   if (file.valid()) return file;
@@ -33,8 +33,8 @@ Handle open_file(const std::filesystem::path& path) {
   throw BadInput(fmt::format("{}: the file is truncated, damaged or not an HDF5 file{}", path.string(), reason));
 }
 
-/// When the file closes, this callback keeps the memory of the HDF5 driver. Only then is the superblock complete:
-/// before closing, H5Fget_file_image of HDF5 1.10 returns an old checksum.
+/// This callback keeps the memory of the HDF5 driver when the file closes. Before closing, H5Fget_file_image of HDF5
+/// 1.10 returns an outdated superblock checksum.
 H5FD_file_image_callbacks_t keep_image_in(void** user) {
   H5FD_file_image_callbacks_t calls{};
   calls.image_malloc = [](std::size_t size, H5FD_file_image_op_t, void*) { return std::malloc(size); };
@@ -58,17 +58,14 @@ H5FD_file_image_callbacks_t keep_image_in(void** user) {
   return calls;
 }
 
-/// Returns the file length in the superblock (format specification, superblock version 3: byte 28); the memory of the
-/// driver is longer.
+/// Superblock version 3 of the HDF5 format stores the file length at byte 28; the memory of the driver is longer.
 std::uint64_t stated_length(const void* image) {
   std::uint64_t length = 0;
   std::memcpy(&length, static_cast<const char*>(image) + 28, sizeof(length));
   return length;
 }
 
-/// Creates an HDF5 file `label` with the driver in `access`. Error messages contain `name`.
 Handle create_file(const std::string& name, const std::string& label, const Handle& access) {
-  // The file format of HDF5 1.10 has checksums on all metadata, which detect flipped bits.
   if (H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG) < 0 ||
       H5Pset_libver_bounds(access.get(), H5F_LIBVER_V110, H5F_LIBVER_V110) < 0) {
     throw BadInput(fmt::format("{}: the file cannot be prepared for writing{}", name, last_error()));
@@ -87,7 +84,7 @@ Handle create_in_memory(const std::string& name, void** image) {
   if (H5Pset_fapl_core(access.get(), kGrowth, false) < 0 || H5Pset_file_image_callbacks(access.get(), &calls) < 0) {
     throw BadInput(fmt::format("{}: the file cannot be prepared for writing{}", name, last_error()));
   }
-  // `label` must be no existing file, because HDF5 would read that file into memory.
+  // The label must not name an existing file, because HDF5 would read that file into memory.
   return create_file(name, name + " in memory", access);
 }
 
@@ -96,7 +93,6 @@ Handle create_on_disk(const std::string& name, const std::filesystem::path& path
   if (H5Pset_fapl_sec2(access.get()) < 0)
     throw BadInput(fmt::format("{}: the file cannot be prepared for writing{}", name, last_error()));
   Handle file = create_file(name, path.string(), access);
-  // Creating the file truncates it, so disk space is reserved afterwards.
   void* descriptor = nullptr;
   if (H5Fget_vfd_handle(file.get(), H5P_DEFAULT, &descriptor) < 0)
     throw BadInput(fmt::format("{}: the file cannot be prepared for writing{}", name, last_error()));
@@ -138,8 +134,7 @@ Handle::~Handle() {
 }
 
 Silence::Silence() {
-  // After reading some damaged files, the cleanup of HDF5 at exit fails and prints messages. The cleanup is
-  // unnecessary, because the handles close all files.
+  // After reading some damaged files, the cleanup of the HDF5 library at exit fails and prints messages.
   static const herr_t once = H5dont_atexit();
   (void)once;
   H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
@@ -198,7 +193,8 @@ MemoryFile::~MemoryFile() {
 std::span<const std::byte> MemoryFile::close() {
   root_ = Group();
   file_ = Handle();
-  if (image_ == nullptr) throw BadInput(fmt::format("{}: the file cannot be assembled in memory", name_));
+  if (image_ == nullptr)
+    throw BadInput(fmt::format("{}: the HDF5 library failed to assemble the file in memory", name_));
   return {static_cast<const std::byte*>(image_), stated_length(image_)};
 }
 
@@ -216,12 +212,13 @@ void DiskFile::close() {
   std::array<char, kSuperblockBytes> head{};
   std::error_code error;
   if (!std::ifstream(path_, std::ios::binary).read(head.data(), head.size()))
-    throw BadInput(fmt::format("{}: the file cannot be assembled in memory", name_));
+    throw BadInput(fmt::format("{}: the written HDF5 file cannot be read back", name_));
   std::filesystem::resize_file(path_, stated_length(head.data()), error);
   if (error) throw BadInput(name_ + ": cannot be written: " + error.message());
-  // If closing fails midway, HDF5 reports no error, but the length in the superblock differs from the file length.
+  // If closing the file fails midway, HDF5 reports no error, but the length in the superblock differs from the file
+  // length.
   if (!Handle(H5Fopen(path_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose).valid())
-    throw BadInput(fmt::format("{}: the file cannot be assembled in memory{}", name_, last_error()));
+    throw BadInput(fmt::format("{}: the HDF5 library cannot open the file that it wrote{}", name_, last_error()));
 }
 
 }  // namespace tumble::scenarios::hdf5

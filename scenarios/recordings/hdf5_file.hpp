@@ -10,13 +10,10 @@
 #include "scenarios/recordings/hdf5_group.hpp"
 #include "scenarios/recordings/hdf5_layout.hpp"
 
-/// hdf5_file.hpp opens and writes HDF5 files. Every error is a BadInput with the message "FILE: PLACE: what".
 namespace tumble::scenarios::hdf5 {
 
-/// InputFile is an HDF5 file that is open for reading.
 class InputFile {
  public:
-  /// Throws BadInput if the file is missing, truncated, or not an HDF5 file.
   explicit InputFile(const std::filesystem::path& path);
   const Group& root() const { return root_; }
 
@@ -26,19 +23,16 @@ class InputFile {
   Group root_;
 };
 
-/// MemoryFile is an HDF5 file that is created in memory: the HDF5 library cannot recover from a failed close, so it
-/// must never write to a full disk.
+/// MemoryFile creates an HDF5 file in memory, because the HDF5 library cannot recover from a write to a full disk.
 class MemoryFile {
  public:
-  /// Creates an HDF5 file in memory. Error messages start with `name`.
   explicit MemoryFile(const std::string& name);
   ~MemoryFile();
   MemoryFile(const MemoryFile&) = delete;
   MemoryFile& operator=(const MemoryFile&) = delete;
 
   const Group& root() const { return root_; }
-  /// Closes the file and all HDF5 objects, and returns the bytes of the file, which are valid until MemoryFile is
-  /// destroyed.
+  /// Closes all HDF5 objects and returns the bytes of the file, which are valid until MemoryFile is destroyed.
   std::span<const std::byte> close();
 
  private:
@@ -49,19 +43,16 @@ class MemoryFile {
   Group root_;
 };
 
-/// DiskFile is an HDF5 file that replaces an empty file on disk. DiskFile reserves the maximum disk space first, so
-/// that the HDF5 library never writes to a full disk.
+/// DiskFile reserves the maximum disk space first, because the HDF5 library cannot recover from a write to a full disk.
 class DiskFile {
  public:
-  /// Creates an HDF5 file at `path` and reserves `most_bytes` bytes. Error messages start with `name`. Throws BadInput
-  /// if disk space is missing.
+  /// Throws BadInput if disk space is missing.
   DiskFile(const std::string& name, const std::filesystem::path& path, std::uint64_t most_bytes);
   ~DiskFile();
   DiskFile(const DiskFile&) = delete;
   DiskFile& operator=(const DiskFile&) = delete;
 
   const Group& root() const { return root_; }
-  /// Closes the file and all HDF5 objects, and releases unused disk space.
   void close();
 
  private:

@@ -12,11 +12,9 @@
 #include "scenarios/recordings/hdf5_layout.hpp"
 #include "scenarios/recordings/scratch_file.hpp"
 
-/// Group reads and writes the content of an HDF5 file. Every error is a BadInput with the message "FILE: PLACE: what";
-/// the HDF5 library prints nothing.
+/// Every error of Group is a BadInput with the message "FILE: PLACE: what". The HDF5 library prints nothing.
 namespace tumble::scenarios::hdf5 {
 
-/// Group is a group of an open HDF5 file with its attributes and datasets.
 class Group {
  public:
   Group() = default;
@@ -39,15 +37,13 @@ class Group {
   std::int64_t int_attribute(const std::string& name) const;
   std::uint64_t uint_attribute(const std::string& name) const;
 
-  /// Writes a dataset of `rows.size()` rows, one-dimensional if a row has one column. `compressed` applies the filters
-  /// shuffle and deflate.
+  /// Writes a one-dimensional dataset if a row has one column. `compressed` applies the filters shuffle and deflate.
   template <class Row>
   void write(const std::string& name, const std::vector<Row>& rows, const std::string& unit, const std::string& columns,
              bool compressed) const {
     write_rows(name, rows.data(), rows.size(), RowLayout<Row>::columns, RowLayout<Row>::scalar, unit, columns,
                compressed);
   }
-  /// Writes rows from a scratch file, chunk by chunk.
   template <class Row>
   void write(const std::string& name, const ColumnFile<Row>& rows, const std::string& unit, const std::string& columns,
              bool compressed) const {
@@ -58,14 +54,14 @@ class Group {
     });
     describe_rows(std::move(dataset), name, unit, columns);
   }
-  /// Reads a dataset, which must have this scalar type and number of columns.
+  /// Throws BadInput if the dataset has another scalar type or number of columns.
   template <class Row>
   void read(const std::string& name, std::vector<Row>& rows) const {
     const Handle dataset = open_dataset(name);
     rows.resize(count_rows(dataset, name, RowLayout<Row>::columns, RowLayout<Row>::scalar));
     read_rows(dataset, name, rows.data(), rows.size(), RowLayout<Row>::scalar);
   }
-  /// Reads a dataset into a scratch file, chunk by chunk. `rows` must be empty and have a folder.
+  /// The column `rows` must be empty and have a folder for its scratch file.
   template <class Row>
   void read(const std::string& name, ColumnFile<Row>& rows) const {
     const Handle dataset = open_dataset(name);

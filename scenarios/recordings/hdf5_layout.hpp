@@ -11,10 +11,8 @@
 #include <string>
 #include <utility>
 
-/// hdf5_layout.hpp contains RAII handles of the HDF5 C library, and the memory layout of rows.
 namespace tumble::scenarios::hdf5 {
 
-/// Handle owns an identifier of the HDF5 library, and closes it with the function for its type.
 class Handle {
  public:
   using Close = herr_t (*)(hid_t);
@@ -46,7 +44,6 @@ class Silence {
 
 enum class Scalar : std::uint8_t { float64, float32, int64, int32, uint64, uint32, uint16, uint8 };
 
-/// RowLayout describes the memory of a row of a std::vector: `columns` scalars without padding.
 template <class Row>
 struct RowLayout;
 template <Scalar kScalarOfRow, std::size_t kColumns>
@@ -80,16 +77,13 @@ template <>
 struct RowLayout<Eigen::Quaterniond> : Layout<Scalar::float64, 4> {};
 static_assert(sizeof(Eigen::Vector3d) == 24 && sizeof(Eigen::Vector3f) == 12 && sizeof(Eigen::Quaterniond) == 32);
 
-/// Chunk size of a compressed dataset in bytes.
 inline constexpr std::size_t kChunkBytes = std::size_t{1} << 20;
 constexpr std::size_t rows_in_chunk(std::size_t row_bytes) {
   return std::max<std::size_t>(kChunkBytes / row_bytes, 1);
 }
 
-/// Returns the HDF5 type for a scalar type in memory.
 hid_t memory_type(Scalar scalar);
 
-/// Returns " (reason)" for the last error of the HDF5 library; empty if the reason is unknown.
 std::string last_error();
 
 }  // namespace tumble::scenarios::hdf5

@@ -10,14 +10,12 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr std::size_t kNoIndex = ~std::size_t{0};
-/// Fewer time stamps do not determine the duration of a recording.
+/// Fewer than ten time stamps do not determine the duration of a recording.
 constexpr std::size_t kLeastForEnds = 10;
-/// If a few stamps are separated from the others by a shorter gap, they belong to the recording. A longer gap means
-/// that the clock was set.
+/// A gap of more than a day between a few stamps and the others indicates that the clock was set.
 constexpr std::uint64_t kClockSet_ns = 86'400'000'000'000;
 
-/// Returns the indices of a longest increasing subsequence of the stamps (Fredman 1975). The search starts at the end,
-/// so it prefers early stamps.
+/// Returns the indices of a longest increasing subsequence of the stamps (Fredman 1975).
 std::vector<std::size_t> longest_increasing(std::span<const std::int64_t> stamps_ns) {
   std::vector<std::size_t> first_of_length, after(stamps_ns.size(), kNoIndex);
   for (std::size_t k = stamps_ns.size(); k-- > 0;) {
@@ -36,11 +34,10 @@ std::vector<std::size_t> longest_increasing(std::span<const std::int64_t> stamps
   return indices;
 }
 
-/// Drops a few indices at the start or the end if the gap to the other stamps exceeds the duration of the others.
 void drop_far_ends(std::span<const std::int64_t> stamps_ns, std::vector<std::size_t>& indices) {
   const std::size_t all = indices.size();
   if (all < kLeastForEnds) return;
-  // The difference may exceed int64, so it is unsigned.
+  // The difference of two int64 may exceed int64.
   const auto duration = [&](std::size_t from, std::size_t to) {
     return static_cast<std::uint64_t>(stamps_ns[indices[to]]) - static_cast<std::uint64_t>(stamps_ns[indices[from]]);
   };
@@ -84,14 +81,13 @@ void LeftOut::add_unlimited(const std::string& cause, const std::string& error) 
 void LeftOut::require_few(std::size_t kept) const {
   const std::size_t all = kept + count();
   if (faulty_ == 0 || may_leave_out(faulty_, all)) return;
-  throw BadInput(fmt::format("{} ({} of {} {} are faulty; the import leaves out at most {:g} %)", first_error_, faulty_,
-                             all, items_, 100.0 * kLeftOutShareMax));
+  throw BadInput(fmt::format("{} ({} of {} {} are faulty; the import leaves out at most {:g} % of a sensor's data)",
+                             first_error_, faulty_, all, items_, 100.0 * kLeftOutShareMax));
 }
 
 std::string LeftOut::note(std::size_t kept) const {
   if (count() == 0) return "";
-  std::string text =
-      fmt::format("caution: {} of {} {} {} left out:", count(), kept + count(), items_, count() == 1 ? "is" : "are");
+  std::string text = fmt::format("caution: the import leaves out {} of {} {}:", count(), kept + count(), items_);
   const char* separator = " ";
   for (const Cause& each : causes_) {
     text += fmt::format("{}{} with {} (first: {})", separator, each.count, each.name, each.first);

@@ -8,7 +8,6 @@
 
 namespace tumble::scenarios {
 
-/// Returns the extension of a file name in lower case, with its dot.
 inline std::string lower_extension(const std::filesystem::path& file) {
   std::string out = file.extension().string();
   std::transform(out.begin(), out.end(), out.begin(), [](unsigned char c) { return std::tolower(c); });

@@ -12,7 +12,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Removes the blanks around a number and its plus sign.
 std::string_view bare_number(std::string_view text) {
   while (text.starts_with(' ') || text.starts_with('\t')) text.remove_prefix(1);
   while (text.ends_with(' ') || text.ends_with('\t') || text.ends_with('\r')) text.remove_suffix(1);
@@ -24,8 +23,7 @@ bool all_digits(std::string_view text) {
   return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
 }
 
-/// Splits a decimal number such as "1.5e3" into its digits "15" and the power of ten of the last digit, 2. Returns
-/// false if the text is not a decimal number.
+/// Splits "1.5e3" into the digits "15" and the power of ten of the last digit, 2.
 bool split_decimal(std::string_view text, std::string& digits, int& power) {
   constexpr int kPowerMax = 400;
   power = 0;
@@ -42,7 +40,6 @@ bool split_decimal(std::string_view text, std::string& digits, int& power) {
   return all_digits(digits);
 }
 
-/// Parses a date such as "2011-09-26 13:02:25.964389445", with a blank or T between date and time.
 std::optional<std::int64_t> date_ns(std::string_view text) {
   constexpr std::size_t kSecond = 17;
   constexpr int kHours = 24, kMinutes = 60;
@@ -79,7 +76,7 @@ std::optional<std::int64_t> parse_time_ns(std::string_view text, int decimals) {
   int power = 0;
   if (!split_decimal(text, digits, power)) return std::nullopt;
   power += decimals;
-  digits.erase(0, digits.find_first_not_of('0'));  // "0.000" has no other digits
+  digits.erase(0, digits.find_first_not_of('0'));
   constexpr int kDigitsMax = 19;
   if (digits.empty()) return 0;
   const int whole_digits = static_cast<int>(digits.size()) + power;

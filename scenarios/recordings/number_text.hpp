@@ -11,17 +11,15 @@
 
 namespace tumble::scenarios {
 
-/// Parses a number of a text file: decimal or scientific notation, optional sign, surrounding blanks, nan and inf.
-/// Returns false for another text. All readers of text tables use this function.
+/// Accepts decimal or scientific notation, an optional sign, surrounding blanks, nan and inf.
 bool parse_number(std::string_view text, double& value);
 
-/// Parses a time in the notation of parse_number, and converts it to nanoseconds by moving the decimal point by
-/// `decimals`: 9 for s, 6 for ms, 3 for us, 0 for ns. The result is exact, apart from rounding to whole nanoseconds.
-/// Returns nothing for an invalid text, or a time after the year 2255.
+/// Converts a decimal time to nanoseconds exactly, by moving the decimal point by `decimals`: 9 for s, 6 for ms, 3 for
+/// us, 0 for ns. Returns nothing for an invalid text, or a time after the year 2255.
 std::optional<std::int64_t> parse_time_ns(std::string_view text, int decimals);
 
-/// Parses a time stamp since 1970: decimal seconds, an integer of 13, 16 or 19 digits (ms, us, ns), or a date in UTC
-/// ("2011-09-26 13:02:25.964389445"). Returns nothing for another text.
+/// Parses a stamp since 1970: decimal seconds, an integer of 13, 16 or 19 digits (ms, us, ns), or a date in UTC
+/// ("2011-09-26 13:02:25.964389445").
 std::optional<std::int64_t> parse_stamp_ns(std::string_view text);
 
 /// Appends the shortest text that parses to the same number.
@@ -32,14 +30,13 @@ void append_number(std::string& text, Number value) {
   text.append(digits.data(), end);
 }
 
-/// Returns the value with three significant digits, for messages.
 inline std::string rounded(double value) {
   std::array<char, 32> text{};
   std::snprintf(text.data(), text.size(), "%.3g", value);
   return text.data();
 }
 
-/// Appends a time in nanoseconds as seconds with nine decimals, exactly.
+/// Appends the time exactly, as seconds with nine decimals.
 inline void append_seconds(std::string& text, std::int64_t time_ns) {
   const std::uint64_t size =
       time_ns < 0 ? 0 - static_cast<std::uint64_t>(time_ns) : static_cast<std::uint64_t>(time_ns);

@@ -28,7 +28,6 @@ std::vector<Row> segment(const ColumnFile<Row>& rows, std::size_t first, std::si
   return rows.rows(first, last);
 }
 
-/// `points` is a PointStore (points on disk), or the lidar record if its points are in memory.
 template <class Points>
 void take_points(const Points& points, std::size_t first, std::size_t last, sim::LidarRecord& out) {
   out.position_L_m = segment(points.position_L_m, first, last);

@@ -13,10 +13,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// RecordingReader visits every field of a recording and reads it from an HDF5 group.
 class RecordingReader {
  public:
-  /// `scratch` is the folder for columns that are stored on disk.
   explicit RecordingReader(hdf5::Group group, std::filesystem::path scratch = {})
       : group_(std::move(group)), scratch_(std::move(scratch)) {}
 
@@ -62,7 +60,10 @@ class RecordingReader {
     const std::string word = group_.text_attribute(name);
     const auto* found = std::find(kPointTimes.begin(), kPointTimes.end(), word);
     if (found == kPointTimes.end())
-      group_.fail(name, fmt::format("the attribute is '{}'; it must be measured, not_skewed or unknown", word));
+      group_.fail(
+          name,
+          fmt::format("the attribute for the kind of point times is '{}'; it must be measured, not_skewed or unknown",
+                      word));
     given = static_cast<sim::PointTimes>(found - kPointTimes.begin());
   }
   void texts(const char* name, std::vector<std::string>& texts) { texts = group_.read_texts(name); }
@@ -85,7 +86,7 @@ class RecordingReader {
     if (group_.has(name)) list(name, records, fields);
   }
 
-  /// Files of other programs may lack the digest.
+  /// Recordings written by other programs may lack the digest.
   std::string digest_or_empty() const { return group_.has_attribute("digest") ? group_.text_attribute("digest") : ""; }
 
  private:
@@ -93,13 +94,12 @@ class RecordingReader {
   std::filesystem::path scratch_;
 };
 
-/// `Columns` is ContactColumns or StoredContacts.
 template <class Columns>
 void require_one_length(const Columns& columns, const std::string& file) {
   for (const std::size_t other : {columns.point_W_m.size(), columns.normal_W.size(), columns.slip_velocity_W_m_s.size(),
                                   columns.normal_force_n.size(), columns.surface_id.size()}) {
     if (other != columns.time_ns.size())
-      throw BadInput(fmt::format("{}: truth/contacts: the datasets must have the same length", file));
+      throw BadInput(fmt::format("{}: truth/contacts: all datasets of the contacts must have the same length", file));
   }
 }
 
@@ -116,14 +116,16 @@ std::vector<sim::ContactTruth> from_columns(const ContactColumns& columns, const
 
 void require_format(const hdf5::Group& root) {
   if (!root.has_attribute("format") || root.text_attribute("format") != kRecordingFormat) {
-    root.fail("format", fmt::format("the file is not a recording of this program: the attribute must be '{}'. For an "
-                                    "HDF5 file of BROAD, call tumble.read_broad and tumble.write of the Python package",
-                                    kRecordingFormat));
+    root.fail("format",
+              fmt::format("the file is not a recording of tumble: the attribute 'format' must be '{}'. For an "
+                          "HDF5 file of BROAD, call tumble.read_broad and tumble.write of the Python package",
+                          kRecordingFormat));
   }
   const std::int64_t version = root.int_attribute("format_version");
   if (version != kRecordingVersion) {
     root.fail("format_version",
-              fmt::format("the version is {}; this build reads version {}", version, kRecordingVersion));
+              fmt::format("the version of the recording format is {}; this build of tumble reads only version {}",
+                          version, kRecordingVersion));
   }
 }
 

@@ -17,7 +17,7 @@ namespace {
 
 using Lengths = std::initializer_list<std::pair<const char*, std::size_t>>;
 
-/// Accepts rotations and quaternions with few digits, but rejects a wrong order of components.
+/// This tolerance accepts rotations with few digits, but rejects a wrong order of quaternion components.
 constexpr double kUnitTolerance = 1e-6;
 constexpr std::int64_t kTimeMax_ns = 100'000'000'000'000'000;
 
@@ -25,7 +25,6 @@ std::string in(const std::string& place, const std::string& problem) {
   return problem.empty() ? "" : place + ": " + problem;
 }
 
-/// Describes an array whose length differs from that of the first array; empty if all lengths are equal.
 std::string length_problem(const Lengths& lengths) {
   const auto& [first_name, first] = *lengths.begin();
   for (const auto& [name, length] : lengths) {
@@ -58,13 +57,12 @@ std::string first_of(std::initializer_list<std::string> problems) {
   return found == problems.end() ? "" : *found;
 }
 
-/// Checks the length of an array that may be empty if the sensor lacks the data.
 std::string optional_length_problem(const char* name, std::size_t length, std::size_t needed) {
   if (length == 0 || length == needed) return "";
   return fmt::format("{} has {} rows; it must have {} or none", name, length, needed);
 }
 
-/// Names appear in tables, so they must be UTF-8 text without control characters.
+/// Names appear in tables, so names must be UTF-8 text without control characters.
 std::string text_problem(const char* name, const std::string& text) {
   std::size_t following = 0;
   for (const unsigned char c : text) {
@@ -77,8 +75,8 @@ std::string text_problem(const char* name, const std::string& text) {
   return following == 0 ? "" : fmt::format("{} must be UTF-8 text without control characters", name);
 }
 
-/// Checks that times count from the start of the recording. Times beyond three years belong to another clock, and their
-/// differences can overflow.
+/// Times beyond three years from the start of the recording belong to another clock, and their differences can
+/// overflow.
 std::string times_problem(const char* name, const std::vector<std::int64_t>& times_ns) {
   const auto far = [](std::int64_t t) { return t > kTimeMax_ns || t < -kTimeMax_ns; };
   const auto found = std::find_if(times_ns.begin(), times_ns.end(), far);
@@ -120,7 +118,6 @@ std::string sweep_problem(const sim::LidarRecord& lidar, std::size_t points) {
   return "";
 }
 
-/// Returns the first problem that `judge(row, index)` finds; empty without a problem.
 template <class Row, class Judge>
 std::string first_wrong(std::span<const Row> rows, const Judge& judge, std::size_t first = 0) {
   std::string problem;
@@ -151,11 +148,11 @@ std::string offset_problem(const Offsets& offsets) {
 
 template <class Offsets>
 std::string point_times_problem(const sim::LidarRecord& lidar, const Offsets& offsets) {
-  if (lidar.point_times > sim::PointTimes::unknown) return "point_times is not one of measured, not_skewed, unknown";
+  if (lidar.point_times > sim::PointTimes::unknown)
+    return "the field point_times must be measured, not_skewed or unknown";
   return lidar.point_times == sim::PointTimes::measured ? "" : offset_problem(offsets);
 }
 
-/// `points` is the lidar record if its points are in memory, or the PointStore with its points on disk.
 template <class Points>
 std::string lidar_problem(const sim::LidarRecord& lidar, const Points& points) {
   return first_of({text_problem("name", lidar.name), text_problem("device", lidar.device),
@@ -169,14 +166,12 @@ std::string lidar_problem(const sim::LidarRecord& lidar, const Points& points) {
                    sweep_problem(lidar, points.position_L_m.size()), point_times_problem(lidar, points.offset_ns)});
 }
 
-/// Checks that a column name consists of letters, digits and _.
 std::string column_problem(const std::string& name) {
   const auto plain = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
   if (!name.empty() && std::all_of(name.begin(), name.end(), plain)) return "";
   return "the name must consist of letters, digits and _, and must not be empty";
 }
 
-/// Checks that a sensor's quantities or constants have unique, valid names.
 template <class Record>
 std::string names_problem(const std::string& list, const std::vector<Record>& records) {
   std::set<std::string> names;
@@ -184,12 +179,12 @@ std::string names_problem(const std::string& list, const std::vector<Record>& re
   for (std::size_t i = 0; i < records.size() && problem.empty(); ++i) {
     const std::string& name = records[i].name;
     problem = in(list + "/" + std::to_string(i),
-                 first_of({column_problem(name), names.insert(name).second ? "" : "the name is used twice"}));
+                 first_of({column_problem(name),
+                           names.insert(name).second ? "" : "two entries of the list have the same name"}));
   }
   return problem;
 }
 
-/// Checks the quantities of a sensor's readings, or of their truth.
 template <class Quantity>
 std::string quantities_problem(const std::vector<Quantity>& quantities) {
   std::string problem = names_problem("quantities", quantities);
@@ -205,7 +200,7 @@ std::string series_problem(const sim::SeriesRecord& series) {
                                   quantities_problem(series.quantities), names_problem("constants", series.constants)});
   for (std::size_t i = 0; i < series.constants.size() && problem.empty(); ++i) {
     if (!std::isfinite(series.constants[i].value))
-      problem = in("constants/" + std::to_string(i), "the value is not finite");
+      problem = in("constants/" + std::to_string(i), "the value of this constant is not finite");
   }
   for (std::size_t i = 0; i < series.quantities.size() && problem.empty(); ++i) {
     const sim::Quantity& quantity = series.quantities[i];
@@ -221,7 +216,6 @@ std::string series_truth_problem(const sim::SeriesTruth& series) {
       {text_problem("name", series.name), pose_problem("T_BX", series.T_BX), quantities_problem(series.quantities)});
 }
 
-/// Describes how the columns of a sensor's readings differ from the columns of their truth.
 std::string series_mismatch(const sim::SeriesRecord& series, const sim::SeriesTruth& truth) {
   if (truth.quantities.empty()) return "";  // the truth of a reference instrument has no quantities
   if (truth.quantities.size() != series.quantities.size())
@@ -234,7 +228,6 @@ std::string series_mismatch(const sim::SeriesRecord& series, const sim::SeriesTr
   return problem;
 }
 
-/// `imu` is a sim::ImuTruth, or an IMU truth on disk; the other functions also accept both.
 template <class Imu>
 std::string imu_truth_problem(const Imu& imu) {
   return first_of(
@@ -254,7 +247,7 @@ std::string imu_truth_problem(const Imu& imu) {
 }
 
 std::string surface_problem(std::int32_t id, std::size_t surfaces) {
-  // -1 is an unknown surface, -2 is the robot's cage.
+  // Surface -1 is unknown; surface -2 is the robot's cage.
   if (id >= -2 && id < static_cast<std::int64_t>(surfaces)) return "";
   return fmt::format("surface_id {} has no name, because 'surfaces' has only {} names", id, surfaces);
 }
@@ -267,7 +260,6 @@ std::string lidar_truth_problem(const Lidar& lidar, std::size_t surfaces) {
        first_wrong(lidar.surface_id, [&](std::int32_t id, std::size_t) { return surface_problem(id, surfaces); })});
 }
 
-/// RisingTimes checks that times do not decrease.
 class RisingTimes {
  public:
   std::string operator()(std::int64_t time_ns, std::size_t) {
@@ -301,7 +293,7 @@ std::string contacts_problem(const StoredContacts& contacts, std::size_t surface
 }
 
 std::string attitude_problem(const Eigen::Quaterniond& q_WB, std::size_t) {
-  const bool unknown = q_WB.coeffs().array().isNaN().all();  // time without a measurement of the reference
+  const bool unknown = q_WB.coeffs().array().isNaN().all();  // the reference has no pose at this time
   if (unknown || std::abs(q_WB.squaredNorm() - 1.0) <= kUnitTolerance) return "";
   return "the quaternion q_WB must have norm 1";
 }
@@ -382,7 +374,6 @@ std::string find_mismatch(const sim::Sensors& sensors, const sim::Truth& truth) 
                                              imu.magnetic_field_t.size())}));
   }
   for (std::size_t i = 0; i < truth.lidars.size() && problem.empty(); ++i) {
-    // find_problem has checked that the last entry of sweep_first is the number of points.
     const std::vector<std::uint64_t>& first = sensors.lidars[i].sweep_first;
     problem = in("lidars/" + std::to_string(i),
                  optional_length_problem("truth hit_W_m", truth.lidars[i].hit_W_m.size(),

@@ -11,19 +11,16 @@
 
 namespace tumble::scenarios {
 
-/// Describes an inconsistency of a recording, for example "sensors/imus/0: gyro has 5 rows, time_ns 6"; empty if the
-/// recording is consistent. Checks lengths, periods, calibrations (rotations), sweep order, labels and surface ids.
-/// Readings are not checked, because the estimator reports NaN, gaps and wrong time order. `points` has one PointStore
-/// per lidar if the points are on disk, and is otherwise empty.
+/// Describes the first inconsistency in lengths, periods, calibrations (rotations), sweep order, labels or surface ids;
+/// empty for a consistent recording. Readings are not checked, because the estimator reports NaN, gaps and wrong time
+/// order. `points` has one PointStore per lidar if the points are on disk.
 std::string find_problem(const sim::Sensors& sensors, const std::vector<PointStore>& points = {});
 std::string find_problem(const sim::Truth& truth);
 std::string find_problem(const StoredTruth& truth);
 
-/// Returns true if a file contains a digest of its sensor data, by which the reader detects damage. Files of other
-/// programs may lack it. Throws BadInput like the readers in recording_file.hpp.
+/// Returns true if the file contains a digest of its sensor data, by which the reader detects damage.
 bool states_digest(const std::filesystem::path& path);
 
-/// Describes how the structure of the truth differs from that of the sensors; empty if they match.
 std::string find_mismatch(const sim::Sensors& sensors, const sim::Truth& truth);
 
 }  // namespace tumble::scenarios

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <limits>
 
 #include "scenarios/errors.hpp"
@@ -14,7 +13,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// If the zero of a clock is less than this before the first stamp, the clock started with the recording.
+/// A clock whose zero is less than a second before the first stamp started with the recording.
 constexpr std::int64_t kOwnZero_ns = 1000000000;
 
 void shift(sim::Sensors& sensors, std::int64_t by_ns) {
@@ -48,7 +47,7 @@ std::pair<std::int64_t, std::int64_t> span_of(const sim::Sensors& sensors) {
     first = std::min(first, series.time_ns.front());
     last = std::max(last, series.time_ns.back());
   }
-  if (first > last) throw BadInput("the recording has no readings");
+  if (first > last) throw BadInput("the recording contains no readings of any sensor");
   return {first, last};
 }
 
@@ -67,9 +66,9 @@ std::optional<std::int64_t> clock_shift_ns(const StampSpan& moved, const StampSp
 
 std::string clock_note(const std::string& what, std::int64_t shift_ns) {
   return fmt::format(
-      "the times of {} count from {}; {} s are {} these times, because exported recordings start at {} s", what,
-      shift_ns > 0 ? "zero" : "the start of exported recordings", std::abs(shift_ns) / kSecond_ns,
-      shift_ns > 0 ? "added to" : "subtracted from", kExportOrigin_ns / kSecond_ns);
+      "the time stamps of {} count from {} s; the import shifts them by {} s, because exported recordings start at {} "
+      "s",
+      what, shift_ns > 0 ? 0 : kExportOrigin_ns / kSecond_ns, shift_ns / kSecond_ns, kExportOrigin_ns / kSecond_ns);
 }
 
 void start_clock(Imported& recording) {

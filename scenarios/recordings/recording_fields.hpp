@@ -9,22 +9,20 @@
 #include "scenarios/recordings/point_store.hpp"
 #include "sim/recording.hpp"
 
-/// recording_fields.hpp lists all fields of a recording except the truth (truth_fields.hpp), with the names, units and
-/// columns of FORMAT.md. Writer, reader and digest visit the same list, so none of them can omit a field.
+/// Writer, reader and digest visit the same list of fields, so none of them can omit a field. Names, units and columns
+/// are those of FORMAT.md; truth_fields.hpp lists the truth.
 ///
 /// A visitor (archive) has the members value(name, text | double | int64), pose(name, isometry), point(name, vector,
 /// unit), rows(name, vector, unit, columns, storage), texts(name, strings), list(name, records, fields) and group(name,
 /// record, fields). The members optional_rows, optional_point, optional_list and point_times visit fields that later
-/// versions added. A later field is neither stored nor hashed if it is empty, zero or "measured", so older files keep
-/// their digests. Rows are a std::vector, or a ColumnFile if they are on disk.
+/// versions of the format added. Later fields are neither stored nor hashed while they are empty, zero or "measured",
+/// so older files keep their digests.
 namespace tumble::scenarios {
 
-/// Storage selects how rows are stored. Rows are compressed by deflate if measurements showed a smaller file; the
-/// noise-like floats of a lidar are not compressed (FORMAT.md).
+/// Rows are compressed by deflate if measurements showed a smaller file. The noise-like floats of a lidar are not
+/// compressed (FORMAT.md).
 enum class Storage { plain, deflated };
 
-/// StoredLidar is a lidar record with its points on disk, in the form that the lists of fields need. StoredLidarView
-/// contains const references.
 struct StoredLidar {
   sim::LidarRecord sweeps;
   PointStore points;
@@ -33,12 +31,10 @@ struct StoredLidarView {
   const sim::LidarRecord& sweeps;
   const PointStore& points;
 };
-/// Pairs each lidar record of `sensors` with its points on disk, in order.
 std::vector<StoredLidarView> views_of(const sim::Sensors& sensors, const std::vector<PointStore>& points);
 
 inline constexpr const char* kXyz = "x y z";
 
-/// Values of the attribute `point_times`, in the order of the enumeration.
 inline constexpr std::array<const char*, 3> kPointTimes = {"measured", "not_skewed", "unknown"};
 
 template <class Archive, class Imu>
@@ -79,7 +75,6 @@ void point_fields(Archive& archive, Points& points) {
   archive.rows("ring", points.ring, "1", "", Storage::deflated);
 }
 
-/// Visits the fields of a lidar's sweeps and points. The points are in `lidar.sweeps` or on disk in `lidar.points`.
 template <class Archive, class Lidar>
 void lidar_fields(Archive& archive, Lidar& lidar) {
   if constexpr (requires { lidar.sweeps; }) {
@@ -111,7 +106,6 @@ void series_fields(Archive& archive, Series& series) {
   });
 }
 
-/// Visits the fields of all sensors. `lidars` is sensors.lidars, or a list of views with points on disk.
 template <class Archive, class Sensors, class Lidars>
 void sensors_fields(Archive& archive, Sensors& sensors, Lidars& lidars) {
   archive.value("robot", sensors.robot);

@@ -12,65 +12,58 @@
 
 namespace tumble::scenarios {
 
-/// Name of the file format, which each file contains as the attribute `format`; `format_version` contains the version.
 inline constexpr const char* kRecordingFormat = "tumble recording";
 inline constexpr int kRecordingVersion = 1;
 
-/// RecordingInfo contains the metadata of a recording file.
 struct RecordingInfo {
   int format_version = kRecordingVersion;
   std::string scenario;  ///< empty for a real recording
   std::uint64_t seed = 0;
-  std::string situation_yaml;  ///< resolved situation; empty for a real recording
+  std::string situation_yaml;  ///< complete simulation setup in YAML; empty for a real recording
   std::string tumble_version;
   std::string engine_version;  ///< version of MuJoCo
-  std::string attribution;     ///< author and licence of a real recording; empty for a simulated one
+  std::string attribution;     ///< author and licence of a real recording
   std::int64_t origin_ns = 0;  ///< stamp of time 0 in the clock of a real recording's source; 0: unknown
   std::string digest;          ///< digest of all sensor and truth data, 32 hexadecimal digits
   bool has_truth = false;
 };
 
-/// Time stamp of time 0 in every export of a recording without `origin_ns`, such as a simulated one: 1 000 000 000 s
-/// after 1970, because ROS treats a stamp of 0 as missing.
+/// Exports of a recording without `origin_ns`, such as a simulated one, start 1 000 000 000 s after 1970, because ROS
+/// treats a stamp of 0 as missing.
 inline constexpr std::int64_t kExportOrigin_ns = 1'000'000'000'000'000'000;
 
-/// Returns the time stamp of time 0 in every export of a recording: `origin_ns`, or kExportOrigin_ns if `origin_ns` is
-/// unknown or before 1970, because bags cannot store earlier stamps.
+/// Origins before 1970 are replaced by kExportOrigin_ns, because bags cannot store earlier stamps.
 inline std::int64_t export_origin_ns(std::int64_t origin_ns) {
   return origin_ns > 0 ? origin_ns : kExportOrigin_ns;
 }
 
-/// Returns the XXH3 digest (128 bit) of every field of the sensors and the truth. Equal recordings have equal digests.
+/// Returns the XXH3 digest (128 bit) of every field of the sensors and the truth.
 std::string digest(const sim::Sensors& sensors, const sim::Truth* truth);
-/// Returns the digest of sensors and truth for points on disk, with one PointStore per lidar.
 std::string digest(const sim::Sensors& sensors, const std::vector<PointStore>& points, const sim::Truth* truth);
-/// Returns the digest of the truth alone.
 std::string digest(const sim::Truth& truth);
 std::string digest(const StoredTruth& truth);
 
-/// Writes a recording as HDF5 (scenarios/recordings/FORMAT.md) to a temporary file in the output folder, which is then
-/// renamed. `truth` may be null. The writer sets format_version, digest and has_truth. The file is created in memory,
-/// which doubles the memory use. Throws BadInput if the folder is not writable or the disk is full; no partial file
-/// remains. Throws std::invalid_argument for inconsistent data (find_problem in recording_check.hpp).
+/// Writes a recording as HDF5 (scenarios/recordings/FORMAT.md) to a temporary file, which is then renamed. `truth` may
+/// be null. The file is created in memory, which doubles the memory use. Throws BadInput if the folder is not writable
+/// or the disk is full; no partial file remains. Throws std::invalid_argument for inconsistent data (find_problem in
+/// recording_check.hpp).
 void write_recording(const std::filesystem::path& path, const RecordingInfo& info, const sim::Sensors& sensors,
                      const sim::Truth* truth);
 
-/// Writes a recording whose points are on disk. The file is bit-identical to that for points in memory. The writer
-/// reserves the maximum size, then writes directly to disk. Memory contains the sensors without points, the truth, and
-/// some MiB.
+/// Writes a recording whose points are on disk; the file is bit-identical to that for points in memory. The writer
+/// reserves the maximum file size first. Memory contains the sensors without points, the truth, and some MiB.
 void write_recording(const std::filesystem::path& path, const RecordingInfo& info, const sim::Sensors& sensors,
                      const std::vector<PointStore>& points, const sim::Truth* truth);
 
-/// Reads the metadata of a recording file. Each reader function opens only the group that it needs. All reader
-/// functions throw BadInput with path and reason if the file is missing, truncated or not HDF5, or if a dataset is
-/// missing or has a wrong shape. They also throw BadInput if format version, lengths or digest do not match.
+/// All readers open only the groups that they need. They throw BadInput, with path and reason, if the file is missing,
+/// truncated or not HDF5, a dataset is missing or has a wrong shape, or the format version or digest does not match.
 RecordingInfo read_info(const std::filesystem::path& path);
 sim::Sensors read_sensors(const std::filesystem::path& path);
-/// Reads the sensors without points; stores the points on disk in the folder `scratch`, one PointStore per lidar.
+/// Stores the points on disk in the folder `scratch`, one PointStore per lidar.
 sim::Sensors read_sensors(const std::filesystem::path& path, const std::filesystem::path& scratch,
                           std::vector<PointStore>& points);
 sim::Truth read_truth(const std::filesystem::path& path);
-/// Reads the truth, and stores its rows on disk in the folder `scratch`. Memory contains one MiB of the truth.
+/// Stores the rows of the truth on disk in the folder `scratch`; memory contains one MiB of the truth.
 StoredTruth read_truth(const std::filesystem::path& path, const std::filesystem::path& scratch);
 
 }  // namespace tumble::scenarios

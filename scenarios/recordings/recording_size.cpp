@@ -8,10 +8,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Sizes of an object or attribute without its content, and of an empty file.
 constexpr std::uint64_t kHead_bytes = 4096, kFile_bytes = std::uint64_t{1} << 20;
 
-/// SizeBound visits every field of a recording and sums its maximum size.
 class SizeBound {
  public:
   std::uint64_t bytes = kFile_bytes;
@@ -23,7 +21,7 @@ class SizeBound {
   void point(const char*, const Eigen::Vector3d&, const char*) { bytes += kHead_bytes; }
   template <template <class...> class Rows, class Row, class... More>
   void rows(const char*, const Rows<Row, More...>& rows, const char*, const char*, Storage) {
-    // Chunks that deflate does not shrink are stored without compression, and the last chunk is padded. The chunk index
+    // HDF5 stores a chunk without compression if deflate does not shrink it, and pads the last chunk. The chunk index
     // needs less than 0.1 % of the data.
     const std::uint64_t plain = std::uint64_t{rows.size()} * sizeof(Row);
     bytes += plain + plain / 1000 + hdf5::kChunkBytes + kHead_bytes;

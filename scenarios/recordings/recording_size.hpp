@@ -6,7 +6,6 @@
 
 #include "scenarios/recordings/recording_file.hpp"
 
-/// size_bound computes how much disk space a recording needs.
 namespace tumble::scenarios {
 
 /// Returns an upper bound of the file size of a recording [bytes]: uncompressed numbers, full chunks, large headers.

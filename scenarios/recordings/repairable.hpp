@@ -8,13 +8,11 @@
 
 namespace tumble::scenarios {
 
-/// ImportOption is an option of `tumble import` that changes how a recording is read: {"--gyro-unit", "deg/s"}.
 struct ImportOption {
   std::string name, value;
 };
 
-/// RepairableInput is the exception for a recording that can be read with another value of one import option, which the
-/// message names.
+/// RepairableInput reports a recording that can be read with another value of one import option.
 class RepairableInput : public BadInput {
  public:
   RepairableInput(const std::string& message, ImportOption repair) : BadInput(message), repair_(std::move(repair)) {}

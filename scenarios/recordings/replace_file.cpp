@@ -37,7 +37,6 @@ constexpr int kLinksMax = 40;  // limit of the operating system for symbolic lin
   fail(path, std::generic_category().message(error));
 }
 
-/// Descriptor owns a file descriptor.
 class Descriptor {
  public:
   explicit Descriptor(int number) : number_(number) {}
@@ -59,7 +58,6 @@ std::optional<struct stat> status_of(const fs::path& path) {
   return found;
 }
 
-/// Returns the path after following all symbolic links; the target may be missing.
 fs::path behind_links(const fs::path& path) {
   fs::path place = path;
   std::error_code error;
@@ -76,11 +74,11 @@ void require_replaceable(const fs::path& given, const fs::path& place) {
   const std::optional<struct stat> old = status_of(place);
   if (!old) return;
   if (S_ISDIR(old->st_mode)) fail(given, EISDIR);
-  if (!S_ISREG(old->st_mode)) fail(given, "the output is a device, a pipe or a socket; it must be a regular file");
+  if (!S_ISREG(old->st_mode)) fail(given, "the output path is a device, a pipe or a socket; it must be a regular file");
   if (access(place.c_str(), W_OK) != 0) fail(given, errno);
 }
 
-/// Throws BadInput if the output is in an input folder, at any depth, because inputs must not change.
+/// Inputs must not change, so an output in an input folder throws BadInput.
 void require_outside(const fs::path& output, std::span<const fs::path> inputs) {
   std::error_code error;
   const fs::path place = fs::canonical(output, error);
@@ -91,19 +89,18 @@ void require_outside(const fs::path& output, std::span<const fs::path> inputs) {
     if (error) continue;
     const bool within = std::mismatch(folder.begin(), folder.end(), place.begin(), place.end()).first == folder.end();
     if (within && place != folder)
-      fail(output,
-           fmt::format("the output is one of the files of the input {}; choose another output name", input.string()));
+      fail(output, fmt::format("the output path is one of the files in the input folder {}; choose another output name",
+                               input.string()));
   }
 }
 
-/// Returns the part of a temporary file's name that identifies its process: ".tumble-HOST-PID.".
 std::string process_mark(const std::string& pid) {
   std::array<char, 17> host{};  // longer names are truncated
   if (gethostname(host.data(), host.size() - 1) != 0) host[0] = '\0';
   return ".tumble-" + std::string(host.data()) + "-" + pid + ".";
 }
 
-/// Removes the temporary files of killed processes (SIGKILL) of this computer, once per folder.
+/// Removes temporary files that killed processes (SIGKILL) of this computer left behind, once per folder.
 void remove_abandoned(const fs::path& folder) {
   static std::mutex mutex;
   static std::set<fs::path> cleaned;
@@ -162,13 +159,13 @@ void OutputFile::move_into_place() {
   Descriptor file(open(unfinished_.c_str(), O_RDONLY | O_CLOEXEC));
   if (file.get() < 0) fail(given_, errno);
   if (const std::optional<struct stat> old = status_of(place_)) {
-    // The target may have changed since the first check.
     require_replaceable(given_, place_);
     const std::optional<struct stat> own = status_of(unfinished_);
     const bool same_owner = own && own->st_uid == old->st_uid && own->st_gid == old->st_gid;
     if (!same_owner && fchown(file.get(), old->st_uid, old->st_gid) != 0) {
       fail(given_,
-           "the file belongs to another user, and this program cannot keep the owner; choose another output name");
+           "the existing output file belongs to another user, and tumble cannot keep its owner; choose another output "
+           "name");
     }
     if (fchmod(file.get(), old->st_mode & 07777) != 0) fail(given_, errno);
   }
@@ -189,10 +186,10 @@ OutputFolder::OutputFolder(const fs::path& folder) : folder_(folder) {
   const bool empty = fs::is_empty(folder, error);
   if (error) fail(folder, error.message());
   if (!empty) {
-    throw BadInput(
-        fmt::format("{}: the folder contains files, which would mix with the files of this run; choose a new folder or "
-                    "empty this folder",
-                    folder.string()));
+    throw BadInput(fmt::format(
+        "{}: the output folder contains files, which would mix with the files of this run; choose a new folder or "
+        "empty this folder",
+        folder.string()));
   }
   on_signal_.emplace(folder, made_ ? Unfinished::Kind::folder : Unfinished::Kind::contents);
 }

@@ -9,15 +9,12 @@
 
 #include "scenarios/recordings/unfinished.hpp"
 
-/// replace_file.hpp writes output atomically: to a temporary file next to the final path, which is then renamed. Only
-/// regular files are replaced.
 namespace tumble::scenarios {
 
-/// OutputFile is a temporary output file next to its final path. A temporary file that is not moved to the final path
-/// is removed, even if a signal ends the program (unfinished.hpp). After SIGKILL, it remains until the next process
-/// writes to the folder. OutputFile follows symbolic links. An existing target must be a writable regular file; its
-/// mode and owner are kept. Throws BadInput with the path and the system's reason (missing folder, no permission, disk
-/// full, a device, a pipe).
+/// OutputFile writes to a temporary file next to its final path. A temporary file that is not moved to the final path
+/// is removed, even if a signal ends the program; after SIGKILL, the next process that writes to the folder removes it.
+/// OutputFile follows symbolic links and keeps mode and owner of an existing target. Throws BadInput with the system's
+/// reason (missing folder, no permission, disk full, not a regular file).
 class OutputFile {
  public:
   explicit OutputFile(const std::filesystem::path& path);
@@ -25,10 +22,9 @@ class OutputFile {
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
-  /// Returns the path of the temporary file, for libraries that write to a named file.
   const std::filesystem::path& unfinished() const { return unfinished_; }
   void write(std::span<const std::byte> bytes);
-  /// Flushes the file to disk and renames it. The final path always has the complete old or new file.
+  /// Flushes the file to disk and renames it, so the final path always has the complete old or new file.
   void move_into_place();
 
  private:
@@ -37,9 +33,9 @@ class OutputFile {
   bool moved_ = false;
 };
 
-/// OutputFolder is a folder for all files of one output. The folder must be missing or empty, so that users do not
-/// mistake old files for new ones. Throws BadInput if the folder is not empty. The content of an incomplete output is
-/// removed, even if a signal ends the program. If OutputFolder created the folder, it is removed too.
+/// OutputFolder is a missing or empty folder for all files of one output. A non-empty folder throws BadInput, because
+/// users could mistake old files for new ones. The content of an incomplete output is removed, even if a signal ends
+/// the program.
 class OutputFolder {
  public:
   explicit OutputFolder(const std::filesystem::path& folder);
@@ -58,7 +54,6 @@ class OutputFolder {
   bool made_ = false, kept_ = false;
 };
 
-/// Writes `bytes` to a file atomically, with an OutputFile.
 void replace_file(const std::filesystem::path& path, std::span<const std::byte> bytes);
 void replace_file(const std::filesystem::path& path, std::string_view text);
 

@@ -32,8 +32,6 @@ class StampLine {
     }
   }
 
-  /// Fits a line to the stamps `first` to `end` - 1. Returns the value of the line at index k, relative to the first
-  /// stamp of the series.
   double at_ns(std::size_t first, std::size_t end, std::size_t k) const {
     std::array<double, 4> sum{};
     for (std::size_t s = 0; s < sum.size(); ++s) sum[s] = sums_[end][s] - sums_[first][s];
@@ -82,7 +80,7 @@ bool are_rounded(std::span<const std::int64_t> stamps_ns) {
   const auto least = static_cast<std::size_t>(kLeastShare * static_cast<double>(all)) + 1;
   for (std::size_t n = 1; n + 1 < counts.size(); ++n) {
     if (counts[n] < least || counts[n + 1] < least) continue;
-    // Longer steps are gaps. A clock with more jitter would also have other step lengths.
+    // A clock with jitter would also have other step lengths than two neighbouring whole milliseconds.
     return static_cast<double>(counts[n] + counts[n + 1]) >= (1.0 - kLeastShare) * static_cast<double>(all);
   }
   return false;

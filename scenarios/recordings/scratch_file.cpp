@@ -29,7 +29,6 @@ std::filesystem::path scratch_folder_of(const std::filesystem::path& output) {
 
 ScratchFile::ScratchFile(std::filesystem::path folder) : folder_(std::move(folder)) {
   if (folder_.empty()) folder_ = ".";
-  // Where the file system permits, the file has no name.
   descriptor_ = open(folder_.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
   if (descriptor_ >= 0) return;
   std::string name = (folder_ / ".tumble_scratch.XXXXXX").string();

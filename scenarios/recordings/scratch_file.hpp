@@ -10,14 +10,13 @@
 #include <utility>
 #include <vector>
 
-/// scratch_file.hpp stores data on disk that would exceed the memory.
 namespace tumble::scenarios {
 
-/// Returns the nearest existing parent folder of an output path: temporary data are then on the disk of the output.
+/// Returns the nearest existing parent folder of an output path, so that temporary data are on the disk of the output.
 std::filesystem::path scratch_folder_of(const std::filesystem::path& output);
 
-/// ScratchFile is an unnamed temporary file that grows at its end and disappears with the object or the process. Throws
-/// BadInput with the folder and the system's reason (missing folder, no permission, disk full).
+/// ScratchFile is an unnamed temporary file that disappears with the object or the process. Throws BadInput with the
+/// folder and the system's reason (missing folder, no permission, disk full).
 class ScratchFile {
  public:
   explicit ScratchFile(std::filesystem::path folder);
@@ -33,7 +32,6 @@ class ScratchFile {
 
   std::uint64_t bytes() const { return bytes_; }
   void append(std::span<const std::byte> bytes) { write(bytes_, bytes); }
-  /// Writes bytes at an offset in the file or at its end.
   void write(std::uint64_t at, std::span<const std::byte> bytes);
   void read(std::uint64_t at, std::span<std::byte> bytes) const;
 
@@ -43,8 +41,7 @@ class ScratchFile {
   std::uint64_t bytes_ = 0;
 };
 
-/// ColumnFile is a column of a recording in a ScratchFile, which is read and written in parts. A column without a
-/// folder must stay empty.
+/// ColumnFile stores a column of a recording on disk. A column without a folder must stay empty.
 template <class Row>
 class ColumnFile {
  public:
@@ -56,13 +53,11 @@ class ColumnFile {
   void read(std::size_t first, std::span<Row> rows) const {
     if (!rows.empty()) file_->read(first * sizeof(Row), std::as_writable_bytes(rows));
   }
-  /// Reads the rows from `first` to `last` - 1.
   std::vector<Row> rows(std::size_t first, std::size_t last) const {
     std::vector<Row> out(last - first);
     read(first, out);
     return out;
   }
-  /// Calls `take(first, rows)` for consecutive parts of `length` rows; the last part may be shorter.
   template <class Take>
   void for_segments(std::size_t length, Take&& take) const {
     std::vector<Row> rows;
@@ -72,7 +67,6 @@ class ColumnFile {
       take(first, std::span<const Row>(rows));
     }
   }
-  /// Calls `change(row)` for each row and stores the changed rows.
   template <class Change>
   void change(Change&& change) {
     constexpr std::size_t kLength = (std::size_t{1} << 20) / sizeof(Row);

@@ -9,11 +9,10 @@
 
 namespace tumble::scenarios {
 
-/// ScratchFolder is a temporary folder that is removed with the object, even if a signal ends the program.
+/// ScratchFolder is removed with the object, even if a signal ends the program.
 class ScratchFolder {
  public:
-  /// Creates a temporary folder whose name contains the text `use`. Throws std::filesystem::filesystem_error if the
-  /// folder cannot be created.
+  /// Throws std::filesystem::filesystem_error if the folder cannot be created.
   explicit ScratchFolder(const std::string& use);
   ~ScratchFolder();
   ScratchFolder(const ScratchFolder&) = delete;

@@ -13,7 +13,6 @@
 
 namespace tumble::scenarios {
 
-/// StoredContacts contains the true contacts as columns on disk.
 struct StoredContacts {
   ColumnFile<std::int64_t> time_ns;
   ColumnFile<Eigen::Vector3d> point_W_m, normal_W, slip_velocity_W_m_s;
@@ -21,7 +20,6 @@ struct StoredContacts {
   ColumnFile<std::int32_t> surface_id;
 };
 
-/// StoredImuTruth is a sim::ImuTruth on disk.
 struct StoredImuTruth {
   std::string name;
   Eigen::Isometry3d T_BI = Eigen::Isometry3d::Identity();
@@ -34,7 +32,6 @@ struct StoredImuTruth {
   ColumnFile<Eigen::Vector3d> magnetic_field_t;
 };
 
-/// StoredLidarTruth is a sim::LidarTruth on disk.
 struct StoredLidarTruth {
   std::string name;
   Eigen::Isometry3d T_BL = Eigen::Isometry3d::Identity();
@@ -42,10 +39,9 @@ struct StoredLidarTruth {
   ColumnFile<std::int32_t> surface_id;
 };
 
-/// StoredTruth is a sim::Truth whose rows are in scratch files (ColumnFile).
 struct StoredTruth {
-  /// Returns the true body states of the rows `first` to `last` - 1, with the mountings and `p_BG_m`, but without
-  /// sensors and contacts.
+  /// Returns the body states of the rows `first` to `last` - 1, with the mountings and `p_BG_m`, but without sensors
+  /// and contacts.
   sim::Truth states(std::size_t first, std::size_t last) const;
   std::size_t size() const { return p_WB_m.size(); }
 

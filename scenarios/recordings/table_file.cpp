@@ -19,10 +19,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Block size for writing [bytes].
 constexpr std::size_t kBlock = 1 << 16;
 
-/// Returns true if a character can separate numbers in a table with blanks, such as a TUM file.
 bool is_separator(char c) {
   return c == '\t' || c == ',' || c == ';';
 }
@@ -33,18 +31,16 @@ std::vector<std::string> split(const std::string& line, char separator) {
   while (begin <= line.size()) {
     std::size_t end = line.find(separator, begin);
     if (end == std::string::npos) end = line.size();
-    // Consecutive blanks are one separator.
     if (separator != ' ' || end > begin) cells.push_back(line.substr(begin, end - begin));
     begin = end + 1;
   }
   return cells;
 }
 
-/// Longest accepted line; a pose with covariance has less than a thousand bytes. The limit protects the memory from
-/// files without line ends and endless devices.
+/// A pose with covariance has less than a thousand bytes. The limit protects the memory from files without line ends
+/// and endless devices.
 constexpr std::size_t kLineMax = 1 << 20;
 
-/// Reads a line of a file, like std::getline. Throws BadInput if the line is longer than kLineMax.
 bool read_line(std::istream& file, const std::filesystem::path& path, int number, std::string& line) {
   line.clear();
   auto& bytes = *file.rdbuf();
@@ -52,7 +48,7 @@ bool read_line(std::istream& file, const std::filesystem::path& path, int number
     if (c == '\n') return true;
     line += static_cast<char>(c);
     if (line.size() > kLineMax)
-      throw BadInput(fmt::format("{}:{}: the line has more than {} bytes, so this is not a line of a table",
+      throw BadInput(fmt::format("{}:{}: the line has more than {} bytes, so the file is not a table of numbers",
                                  path.string(), number, kLineMax));
   }
   return !line.empty();
@@ -119,7 +115,7 @@ Table Table::read(const std::filesystem::path& path, char separator, const std::
     if (header_due) {
       if (line != header)
         throw BadInput(
-            fmt::format("{}:1: the header is '{}'; it must be '{}'", path.string(), shortened(line), header));
+            fmt::format("{}:1: the header line is '{}'; it must be '{}'", path.string(), shortened(line), header));
       header_due = false;
       continue;
     }

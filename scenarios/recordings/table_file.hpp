@@ -11,18 +11,17 @@
 
 namespace tumble::scenarios {
 
-/// TableWriter writes a text file of numbers, one row per line: TUM (blanks, no header) or CSV (commas, one header
-/// line). Reading restores doubles exactly. Time stamps are integers, or seconds with nine decimals.
+/// TableWriter writes numbers as TUM (blanks, no header) or CSV (commas, one header line). Reading restores doubles
+/// exactly.
 class TableWriter {
  public:
-  /// Opens a table file; an empty `header` is not written. Throws BadInput if the file cannot be opened. `close`
-  /// replaces an existing file by the table; without `close`, the table is discarded.
+  /// An empty `header` is not written. Only `close` replaces an existing file; without `close`, the table is discarded.
+  /// Throws BadInput if the file cannot be opened.
   TableWriter(const std::filesystem::path& path, char separator, const std::string& header);
   void integer(std::int64_t value);
   void number(double value);
   void time_s(std::int64_t time_ns);  ///< exact: "12.000000345"
   void end_row();
-  /// Completes the table file. Throws BadInput if any write failed.
   void close();
 
  private:
@@ -34,9 +33,8 @@ class TableWriter {
   bool row_empty_ = true;
 };
 
-/// Table contains rows of text cells, with equal numbers of cells. Empty lines and lines that start with '#' are
-/// skipped. If the separator is a blank, tabs, commas and semicolons also separate cells. Throws BadInput with path and
-/// line number for a wrong number of cells or an invalid value.
+/// Empty lines and lines that start with '#' are skipped. If the separator is a blank, tabs, commas and semicolons also
+/// separate cells. Throws BadInput with path and line number for a wrong number of cells or an invalid value.
 struct Table {
   struct Row {
     int line;

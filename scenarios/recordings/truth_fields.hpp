@@ -8,7 +8,6 @@
 #include "scenarios/recordings/recording_fields.hpp"
 #include "sim/recording.hpp"
 
-/// truth_fields.hpp lists all truth fields of a recording, for the visitors in recording_fields.hpp.
 namespace tumble::scenarios {
 
 namespace hdf5 {
@@ -16,7 +15,6 @@ template <>
 struct RowLayout<sim::ContactLabel> : Layout<Scalar::uint8, 1> {};
 }  // namespace hdf5
 
-/// ContactColumns contains the true contacts as columns.
 struct ContactColumns {
   std::vector<std::int64_t> time_ns;
   std::vector<Eigen::Vector3d> point_W_m, normal_W, slip_velocity_W_m_s;
@@ -70,8 +68,6 @@ void series_truth_fields(Archive& archive, Series& series) {
   });
 }
 
-/// Calls the archive with all fields of the truth. `contacts` contains the contacts as columns; truth.contacts is not
-/// visited.
 template <class Archive, class Truth, class Contacts>
 void truth_fields(Archive& archive, Truth& truth, Contacts& contacts) {
   archive.value("period_ns", truth.period_ns);

@@ -21,7 +21,7 @@ namespace {
 constexpr std::size_t kPathBytes = 4096;
 constexpr int kPlaces = 64, kDepthMax = 16;
 
-/// Entry is the path of an incomplete output. `owner` is written last and cleared first.
+/// The owner is written last and cleared first, so a signal handler never sees a partial entry.
 struct Entry {
   std::atomic<bool> taken{false};
   std::atomic<pid_t> owner{0};
@@ -36,8 +36,7 @@ static_assert(std::atomic<pid_t>::is_always_lock_free && std::atomic<bool>::is_a
 
 std::atomic<int> waiting{0}, pending{0};  // number of SignalsWait objects, and signal received during their lifetime
 
-/// Listed is a directory record of the system call getdents64. A signal handler must not allocate memory, but readdir
-/// does.
+/// The signal handler reads directories by the system call getdents64, because readdir allocates memory.
 struct Listed {
   std::uint64_t inode;
   std::int64_t next;
@@ -46,7 +45,6 @@ struct Listed {
   char name[1];
 };
 
-/// Removes the content of a folder, and continues after errors.
 void remove_contents(int folder, int depth) {
   alignas(Listed) std::array<char, 2048> listed;
   for (long got = 1; got > 0;) {

@@ -7,9 +7,8 @@
 
 namespace tumble::scenarios {
 
-/// Returns the upper median of the values: for an even number, the larger of the two middle values, so it is one of the
-/// values. Scores and tables use the mean of the middle values (statistics.hpp). The values must be finite. An empty
-/// list gives zero. The cost is O(n).
+/// For an even number of values, the upper median is the larger of the two middle values, so it is one of the values.
+/// An empty list gives zero. The cost is O(n).
 template <class Value>
 Value upper_median(std::vector<Value> values) {
   if (values.empty()) return Value{};

@@ -3,11 +3,10 @@
 
 #include <cstdint>
 
-/// whole_seconds.hpp splits time stamps into whole seconds and nanoseconds.
 namespace tumble::scenarios {
 
 inline constexpr std::int64_t kSecond_ns = 1'000'000'000;
-/// Largest number of seconds in a time stamp: in nanoseconds, it must fit in 64 bits (year 2255).
+/// A time stamp of 9 000 000 000 s (year 2255) still fits in 64 bits of nanoseconds.
 inline constexpr std::int64_t kSecondsMax = 9'000'000'000;
 
 }  // namespace tumble::scenarios

@@ -12,7 +12,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Writer visits every field of a recording and writes it to an HDF5 group.
 class Writer {
  public:
   explicit Writer(hdf5::Group group) : group_(std::move(group)) {}

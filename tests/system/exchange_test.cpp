@@ -64,7 +64,7 @@ sensors:
   EXPECT_EQ(line_count(read_file(folder / "csv" / "height.csv")), 76u);
   const Ended bag = run_program({"export", recording, "-o", (folder / "a.mcap").string()});
   ASSERT_EQ(bag.status, 0) << bag.err;
-  EXPECT_THAT(bag.err, HasSubstr("sensor 'height' (barometer) is left out"));
+  EXPECT_THAT(bag.err, HasSubstr("sensor 'height' of kind 'barometer' is left out"));
 }
 
 TEST(Exchange, WhatIsExportedAsCsvComesBack) {

@@ -18,14 +18,13 @@
 
 namespace tumble::scenarios {
 
-/// BagCloud contains the points in W of the topic "/TRACK/points" (sensor_msgs/PointCloud2: x y z, and error_m if
-/// known).
+/// BagCloud becomes the topic "/TRACK/points" (sensor_msgs/PointCloud2: x y z, and error_m if known).
 struct BagCloud {
   std::vector<Eigen::Vector3f> position_W_m;
   std::vector<float> error_m;  ///< parallel to `position_W_m`, or empty
 };
 
-/// BagTrack is a series of body poses in W. In a bag it is the topic "/NAME" (nav_msgs/Odometry) and a part of /tf.
+/// BagTrack is a series of body poses in W. It becomes the topic "/NAME" (nav_msgs/Odometry) and a part of /tf.
 struct BagTrack {
   struct Pose {
     std::int64_t time_ns = 0;
@@ -34,69 +33,61 @@ struct BagTrack {
     Eigen::Vector3d v_WB_B_m_s = kUnknown, w_WB_B_rad_s = kUnknown;
     /// Covariance of position in W and attitude error phi in W, as in PoseState. A block of zeros is unknown.
     Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
-    bool exact = false;  ///< the pose is true: a zero covariance is not unknown
+    bool exact = false;  ///< true: a zero covariance means an exact pose
     inline static const Eigen::Vector3d kUnknown = Eigen::Vector3d::Constant(kNaN);
   };
   std::string name;  ///< letters, digits and _
   std::vector<Pose> poses;
   std::vector<std::int64_t> cloud_time_ns = {};  ///< times of point clouds along the track
-  /// Creates one cloud. The bag calls this function for each cloud in turn, so only one cloud is in memory. Clouds
-  /// without points are omitted.
+  /// Creates one cloud on demand, so only one cloud is in memory. Clouds without points are omitted.
   std::function<BagCloud(const BagTrack&, std::size_t)> cloud = {};
 };
 
-/// BagWriting contains the options for writing a recording to a bag.
 struct BagWriting {
   std::int64_t origin_ns = 0;          ///< added to all times; see export_origin_ns
   const StoredTruth* truth = nullptr;  ///< true motion; null: not written
-  std::vector<BagTrack> tracks = {};   ///< estimates; names are unique and not in export_names' `taken`
+  std::vector<BagTrack> tracks = {};   ///< estimates; names are unique and not in `taken` of export_names
   SweepLayout sweeps = own_sweep_layout();
-  /// Points of each lidar on disk; null if the points are in memory.
   const std::vector<PointStore>* points = nullptr;
   std::optional<ReaderNames> names = {};  ///< if set: writes only the first IMU and lidar, with these names
   bool empty_sweeps = true;               ///< false: omits sweeps without points
 };
 
-/// Each export function writes a recording as a bag in one of these formats:
+/// The bag formats have these versions:
 ///
 /// - The ROS 1 format is version 2.0, written by librosbag.
-/// - The ROS 2 format is a folder with metadata.yaml (version 5) and a SQLite file with CDR messages and their
-///   definitions (schema 4, as since Iron).
+/// - The ROS 2 format is a folder with metadata.yaml (version 5) and a SQLite file (schema 4, as since Iron).
 /// - The MCAP format is a file with profile ros2 (mcap.dev/spec), with indexed LZ4 chunks of 1 MiB and all checksums.
 ///
 /// All bags contain these topics:
 ///
-/// - "/NAME" is a sensor_msgs/Imu without attitude. The covariance of an Imu message is the white noise in the data
-///   sheet. NAME is the exported name of the sensor (export_names). The topic of the primary IMU is the first topic of
-///   its type.
+/// - "/NAME" is a sensor_msgs/Imu without attitude. Its covariance is the white noise in the data sheet. NAME is the
+///   exported name of the sensor (export_names). The topic of the primary IMU is the first topic of its type.
 /// - "/NAME/points" is a sensor_msgs/PointCloud2, stamped at the start of the sweep, with the fields of Velodyne
 ///   drivers: x y z intensity ring time. The field time contains float32 seconds after the stamp (4 ns resolution
-///   within 0.1 s); offset_ns contains the same time in whole nanoseconds. For points without times, `time` and
-///   `offset_ns` are omitted. The option `sweeps` can select another point layout.
+///   within 0.1 s); offset_ns contains the same time in whole nanoseconds. Both are omitted for points without times.
 /// - "/truth" is a nav_msgs/Odometry of "body" in "world", at most every 5 ms. "/TRACK" and "/TRACK/points" contain
 ///   estimates. Unknown values have the variance -1, as in sensor_msgs/Imu; an unknown twist is zero.
 /// - "/tf_static" contains the pose of each sensor in "body", from the calibration that the estimator uses.
-/// - "/tf" contains the pose of "body" in "world" from the truth, or from the first track if there is no truth. Each
-///   further track has a frame "TRACK".
+/// - "/tf" contains the pose of "body" in "world" from the truth, or else from the first track. Each further track has
+///   a frame "TRACK".
 /// - "/clock" is a rosgraph_msgs/Clock, published with the first message after every 10 ms.
 ///
 /// Throws BadInput if the output cannot be written.
 void export_ros1_bag(const sim::Sensors& sensors, const BagWriting& writing, const std::filesystem::path& file);
 void export_ros2_bag(const sim::Sensors& sensors, const BagWriting& writing, const std::filesystem::path& folder);
 void export_mcap(const sim::Sensors& sensors, const BagWriting& writing, const std::filesystem::path& file);
-/// Writes a folder with an MCAP file and metadata.yaml, the layout of ROS 2 since Iron.
+/// Writes the folder layout of ROS 2 since Iron: an MCAP file and metadata.yaml.
 void export_ros2_mcap(const sim::Sensors& sensors, const BagWriting& writing, const std::filesystem::path& folder);
 
-/// StampSource selects the time stamp of a message: the header's stamp (time of measurement) or the record's stamp
-/// (time at which the bag recorded the message). A sweep is recorded at its end, so with record stamps a sweep starts
-/// one period before its stamp.
+/// A header stamp is the time of measurement; a record stamp is the time at which the bag recorded the message. A sweep
+/// is recorded at its end, so with record stamps a sweep starts one period before its stamp.
 enum class StampSource { header, record };
 
-/// ReferenceOf is the frame of the reference poses: `named` is the frame in the messages, if the bag contains its
-/// transform; `body` is the body; `lidar` is the first lidar.
+/// ReferenceOf selects the frame of the reference poses. `named` is the frame in the messages, if the bag contains its
+/// transform.
 enum class ReferenceOf { named, body, lidar };
 
-/// BagReading contains options for reading a bag.
 struct BagReading {
   std::vector<std::string> imu_topics;    ///< the first is the primary IMU; empty: all Imu topics in the bag's order
   std::vector<std::string> lidar_topics;  ///< empty: all of type PointCloud2 or CustomMsg
@@ -109,31 +100,27 @@ struct BagReading {
   GyroUnit gyro_unit = GyroUnit::rad_s;
   StampSource stamps = StampSource::header;
   SweepReading sweeps;
-  /// true: an unreadable topic is skipped with a note, if another topic of the same kind is readable. An unreadable
-  /// topic that the caller chose is always an error.
+  /// true: an unreadable topic is skipped with a note if another topic of the same kind is readable.
   bool leave_out_topics = false;
 };
 
-/// Reads a ROS 1 bag (a file, or a folder of its parts, not encrypted), a ROS 2 bag, or an MCAP file. A ROS 2 bag is a
-/// folder or a single file: SQLite or MCAP, plain or Zstandard-compressed per file or message. An MCAP file contains
+/// A ROS 1 bag is a file, or a folder of its parts, which are merged by time; encrypted bags are not supported. A ROS 2
+/// bag is a folder or a file: SQLite or MCAP, plain or Zstandard-compressed per file or message. An MCAP file contains
 /// messages of ROS 2 (cdr) or ROS 1, in plain, LZ4 or Zstandard chunks, with or without index.
 ///
-/// The option `stamps` selects the message times. The notes of the result describe how the stamps of headers and
-/// records differ. The units of the IMU are checked against gravity, as for CSV files. Specific force in g at rest, as
-/// from Livox drivers, is converted, with a note. Each sensor has the name of its topic. Points are converted as by
-/// import_sweeps. A duplicate message (equal stamp and content) is read once. Single faulty messages are skipped with a
+/// The units of the IMU are checked against gravity. Specific force in g at rest, as from Livox drivers, is converted,
+/// with a note. A duplicate message (equal stamp and content) is read once. Single faulty messages are skipped with a
 /// note (left_out.hpp).
 ///
 /// If the caller chooses no topics, clouds in the frames "world", "map" or "odom" are skipped, because they are not raw
 /// sensor data. Lidars whose points have times then come first.
 ///
-/// The parts of a ROS 1 bag in a folder are merged by time. The files of a ROS 2 bag are read in order of time,
-/// including files with similar names that metadata.yaml does not list.
+/// Sensor poses that the caller does not set come from /tf_static: in "body" or "base_link", or relative to another
+/// sensor. With `sweeps.scratch`, memory contains only one sweep, the IMU data (81 bytes per sample) and some bytes per
+/// message; without it, all points.
 ///
-/// If the caller does not set the pose of a sensor in "body" or "base_link", or relative to another sensor, it comes
-/// from /tf_static. With `sweeps.scratch`, memory contains only one sweep, the IMU data (81 bytes per sample) and some
-/// bytes per message; without it, all points. Throws BadInput with file and location for damaged or truncated data, a
-/// missing topic or a wrong type. Throws BadInput for more than 5 % of faulty messages, or a cycle of frames.
+/// Throws BadInput with file and location for damaged or truncated data, a missing topic, a wrong type, more than 5 %
+/// of faulty messages, or a cycle of frames.
 Imported import_ros1_bag(const std::filesystem::path& path, const BagReading& reading);
 Imported import_ros2_bag(const std::filesystem::path& path, const BagReading& reading);
 Imported import_mcap(const std::filesystem::path& file, const BagReading& reading);

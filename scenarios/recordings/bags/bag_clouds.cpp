@@ -32,9 +32,9 @@ Cloud cloud_of(const ros::PointCloud2& message, const std::string& where) {
   const Status status = check_layout(view);
   if (status.error_code == ErrorCode::empty) return out;
   if (!status.ok()) {
-    throw BadInput(
-        fmt::format("{}: {} x {} points of {} bytes do not fit the data of {} bytes, or are not supported: {}", where,
-                    view.height, view.width, view.point_step, view.data.size(), status.message()));
+    throw BadInput(fmt::format(
+        "{}: the cloud of {} x {} points with {} bytes each does not fit its data of {} bytes, or is not supported: {}",
+        where, view.height, view.width, view.point_step, view.data.size(), status.message()));
   }
   out.points = std::size_t{view.width} * view.height;
   for (const tumble::ros::PointField& field : fields) {
@@ -52,8 +52,8 @@ Cloud cloud_of(const ros::PointCloud2& message, const std::string& where) {
 
 Cloud cloud_of(const ros::LivoxCustomMsg& message, const std::string& where) {
   if (message.point_num != message.points.size()) {
-    throw BadInput(
-        fmt::format("{}: the cloud states {} points but contains {}", where, message.point_num, message.points.size()));
+    throw BadInput(fmt::format("{}: the header of the cloud states {} points, but the message contains {} points",
+                               where, message.point_num, message.points.size()));
   }
   Cloud out;
   out.points = message.points.size();

@@ -10,14 +10,12 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Determines the unit of the specific force. If the caller sets no unit and the readings are in g, converts them to
-/// m/s^2.
 AccelUnit take_in_g(const std::string& topic, const BagReading& reading, sim::ImuRecord& imu,
                     std::vector<std::string>& notes) {
   if (reading.accel_unit || !is_in_g(imu)) return reading.accel_unit.value_or(AccelUnit::m_s2);
   for (Eigen::Vector3d& force : imu.accel_m_s2) force *= scale_of(AccelUnit::g);
   notes.push_back(
-      fmt::format("{}: caution: the message definition requires m/s^2, but the specific force at rest is about 1, so "
+      fmt::format("{}: caution: sensor_msgs/Imu requires m/s^2, but the specific force at rest is about 1, so "
                   "the accelerometer is read in g (set '--accel-unit m/s^2' to read m/s^2)",
                   topic));
   return AccelUnit::g;
@@ -27,7 +25,8 @@ AccelUnit take_in_g(const std::string& topic, const BagReading& reading, sim::Im
 
 std::string repeats_text(std::size_t repeated) {
   if (repeated == 0) return "";
-  return fmt::format("number of duplicate messages (same stamp and content) that the import left out: {}", repeated);
+  return fmt::format("the import left out {} duplicate messages, which have the stamp and content of another message",
+                     repeated);
 }
 
 sim::ImuRecord read_imu(const OpenedBag& bag, SensorMountings& places, const std::string& topic,
@@ -61,13 +60,13 @@ sim::ImuRecord read_imu(const OpenedBag& bag, SensorMountings& places, const std
       [&](const ros::Imu& message, const MessageOrigin& origin) { left_out.guard([&] { take(message, origin); }); },
       &left_out);
   const std::string where = bag.place + ": topic " + topic;
-  if (imu.time_ns.empty() && left_out.count() == 0 && reading.imu_topics.empty()) return imu;  // no messages
+  if (imu.time_ns.empty() && left_out.count() == 0 && reading.imu_topics.empty()) return imu;
   const std::string bursts = leave_out_faulty([&](std::size_t k) { return bag.place_of(topic, numbers[k]); },
                                               [&](std::size_t k) { return stamps.disorder(k); }, left_out, imu);
   const std::string lost = left_out.note(imu.time_ns.size());
   const AccelUnit accel_unit = take_in_g(topic, reading, imu, notes);
   finish_readings(where, accel_unit, imu);
-  // ROS defines rad/s, but not every driver complies.
+  // ROS defines rates in rad/s, but not every driver complies.
   const std::string evened = even_out_stamps(imu);
   const std::string units = rates_text(where, imu, reading.gyro_unit);
   for (const std::string& remark :

@@ -18,13 +18,12 @@ std::array<double, kCount> array_of(const Vector& vector) {
   return out;
 }
 
-/// Returns the covariance of one sample: the squared noise density times the output rate, on the diagonal.
+/// The variance of a sample is the squared noise density times the output rate.
 std::array<double, 9> covariance_of(double density_sqrt_hz, std::int64_t period_ns) {
   const double variance = density_sqrt_hz * density_sqrt_hz / (static_cast<double>(period_ns) * 1e-9);
   return {variance, 0, 0, 0, variance, 0, 0, 0, variance};
 }
 
-/// Sets three variances of the covariance to -1, which means unknown.
 void set_unknown(std::size_t first_row, std::array<double, 36>& covariance) {
   constexpr std::size_t kRows = 6;
   for (std::size_t row = first_row; row < first_row + 3; ++row) covariance[row * kRows + row] = -1.0;
@@ -35,7 +34,6 @@ struct NamedType {
   ros::PointField::Type type;
 };
 
-/// Creates a PointCloud2 message with consecutive 4-byte fields and `points` points, all zero.
 ros::PointCloud2 empty_cloud(std::initializer_list<NamedType> fields, std::size_t points, const ros::Header& header) {
   ros::PointCloud2 out;
   out.header = header;

@@ -7,13 +7,11 @@
 #include "scenarios/recordings/bags/bag.hpp"
 #include "scenarios/recordings/bags/ros_messages.hpp"
 
-/// bag_messages.hpp converts sensor readings, poses and points of estimates to messages (bag.hpp).
 namespace tumble::scenarios {
 
 ros::Header header_of(std::int64_t stamp_ns, const std::string& frame);
 ros::Clock clock_message(std::int64_t stamp_ns);
 
-/// Converts sample `i` of an IMU to a message.
 ros::Imu imu_message(const sim::ImuRecord& imu, std::size_t i, const ros::Header& header);
 
 ros::PointCloud2 cloud_message(const BagCloud& cloud, const ros::Header& header);

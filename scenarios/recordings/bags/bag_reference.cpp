@@ -17,7 +17,6 @@ constexpr const char* kOdometry = "nav_msgs/Odometry";
 constexpr const char* kPoseStamped = "geometry_msgs/PoseStamped";
 constexpr const char* kTransformStamped = "geometry_msgs/TransformStamped";
 
-/// NamedPoses contains the poses of a topic and the frame that their messages name; empty if they name none.
 struct NamedPoses {
   std::vector<ReferencePose> poses;
   std::string frame;
@@ -29,7 +28,6 @@ ReferencePose pose_in(const ros::TransformStamped& message) {
   return pose;
 }
 
-/// Converts an Odometry or PoseStamped message.
 template <class Message>
 ReferencePose pose_in(const Message& message) {
   ReferencePose pose{0, Eigen::Vector3d::Map(message.position.data()), {}};
@@ -62,12 +60,10 @@ NamedPoses reference_poses(const OpenedBag& bag, const std::string& topic, Stamp
   if (type == kOdometry) return read_poses<ros::Odometry>(bag, topic, source);
   if (type == kPoseStamped) return read_poses<ros::PoseStamped>(bag, topic, source);
   if (type == kTransformStamped) return read_poses<ros::TransformStamped>(bag, topic, source);
-  throw BadInput(fmt::format("{}: topic '{}' is of type {}; it must be {}, {} or {}", bag.place, topic, type, kOdometry,
-                             kPoseStamped, kTransformStamped));
+  throw BadInput(fmt::format("{}: the reference topic '{}' has the type {}; its type must be {}, {} or {}", bag.place,
+                             topic, type, kOdometry, kPoseStamped, kTransformStamped));
 }
 
-/// Returns the mounting of the reference frame: the user's choice, or else that of the frame in the messages, if the
-/// bag contains its transform.
 Eigen::Isometry3d pose_of_reference(const std::string& topic, const std::string& frame, const SensorMountings& places,
                                     const BagReading& reading, Imported& out) {
   const Eigen::Isometry3d body = Eigen::Isometry3d::Identity();

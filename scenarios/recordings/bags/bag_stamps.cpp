@@ -17,10 +17,9 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr std::int64_t kSaid_ns = 1'000'000;
-/// A header stamp later than its record stamp by more than this value comes from another clock.
+/// A header stamp that is later than its record stamp by more than 10 ms comes from another clock.
 constexpr std::int64_t kAhead_ns = 10'000'000;
-/// Largest normal delay from header to record. For a larger delay, the clocks drift or the stamps are not measurement
-/// times.
+/// If the delay from header to record exceeds 0.5 s, the clocks drift or the header stamps are not measurement times.
 constexpr std::int64_t kSteady_ns = 500'000'000;
 
 std::string seconds_text(std::int64_t time_ns) {
@@ -29,21 +28,18 @@ std::string seconds_text(std::int64_t time_ns) {
   return text.data();
 }
 
-/// Latest time that a header can store.
 constexpr std::int64_t kLast_ns = 4294967295 * kSecond_ns;
 
-/// Returns the difference of two time stamps without overflow.
 std::int64_t between(std::int64_t from_ns, std::int64_t to_ns) {
   std::int64_t step_ns = 0;
   if (!__builtin_sub_overflow(to_ns, from_ns, &step_ns)) return step_ns;
   return to_ns > from_ns ? std::numeric_limits<std::int64_t>::max() : std::numeric_limits<std::int64_t>::min();
 }
 
-/// Describes the difference between a time stamp and the previous one.
 std::string course(std::int64_t before_ns, std::int64_t now_ns) {
   if (now_ns > before_ns) return "increases by " + seconds_text(between(before_ns, now_ns));
   if (now_ns < before_ns) return "decreases by " + seconds_text(between(now_ns, before_ns));
-  return now_ns == 0 ? "is 0 in this message and in the previous message" : "does not change";
+  return now_ns == 0 ? "is 0 in both messages" : "does not change";
 }
 
 }  // namespace
@@ -55,7 +51,8 @@ std::int64_t stamp_of(const ros::Header& header) {
 std::int64_t BagStamps::chosen(std::int64_t header_ns, std::int64_t record_ns, const std::string& where) const {
   if (source_ == StampSource::header) return header_ns;
   if (record_ns < 0 || record_ns > kLast_ns)
-    throw BadInput(fmt::format("{}: the record's stamp is {} ns; it must be from 0 to {}", where, record_ns, kLast_ns));
+    throw BadInput(fmt::format("{}: the record stamp of the message is {} ns; it must be from 0 to {} ns", where,
+                               record_ns, kLast_ns));
   return record_ns;
 }
 
@@ -65,17 +62,17 @@ void BagStamps::add(std::int64_t header_ns, std::int64_t record_ns) {
 }
 
 std::string BagStamps::disorder(std::size_t k) const {
-  if (k == 0) return "the time stamp is far from the other time stamps";
+  if (k == 0) return "the time stamp of this message is far from the time stamps of all other messages";
   const std::string header = "the header's " + course(header_ns_[k - 1], header_ns_[k]),
                     record = "the record's " + course(record_ns_[k - 1], record_ns_[k]);
   const bool by_header = source_ == StampSource::header;
   const bool header_rises = header_ns_[k] > header_ns_[k - 1], record_rises = record_ns_[k] > record_ns_[k - 1];
   const bool rises = by_header ? header_rises : record_rises, other_rises = by_header ? record_rises : header_rises;
-  return fmt::format("the time stamp {}: {}{}", rises ? "is out of order" : "does not increase",
-                     by_header ? header + ", " + record : record + ", " + header,
-                     rises || !other_rises ? ""
-                     : by_header           ? "; set '--stamps record' to use the record stamps"
-                                           : "; set '--stamps header' to use the header stamps");
+  return std::string(rises ? "the time stamp is out of order: " : "the time stamp does not increase: ") +
+         (by_header ? header + ", " + record : record + ", " + header) +
+         (rises || !other_rises ? ""
+          : by_header           ? " (set '--stamps record')"
+                                : " (set '--stamps header')");
 }
 
 std::pair<std::int64_t, std::int64_t> BagStamps::lag_ns() const {

@@ -10,11 +10,9 @@
 
 #include "scenarios/recordings/bags/ros_bytes.hpp"
 
-/// bag_storage.hpp defines the common interface of all types of bags. A bag contains topics, and messages as bytes in
-/// order of time.
 namespace tumble::scenarios {
 
-/// BagTopic is a topic with its message type in the form of ROS 1, "sensor_msgs/Imu"; ROS 2 uses "sensor_msgs/msg/Imu".
+/// `type` has the form of ROS 1, "sensor_msgs/Imu", also for bags of ROS 2.
 struct BagTopic {
   std::string name, type;
 };
@@ -23,12 +21,11 @@ class BagWriter {
  public:
   virtual ~BagWriter() = default;
   /// Registers these topics before all other topics, in this order. Returns false if this type of bag registers each
-  /// topic with its first message; the order of topics can then differ.
+  /// topic with its first message, so the order can differ.
   virtual bool begin_with(const std::vector<BagTopic>& topics) = 0;
-  /// Writes a message to the bag. Messages must be in order of time, and each topic has one message type. Throws
-  /// BadInput if writing fails.
+  /// Messages must be in order of time, and each topic has one message type. Throws BadInput if writing fails.
   virtual void write(const std::string& topic, std::int64_t stamp_ns, const ros::Message& message) = 0;
-  /// Completes the bag. The destructor removes an incomplete bag. Throws BadInput if writing fails.
+  /// The destructor removes an incomplete bag. Throws BadInput if writing fails.
   virtual void finish() = 0;
 };
 
@@ -36,32 +33,31 @@ class BagReader {
  public:
   virtual ~BagReader() = default;
   virtual std::vector<BagTopic> topics() = 0;
-  /// Take receives a message and the time of its record [ns since 1970].
+  /// `record_ns` is the time of the message's record [ns since 1970].
   using Take = std::function<void(ros::Bytes&, std::int64_t record_ns)>;
   /// Calls `take` for each message of the topic, in the order of recording. Throws BadInput if the bag is damaged.
   virtual void read(const std::string& topic, const Take& take) = 0;
-  /// Returns true if the messages of the topic have CDR encoding, and false for the encoding of ROS 1.
+  /// Returns true for messages in CDR encoding, and false for the encoding of ROS 1.
   virtual bool cdr(const std::string& topic) const = 0;
 
   std::vector<std::string> notes;  ///< remarks for the user, for example on files that the bag's metadata does not list
 };
 
-/// Note to the user for a bag of several files.
 inline constexpr const char* kFilesSorted =
-    "the bag does not list its files in the order of time; the import reads the files in the order of time";
+    "the metadata of the bag does not list the files by time; the import reads the files in the order of time";
 
 std::unique_ptr<BagWriter> make_ros1_writer(const std::filesystem::path& file);
 std::unique_ptr<BagWriter> make_ros2_writer(const std::filesystem::path& folder);
 std::unique_ptr<BagWriter> make_mcap_writer(const std::filesystem::path& file);
 std::unique_ptr<BagWriter> make_ros2_mcap_writer(const std::filesystem::path& folder);
-/// Opens a ROS 1 bag: a file, or a folder of files that are parts of one recording, whose messages are merged by time.
+/// The path is a file, or a folder of files that are parts of one recording, whose messages are merged by time.
 std::unique_ptr<BagReader> open_ros1_bag(const std::filesystem::path& path);
 std::unique_ptr<BagReader> open_ros2_bag(const std::filesystem::path& path);
-/// Opens several MCAP files that form one bag. The files are read in the order of their first messages.
+/// Opens several MCAP files as one bag, in the order of their first messages.
 std::unique_ptr<BagReader> open_mcap(const std::vector<std::filesystem::path>& files);
 
-/// Checks every length, position and offset in the records of a ROS 1 bag against the file size, because librosbag does
-/// not. Throws BadInput, with the offset in the file, if a check fails.
+/// Checks every length, position and offset in the bag against the file size, because librosbag does not. Throws
+/// BadInput, with the offset in the file, if a check fails.
 void check_ros1_bag(const std::filesystem::path& file);
 
 }  // namespace tumble::scenarios

@@ -19,13 +19,10 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// A larger difference between header and record stamps gives a note.
 constexpr double kClocksApart_s = 1e-3;
-/// Points that are later than their record by more than this value give a note. Smaller differences between the clocks
-/// of two computers are normal.
+/// Clocks of two computers may differ by up to 10 ms.
 constexpr double kAhead_s = 0.01;
 
-/// Calls `take(message, origin)` for each message of the topic, PointCloud2 or CustomMsg.
 template <class Take>
 void read_clouds(const OpenedBag& bag, const std::string& topic, LeftOut& left_out, Take&& take) {
   if (is_livox_type(bag.topic(topic).type)) return bag.read<ros::LivoxCustomMsg>(topic, take, &left_out);
@@ -49,8 +46,6 @@ void note_points_to_come(const std::string& topic, const BuiltSweeps& built, con
                   topic, std::to_string(middle_s)));
 }
 
-/// Stores the start of each sweep whose stamp is in order. `numbers` contains the positions of the messages with these
-/// stamps.
 void keep_in_order(const OpenedBag& bag, const std::string& topic, const BagStamps& stamps,
                    const std::vector<std::size_t>& numbers, CloudHeaders& out) {
   const std::vector<bool> in_order = stamps_in_order(stamps.times_ns());
@@ -103,7 +98,7 @@ CloudHeaders read_headers(const OpenedBag& bag, const std::string& topic, const 
       if (start) *start -= out.period_ns;
     }
     out.remark +=
-        fmt::format("{}the import assumes that each sweep starts {} s before its record stamp",
+        fmt::format("{}the import assumes that each sweep starts {} s (one sweep period) before its record stamp",
                     out.remark.empty() ? "" : "; ", std::to_string(1e-9 * static_cast<double>(out.period_ns)));
   }
   return out;
@@ -119,8 +114,8 @@ BuiltSweeps read_lidar(const OpenedBag& bag, SensorMountings& places, const std:
   LeftOut counted_in_headers("clouds");
   read_clouds(bag, topic, counted_in_headers, [&]<class Message>(const Message& message, const MessageOrigin& origin) {
     if (origin.number >= headers.starts.size())
-      throw BadInput(
-          fmt::format("{}: the frame of this message differs from the frame of the previous message", origin.where));
+      throw BadInput(fmt::format(
+          "{}: the frame_id of this point cloud differs from the frame_id of the previous point cloud", origin.where));
     const std::optional<std::int64_t> start_ns = headers.starts[origin.number];
     if (!start_ns) return;
     if constexpr (std::is_same_v<Message, ros::LivoxCustomMsg>) {

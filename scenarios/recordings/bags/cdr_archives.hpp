@@ -13,10 +13,9 @@
 
 #include "scenarios/recordings/bags/ros1_archives.hpp"
 
-/// The classes in cdr_archives.hpp encode messages in the CDR format of ROS 2, by the library Fast-CDR.
 namespace tumble::scenarios::ros {
 
-/// CdrBound computes an upper bound of the size of a message in bytes, including padding.
+/// CdrBound computes an upper bound of the message size in bytes, including padding.
 class CdrBound {
  public:
   void operator()(std::uint8_t) { bytes += 1; }
@@ -40,7 +39,7 @@ class CdrBound {
   static constexpr std::size_t kPadding = 7;
 };
 
-/// CdrWriter writes a message to a buffer of zeros, because Fast-CDR does not write padding bytes.
+/// The buffer starts with zeros, because Fast-CDR does not write padding bytes.
 class CdrWriter {
  public:
   explicit CdrWriter(std::size_t bound)

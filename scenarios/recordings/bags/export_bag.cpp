@@ -19,7 +19,7 @@ namespace {
 constexpr std::int64_t kTruthStep_ns = 5000000, kClockStep_ns = 10000000;
 constexpr const char *kWorld = "world", *kBody = "body";
 
-/// Event is an item to write, with the time at which a subscriber would receive it. A sweep is received at its end.
+/// `time_ns` is the time at which a subscriber would receive the item. A sweep is received at its end.
 struct Event {
   enum Kind { imu, sweep, truth, pose, cloud };
   std::int64_t time_ns;
@@ -27,7 +27,6 @@ struct Event {
   std::size_t of, index;  ///< index of the sensor or track, and index of the reading
 };
 
-/// Adds the true poses at a reduced rate, except at times at which a reference is unknown.
 void add_truth(const StoredTruth& truth, std::vector<Event>& events) {
   constexpr std::size_t kSegment = 16384;
   const auto step = static_cast<std::size_t>(std::max<std::int64_t>(kTruthStep_ns / truth.period_ns, 1));
@@ -78,7 +77,6 @@ std::vector<Event> events_of(const sim::Sensors& sensors, std::size_t imus, std:
   return events;
 }
 
-/// Returns the event of each IMU's first reading, in the order of the sensors.
 std::vector<Event> first_readings(std::size_t imus, const std::vector<Event>& events) {
   std::vector<Event> first;
   for (std::size_t s = 0; s < imus; ++s) {
@@ -89,7 +87,6 @@ std::vector<Event> first_readings(std::size_t imus, const std::vector<Event>& ev
   return first;
 }
 
-/// SensorNames contains the topic and frame names of a sensor in a bag.
 struct SensorNames {
   std::string topic, frame;
 };
@@ -108,7 +105,6 @@ std::vector<SensorNames> names_of_lidars(const sim::Sensors& sensors, const std:
   return out;
 }
 
-/// Export writes a recording to a bag.
 class Export {
  public:
   Export(const sim::Sensors& sensors, const BagWriting& writing, BagWriter& bag)
@@ -142,8 +138,7 @@ class Export {
     return origin_ns_ + time_ns;
   }
 
-  /// Writes the first message of the primary IMU first. Readers take the first IMU in a bag as primary, but another IMU
-  /// may have an earlier reading.
+  /// The first message must belong to the primary IMU, because readers take the first IMU in a bag as primary.
   void begin_with_imus(std::vector<Event>& events) {
     const std::vector<Event> first = first_readings(imus_.size(), events);
     const auto earlier = [](const Event& a, const Event& b) { return a.time_ns < b.time_ns; };
@@ -212,7 +207,6 @@ class Export {
     bag_.write("/tf", stamp, ros::TFMessage{{transform_message(pose.p_WB_m, pose.q_WB, child, header)}});
   }
 
-  /// Whether a cloud has points is known only after its creation.
   void write_cloud(const Event& event) {
     const BagTrack& track = writing_.tracks[event.of];
     const BagCloud cloud = track.cloud(track, event.index);
@@ -226,9 +220,9 @@ class Export {
   const BagWriting& writing_;
   BagWriter& bag_;
   std::int64_t origin_ns_;
-  std::vector<SensorNames> imus_, lidars_;  ///< names of the written sensors
-  std::string body_;                        ///< frame of the body
-  std::optional<std::int64_t> tick_ns_;     ///< time of the latest message of the clock
+  std::vector<SensorNames> imus_, lidars_;
+  std::string body_;
+  std::optional<std::int64_t> tick_ns_;  ///< time of the latest message of the clock
 };
 
 void write_bag(const sim::Sensors& sensors, const BagWriting& writing, BagWriter& bag) {

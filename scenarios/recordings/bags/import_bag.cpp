@@ -25,7 +25,7 @@ constexpr const char* kImu = "sensor_msgs/Imu";
 constexpr const char* kCloud = "sensor_msgs/PointCloud2";
 constexpr const char *kTransforms = "tf2_msgs/TFMessage", *kOldTransforms = "tf/tfMessage";
 constexpr const char* kStaticTopic = "/tf_static";
-constexpr const char* kNoMessage = ": the topic has no messages and is left out";
+constexpr const char* kNoMessage = ": empty topic left out";
 bool is_imu_type(const std::string& type) {
   return type == kImu;
 }
@@ -45,8 +45,6 @@ StaticFrames read_frames(const OpenedBag& bag) {
   return frames;
 }
 
-/// Adds a note for each lidar topic that cannot be read: raw packets, compressed clouds, and the old message type
-/// PointCloud.
 void note_unread_clouds(const OpenedBag& bag, std::vector<std::string>& notes) {
   for (const BagTopic& topic : bag.topics) {
     const auto has = [&](const char* word) { return topic.type.find(word) != std::string::npos; };
@@ -63,7 +61,7 @@ void note_unread_clouds(const OpenedBag& bag, std::vector<std::string>& notes) {
   }
 }
 
-/// Throws BadInput if the recorded times of the sensors do not overlap, because the sensors then have no common clock.
+/// Sensors whose recorded times do not overlap have no common clock.
 void require_one_clock(const sim::Sensors& sensors, bool by_headers, const std::filesystem::path& path) {
   struct Span {
     std::string name;
@@ -85,15 +83,13 @@ void require_one_clock(const sim::Sensors& sensors, bool by_headers, const std::
           "check that both sensors use the same clock{}",
           path.string(), early.name, late.name,
           std::to_string((static_cast<double>(late.first_ns) - static_cast<double>(early.last_ns)) * 1e-9),
-          by_headers ? "; set '--stamps record' to use the record stamps" : "");
+          by_headers ? " (set '--stamps record')" : "");
       if (by_headers) throw RepairableInput(text, {"--stamps", "record"});
       throw BadInput(text);
     }
   }
 }
 
-/// TopicsOfKind reads all topics of one kind: IMU or lidar. If the user chose no topics, an error message names the
-/// option that skips the faulty topic.
 class TopicsOfKind {
  public:
   TopicsOfKind(const std::vector<std::string>& topics, bool chosen, bool leave_out, const char* option)
@@ -108,10 +104,12 @@ class TopicsOfKind {
         read(topic);
       } catch (const BadInput& error) {
         if (topics_.size() < 2 || chosen_) throw;
-        if (!leave_out_) throw BadInput(fmt::format("{} ({} selects the topics to read)", error.what(), option_));
+        if (!leave_out_)
+          throw BadInput(fmt::format("{}; the option {} can select other topics", error.what(), option_));
         if (!first) first = std::current_exception();
         ++failed;
-        notes.push_back(fmt::format("{}: caution: the topic cannot be read and is left out: {}", topic, error.what()));
+        notes.push_back(
+            fmt::format("{}: caution: the import cannot read this topic and leaves it out: {}", topic, error.what()));
       }
     }
     if (first && failed == topics_.size()) std::rethrow_exception(first);
@@ -160,11 +158,10 @@ void add_lidars(const OpenedBag& bag, SensorMountings& places, const BagReading&
   const auto is_timed = [](const auto& each) { return has_timed_points(each.second.lidar); };
   if (!chosen) std::stable_partition(lidars.begin(), lidars.end(), is_timed);
   if (lidars.size() > 1 && !chosen) {
-    out.notes.push_back(
-        fmt::format("{}: mapping uses the lidar of this topic, because {} (set --lidar-topic to choose another topic)",
-                    lidars.front().first,
-                    is_timed(lidars.front()) && !is_timed(lidars.back()) ? "the points of the topic have time stamps"
-                                                                         : "the topic is the first with point clouds"));
+    out.notes.push_back(fmt::format(
+        "{}: mapping methods use the lidar of this topic, because {} (set --lidar-topic to choose another topic)",
+        lidars.front().first,
+        is_timed(lidars.front()) && !is_timed(lidars.back()) ? "its points have times" : "it is listed first"));
   }
   for (auto& [topic, built] : lidars) add_lidar(out, std::move(built));
 }

@@ -13,18 +13,15 @@
 
 #include "scenarios/recordings/bags/mcap_records.hpp"
 
-/// mcap_bytes.hpp encodes and decodes the records of MCAP files.
 namespace tumble::scenarios::mcap {
 
 inline constexpr std::string_view kMagic("\x89MCAP0\r\n", 8);
 inline constexpr std::uint64_t kHeadBytes = 9;  ///< bytes of a record's kind and length
 
-/// BadRecord is the exception for a record that ends before its last field.
 struct BadRecord : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Put appends fields to a byte string.
 class Put {
  public:
   template <std::unsigned_integral Number>
@@ -42,7 +39,6 @@ class Put {
   std::string bytes;
 };
 
-/// Take reads fields from the front of a byte range. Throws BadRecord if the bytes end before the field does.
 class Take {
  public:
   explicit Take(std::string_view bytes) : left(bytes) {}
@@ -85,7 +81,6 @@ class Take {
   }
 };
 
-/// Encodes a whole MCAP record. The bytes of `tail` follow the fields of the record.
 template <class Record>
 std::string to_bytes(Record record, std::string_view tail = {}) {
   Put content, out;
@@ -95,8 +90,7 @@ std::string to_bytes(Record record, std::string_view tail = {}) {
   return std::move(out.bytes.append(content.bytes).append(tail));
 }
 
-/// Decodes an MCAP record from its bytes. Additional fields of later versions of the format are ignored. Throws
-/// BadRecord if the bytes end before the last field.
+/// Additional fields of later versions of MCAP are ignored. Throws BadRecord if the bytes end before the last field.
 template <class Record>
 Record from_bytes(std::string_view content) {
   Record record;

@@ -15,9 +15,7 @@ namespace tumble::scenarios::mcap {
 
 namespace {
 
-/// Largest size of a chunk (compressed or not), of a record outside chunks, and of the summary.
 constexpr std::uint64_t kBytesMax = 1u << 28;
-/// Block size for reading records outside chunks.
 constexpr std::uint64_t kLooseBytes = 1u << 22;
 constexpr std::uint64_t kFooterBytes = kHeadBytes + 20, kDataEndBytes = kHeadBytes + 4;
 
@@ -25,7 +23,6 @@ std::string in_bytes(std::uint64_t bytes) {
   return std::to_string(bytes) + " bytes";
 }
 
-/// Returns true if the header of a chunk equals its entry in the chunk index.
 bool agree(const ChunkIndex& a, const ChunkIndex& b) {
   return a.message_start_time == b.message_start_time && a.message_end_time == b.message_end_time &&
          a.chunk_start_offset == b.chunk_start_offset && a.chunk_length == b.chunk_length &&
@@ -56,7 +53,8 @@ void File::fail(std::uint64_t at, const std::string& what) const {
 
 std::string File::text(std::uint64_t at, std::uint64_t size) {
   if (at > bytes_ || size > bytes_ - at)
-    fail(at, fmt::format("{} extend beyond the end of the file; the file is damaged or truncated", in_bytes(size)));
+    fail(at, fmt::format("the next {} would extend beyond the end of the file; the file is damaged or truncated",
+                         in_bytes(size)));
   std::string out(size, '\0');
   stream_.clear();
   stream_.seekg(static_cast<std::streamoff>(at));
@@ -73,15 +71,15 @@ Record File::record_in(std::string_view records, std::uint64_t place, std::uint6
   std::uint64_t size = 0;
   take(out.op), take(size);
   if (size > take.left.size()) {
-    fail(at + place, fmt::format("a record states {}, but at most {} follow: the file is damaged or truncated",
-                                 in_bytes(size), take.left.size()));
+    fail(at + place,
+         fmt::format("a record states a length of {}, but at most {} bytes follow: the file is damaged or truncated",
+                     in_bytes(size), take.left.size()));
   }
   if (out.op == 0) fail(at + place, "a record has the kind 0, which is not allowed: the file is damaged");
   out.content = take.cut(size);
   return out;
 }
 
-/// Reads the magic bytes, the header, the footer and the end of the data section.
 void File::open_ends() {
   if (bytes_ < kMagic.size() || text(0, kMagic.size()) != kMagic)
     fail(0, "the file does not begin with the magic bytes of MCAP 0, so it is not an MCAP file");
@@ -107,7 +105,7 @@ void File::check_data() {
   const std::string bytes = text(data_end_, kDataEndBytes);
   const Record end = record_in(bytes, 0, data_end_);
   if (end.op != kDataEnd || end.content.size() != kDataEndBytes - kHeadBytes)
-    fail(data_end_, "the data section does not end before the summary: the file is damaged");
+    fail(data_end_, "the record that ends the data section is missing before the summary: the file is damaged");
   const std::uint32_t stated = as<DataEnd>(end, data_end_).data_section_crc;
   if (stated == 0) return;
   std::uint32_t crc = 0;
@@ -126,7 +124,7 @@ void File::read_summary() {
   if (footer_.summary_start == 0) return;
   const std::uint64_t size = footer_at_ - footer_.summary_start;
   if (size > kBytesMax)
-    fail(footer_.summary_start, fmt::format("the summary has {}; at most 256 MiB can be read", in_bytes(size)));
+    fail(footer_.summary_start, fmt::format("the summary section has {}; at most 256 MiB can be read", in_bytes(size)));
   const std::string all = text(footer_.summary_start, size + kFooterBytes);
   const std::uint32_t crc = crc32_of(std::string_view(all).substr(0, all.size() - sizeof(footer_.summary_crc)));
   if (footer_.summary_crc != 0 && crc != footer_.summary_crc) {
@@ -161,7 +159,8 @@ void File::check_groups(std::string_view summary, std::string_view groups) const
   walk(groups, groups_at, [&](const Record& record) {
     const std::uint64_t at = groups_at + record.at;
     if (record.op != kSummaryOffset)
-      fail(at, fmt::format("a record of kind {} is not allowed at this position: the file is damaged", record.op));
+      fail(at, fmt::format("a record of kind {} is not allowed in the summary offset section: the file is damaged",
+                           record.op));
     const auto group = as<SummaryOffset>(record, at);
     const std::uint64_t start = group.group_start - footer_.summary_start;
     if (group.group_start < footer_.summary_start || start > summary.size() ||
@@ -178,7 +177,6 @@ void File::check_groups(std::string_view summary, std::string_view groups) const
   });
 }
 
-/// Uses the chunk index if it is complete; otherwise the file is scanned.
 void File::take_indexed(std::vector<ChunkIndex> chunks) {
   if (chunks.empty()) return;
   std::sort(chunks.begin(), chunks.end(),
@@ -206,7 +204,7 @@ void File::take_indexed(std::vector<ChunkIndex> chunks) {
     }
     segments_.push_back({at, each.chunk_length, each.message_start_time, each.message_end_time, each});
   }
-  // The index lacks messages outside chunks. Without statistics, such messages cannot be excluded, so the file is
+  // The chunk index lacks messages outside chunks. Without statistics, such messages cannot be excluded, so the file is
   // scanned.
   if (!statistics_ || channels_.empty()) segments_.clear();
 }
@@ -222,7 +220,8 @@ std::string File::records(const Segment& segment) {
   if (!segment.chunk) return text(segment.at, segment.bytes);
   std::uint32_t crc = 0;
   const ChunkIndex own = head_of_chunk(segment.at, segment.bytes, &crc);
-  if (!agree(own, *segment.chunk)) fail(segment.at, "the chunk differs from its index: the file is damaged");
+  if (!agree(own, *segment.chunk))
+    fail(segment.at, "the header of a chunk differs from its entry in the chunk index: the file is damaged");
   std::string packed = text(segment.at + segment.bytes - own.compressed_size, own.compressed_size), out;
   try {
     if (own.compression == "lz4")
@@ -245,10 +244,12 @@ std::optional<MessageIndex> File::index_of(const Segment& segment, std::uint16_t
   if (!segment.chunk || !segment.chunk->message_index_offsets.contains(channel)) return std::nullopt;
   const std::uint64_t at = segment.chunk->message_index_offsets.at(channel);
   const std::uint64_t end = segment.at + segment.bytes + segment.chunk->message_index_length;
-  if (end - at < kHeadBytes) fail(at, "the message index ends within its head: the file is damaged");
+  if (end - at < kHeadBytes)
+    fail(at, "the message index of a chunk ends within the head of a record: the file is damaged");
   const std::string bytes = text(at, std::min(end - at, kBytesMax));
   const Record record = record_in(bytes, 0, at);
-  if (record.op != kMessageIndex) fail(at, "this record must be a message index: the file is damaged");
+  if (record.op != kMessageIndex)
+    fail(at, "the record after a chunk must be a message index, but is not: the file is damaged");
   auto index = as<MessageIndex>(record, at);
   if (index.channel_id != channel) {
     fail(at, fmt::format("this message index belongs to channel {}, but must belong to channel {}: the file is damaged",
@@ -257,17 +258,16 @@ std::optional<MessageIndex> File::index_of(const Segment& segment, std::uint16_t
   return index;
 }
 
-/// Reads the header of a chunk and returns it in the form of an index entry.
 ChunkIndex File::head_of_chunk(std::uint64_t at, std::uint64_t bytes, std::uint32_t* crc) {
   constexpr std::uint64_t kMost = kHeadBytes + 8 + 8 + 8 + 4 + 4 + 64 + 8;  // includes the name of the compression
   std::string head = text(at, std::min(bytes, kMost));
   if (head.size() < kHeadBytes || static_cast<std::uint8_t>(head[0]) != kChunk)
-    fail(at, "this record must be a chunk: the file is damaged");
+    fail(at, "the chunk index refers to a record that is not a chunk: the file is damaged");
   std::uint64_t content = 0;
   std::memcpy(&content, head.data() + 1, sizeof(content));
   if (content != bytes - kHeadBytes)
-    fail(at, fmt::format("a chunk has {}, but its index states {}: the file is damaged", in_bytes(content),
-                         in_bytes(bytes - kHeadBytes)));
+    fail(at, fmt::format("a chunk has {}, but its entry in the chunk index states {}: the file is damaged",
+                         in_bytes(content), in_bytes(bytes - kHeadBytes)));
   Take take(std::string_view(head).substr(kHeadBytes));
   Chunk chunk;
   try {
@@ -277,10 +277,10 @@ ChunkIndex File::head_of_chunk(std::uint64_t at, std::uint64_t bytes, std::uint3
   }
   const std::uint64_t taken = head.size() - take.left.size();
   if (chunk.records_size != bytes - taken)
-    fail(at, fmt::format("a chunk states {} but contains {}: the file is damaged", in_bytes(chunk.records_size),
-                         in_bytes(bytes - taken)));
+    fail(at, fmt::format("the header of a chunk states {} of records, but the chunk contains {}: the file is damaged",
+                         in_bytes(chunk.records_size), in_bytes(bytes - taken)));
   if (chunk.records_size > kBytesMax || chunk.uncompressed_size > kBytesMax) {
-    fail(at, fmt::format("a chunk has {}; at most 256 MiB can be read",
+    fail(at, fmt::format("a chunk has a size of {}; at most 256 MiB can be read",
                          in_bytes(std::max(chunk.records_size, chunk.uncompressed_size))));
   }
   if (!chunk.compression.empty() && chunk.compression != "lz4" && chunk.compression != "zstd") {

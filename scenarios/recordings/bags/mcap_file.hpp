@@ -13,21 +13,18 @@
 #include "scenarios/recordings/bags/mcap_bytes.hpp"
 #include "scenarios/recordings/bags/mcap_records.hpp"
 
-/// File reads an MCAP file chunk by chunk, and checks every length, position, time and checksum before use.
+/// The reader checks every length, position, time and checksum before use.
 namespace tumble::scenarios::mcap {
 
-/// Segment is a sequence of consecutive records of a file: one chunk, or records outside chunks.
 struct Segment {
   std::uint64_t at = 0, bytes = 0;  ///< position in the file, including the heads of records
   std::uint64_t first_ns = 0, last_ns = 0;
   std::optional<ChunkIndex> chunk;  ///< set for a chunk; has an index if the file has a summary
-  /// Returns true if the segment may contain messages of the channel.
   bool may_hold(std::uint16_t channel) const {
     return !chunk || chunk->message_index_offsets.empty() || chunk->message_index_offsets.contains(channel);
   }
 };
 
-/// Record is one MCAP record: its kind, the position of its head, and its content.
 struct Record {
   std::uint8_t op = 0;
   std::uint64_t at = 0;
@@ -36,25 +33,20 @@ struct Record {
 
 class File {
  public:
-  /// Opens an MCAP file and reads its summary; without a summary, scans the file. If the file contains a checksum of
-  /// the data section, the checksum is verified. The cost is proportional to the file size; memory contains some MiB
-  /// and the summary. Throws BadInput with the offset if the file is not MCAP, is truncated or damaged, or has a
-  /// compression other than none, lz4 or zstd. Throws BadInput for a chunk or record larger than 256 MiB.
+  /// Reads the summary; without a summary, scans the file. Verifies the checksum of the data section, if present. The
+  /// cost is O(file size); memory contains some MiB and the summary. Throws BadInput with the offset if the file is not
+  /// MCAP, is truncated or damaged, has a compression other than none, lz4 or zstd, or has a chunk or record larger
+  /// than 256 MiB.
   explicit File(const std::filesystem::path& path);
 
   const std::map<std::uint16_t, Schema>& schemas() const { return schemas_; }
   const std::map<std::uint16_t, Channel>& channels() const { return channels_; }
-  /// Returns the segments in the order of their first messages.
   const std::vector<Segment>& segments() const { return segments_; }
-  /// Returns the number of messages of a channel according to the statistics record; empty if the file has none.
   std::optional<std::uint64_t> stated_messages(std::uint16_t channel) const;
 
-  /// Returns the uncompressed records of a segment, after a check of its checksum.
   std::string records(const Segment& segment);
-  /// Returns the message index of the channel that follows the segment's chunk; empty if the chunk has no index.
   std::optional<MessageIndex> index_of(const Segment& segment, std::uint16_t channel);
 
-  /// Calls `take(record)` for each of `records`. For uncompressed records, `at` is their position in the file.
   template <class Call>
   void walk(std::string_view records, std::uint64_t at, Call&& take) const {
     for (std::uint64_t place = 0; place < records.size();) {
@@ -63,7 +55,6 @@ class File {
       place += kHeadBytes + record.content.size();
     }
   }
-  /// Decodes the content of a record. If the content is damaged, throws BadInput with the offset in the file.
   template <class Content>
   Content as(const Record& record, std::uint64_t at) const {
     try {
@@ -72,7 +63,6 @@ class File {
       fail(at, "a record of kind " + std::to_string(record.op) + " " + error.what());
     }
   }
-  /// Registers a schema or channel that was found at offset `at`. A repetition must be identical.
   void add(Schema schema, std::uint64_t at);
   void add(Channel channel, std::uint64_t at);
   [[noreturn]] void fail(std::uint64_t at, const std::string& what) const;

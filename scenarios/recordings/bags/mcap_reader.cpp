@@ -16,10 +16,9 @@ namespace mcap {
 
 namespace {
 
-/// Limit of the size of messages that wait because a later chunk may contain an earlier message.
+/// A message waits in memory while a later chunk may contain an earlier message.
 constexpr std::uint64_t kWaitingMax = 1u << 30;
 
-/// Returns true for messages with CDR encoding, and false for ROS 1 encoding.
 bool is_cdr(const Channel& channel, const Schema& schema) {
   return channel.message_encoding == "cdr" && (schema.encoding == "ros2msg" || schema.encoding == "ros2idl");
 }
@@ -27,8 +26,7 @@ bool is_ros1(const Channel& channel, const Schema& schema) {
   return channel.message_encoding == "ros1" && schema.encoding == "ros1msg";
 }
 
-/// TopicWalk iterates over the messages of one topic of one file by time. Memory contains one chunk, and the chunks
-/// that overlap it in time.
+/// Memory contains one chunk, and the chunks that overlap it in time.
 class TopicWalk {
  public:
   TopicWalk(File& file, std::set<std::uint16_t> channels, const BagReader::Take& take)
@@ -78,7 +76,6 @@ class TopicWalk {
                     time_ns, segment.first_ns, segment.last_ns));
   }
 
-  /// Checks that the message index after a chunk lists exactly the messages of the chunk.
   void require_indexed(const Segment& segment, std::uint16_t channel,
                        std::vector<std::pair<std::uint64_t, std::uint64_t>>& found) {
     std::optional<MessageIndex> index = file_.index_of(segment, channel);
@@ -106,7 +103,6 @@ class TopicWalk {
     while (!waiting_.empty() && waiting_.begin()->first < time_ns) give_first();
   }
   void give_first() {
-    // ROS times are limited to int64.
     const std::uint64_t time_ns = std::min<std::uint64_t>(waiting_.begin()->first, INT64_MAX);
     ros::Bytes bytes = std::move(waiting_.begin()->second);
     waiting_bytes_ -= bytes.size();
@@ -117,7 +113,7 @@ class TopicWalk {
   File& file_;
   std::set<std::uint16_t> channels_;
   const BagReader::Take& take_;
-  std::multimap<std::uint64_t, ros::Bytes> waiting_;  ///< equal times keep the order of the file
+  std::multimap<std::uint64_t, ros::Bytes> waiting_;  ///< messages with equal times keep the order of the file
   std::uint64_t waiting_bytes_ = 0;
   std::map<std::uint16_t, std::uint64_t> counts_;
 };
@@ -178,8 +174,6 @@ class McapReader : public BagReader {
     return channel.schema_id == 0 ? none : file.schemas().at(channel.schema_id);
   }
 
-  /// Returns the type name in the form of ROS 1. If the messages are not ROS messages, returns the type with its
-  /// encoding, which no reader accepts.
   static std::string type_of(const File& file, const Channel& channel) {
     const Schema& schema = schema_of(file, channel);
     if (is_cdr(channel, schema)) return ros1_type(schema.name);

@@ -7,10 +7,9 @@
 #include <utility>
 #include <vector>
 
-/// mcap_records.hpp defines the record types of MCAP files (mcap.dev/spec, version 0), with their fields in the order
-/// of the specification. Numbers are little-endian. A text is preceded by its length (32 bits); a list or map is
-/// preceded by its size in bytes. An encoded record consists of its kind (8 bits), its length (64 bits) and its content
-/// (mcap_bytes.hpp).
+/// The fields of MCAP records have the order of the specification (mcap.dev/spec, version 0). Numbers are
+/// little-endian. A text is preceded by its length (32 bits); a list or map is preceded by its size in bytes. A record
+/// consists of its kind (8 bits), its length (64 bits) and its content.
 namespace tumble::scenarios::mcap {
 
 enum Op : std::uint8_t {
@@ -53,14 +52,12 @@ struct Channel {
   std::map<std::string, std::string> metadata;
   bool operator==(const Channel&) const = default;
 };
-/// Message is the header of a message.
 struct Message {
   static constexpr Op op = kMessage;
   std::uint16_t channel_id = 0;
   std::uint32_t sequence = 0;
   std::uint64_t log_time = 0, publish_time = 0;
 };
-/// Chunk is the header of a chunk.
 struct Chunk {
   static constexpr Op op = kChunk;
   std::uint64_t message_start_time = 0, message_end_time = 0, uncompressed_size = 0;

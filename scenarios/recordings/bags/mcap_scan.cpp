@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Scans the data of MCAP files whose summary is missing or incomplete.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,10 +10,8 @@ namespace tumble::scenarios::mcap {
 namespace {
 
 constexpr std::uint64_t kRecordMax = 1u << 28;
-/// Largest size of a segment of records outside chunks.
 constexpr std::uint64_t kSegmentBytes = 1u << 22;
 
-/// Extends the time range of a segment to `time_ns`.
 void cover(Segment& segment, bool& empty, std::uint64_t time_ns) {
   segment.first_ns = empty ? time_ns : std::min(segment.first_ns, time_ns);
   segment.last_ns = empty ? time_ns : std::max(segment.last_ns, time_ns);
@@ -41,19 +38,22 @@ void File::scan() {
     take(op), take(size);
     const std::uint64_t left = data_end_ - at - kHeadBytes;
     if (size > left) {
-      fail(at, fmt::format("a record states {} bytes, but at most {} follow: the file is damaged or truncated", size,
-                           left));
+      fail(at,
+           fmt::format(
+               "a record states a length of {} bytes, but at most {} bytes follow: the file is damaged or truncated",
+               size, left));
     }
     if (first && op != kHeader) fail(at, "the first record is not a header: the file is damaged");
     if (op == 0 || op == kFooter || op == kDataEnd || (op == kHeader && !first))
-      fail(at, fmt::format("a record of kind {} is not allowed at this position: the file is damaged", op));
+      fail(at, fmt::format("a record of kind {} is not allowed in the data section: the file is damaged", op));
     first = false;
     const std::uint64_t bytes = kHeadBytes + size;
     if (op == kChunk) {
       close();
       scan_chunk(head_of_chunk(at, bytes, nullptr));
     } else if (op == kSchema || op == kChannel || op == kMessage) {
-      if (bytes > kRecordMax) fail(at, fmt::format("a record has {} bytes; at most 256 MiB can be read", bytes));
+      if (bytes > kRecordMax)
+        fail(at, fmt::format("a record outside chunks has {} bytes; at most 256 MiB can be read", bytes));
       const std::string whole = text(at, bytes);
       const Record record = record_in(whole, 0, at);
       if (op == kSchema) add(as<Schema>(record, at), at);
@@ -70,7 +70,6 @@ void File::scan() {
   close();
 }
 
-/// Registers the channels in a chunk and the times of its messages.
 void File::scan_chunk(const ChunkIndex& index) {
   Segment segment{index.chunk_start_offset, index.chunk_length, 0, 0, index};
   bool empty = true;

@@ -20,14 +20,11 @@ namespace mcap {
 
 namespace {
 
-/// A chunk that reaches this size is closed.
 constexpr std::size_t kChunkBytes = 1u << 20;
 
-/// Output is the output file with a checksum of all written bytes.
 class Output {
  public:
   explicit Output(const std::filesystem::path& path) : file_(path) { put(kMagic); }
-  /// Appends bytes to the file and returns the position of the first byte.
   std::uint64_t put(std::string_view bytes) {
     file_.write(std::as_bytes(std::span(bytes.data(), bytes.size())));
     crc_ = crc32_of(bytes, crc_);
@@ -43,7 +40,6 @@ class Output {
   std::uint32_t crc_ = 0;
 };
 
-/// OpenChunk contains the uncompressed records of the current chunk, and the positions of each channel's messages.
 struct OpenChunk {
   std::string records;
   std::map<std::uint16_t, MessageIndex> index;

@@ -10,17 +10,14 @@
 #include "scenarios/recordings/left_out.hpp"
 #include "sim/parameters.hpp"
 
-/// OpenedBag reads the messages of an open bag.
 namespace tumble::scenarios {
 
-/// MessageOrigin contains the location of a message for error messages, and the time of its record.
 struct MessageOrigin {
   std::string where;
   std::int64_t record_ns;
   std::size_t number;  ///< index of the message in its topic
 };
 
-/// OpenedBag is an open bag with its topics, and its location for error messages.
 struct OpenedBag {
   BagReader& reader;
   std::string place;
@@ -37,7 +34,6 @@ struct OpenedBag {
                    (near.empty() ? "" : "; did you mean '" + near + "'?") + " (existing topics:" + topic_list() + ")");
   }
 
-  /// Lists the topics with their types, for error messages.
   std::string topic_list() const {
     std::string out;
     for (const BagTopic& each : topics) out += (out.empty() ? " " : ", ") + each.name + " " + each.type;
@@ -48,7 +44,7 @@ struct OpenedBag {
     return place + ": message " + std::to_string(message) + " of " + name;
   }
 
-  /// Returns the topics in `names`, whose type must be suitable; if `names` is empty, all topics of a suitable type.
+  /// Returns the topics in `names`, or all topics of a suitable type if `names` is empty.
   std::vector<std::string> chosen(const std::vector<std::string>& names, bool (*fits)(const std::string& type),
                                   const std::string& wanted) const {
     std::vector<std::string> out = names;
@@ -62,8 +58,7 @@ struct OpenedBag {
     return out;
   }
 
-  /// Calls `take(message, origin)` for each message of the topic. A message that cannot be decoded is counted in
-  /// `left_out`; if `left_out` is null, it throws BadInput.
+  /// A message that cannot be decoded is counted in `left_out`, or throws BadInput if `left_out` is null.
   template <class Message, class Take>
   void read(const std::string& name, Take&& take, LeftOut* left_out = nullptr) const {
     std::size_t number = 0;

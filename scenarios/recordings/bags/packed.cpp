@@ -17,11 +17,10 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Largest possible compression ratio of an LZ4 block.
+/// An LZ4 block compresses by at most a factor of 255.
 constexpr std::uint64_t kRatioMax = 255;
 constexpr std::uint64_t kFirstRoom = 1u << 20;
 
-/// Room is an output buffer that doubles its size when needed, up to the expected size.
 class Room {
  public:
   explicit Room(std::uint64_t promised) : promised_(promised), out_(std::min(promised, kFirstRoom), '\0') {}
@@ -34,12 +33,13 @@ class Room {
   std::string whole(const char* what) {
     if (given_ != promised_) {
       throw BadInput(
-          fmt::format("the {} frame contains {} bytes, but its stated size is {} bytes", what, given_, promised_));
+          fmt::format("the decompressed {} frame has {} bytes, but its stated size is {} bytes; the data are damaged",
+                      what, given_, promised_));
     }
     return std::move(out_);
   }
   [[noreturn]] void stuck(const char* what, bool no_more_input) const {
-    throw BadInput(fmt::format("the {} frame {} the stated size of {} bytes", what,
+    throw BadInput(fmt::format("the decompressed {} frame {} the stated size of {} bytes; the data are damaged", what,
                                no_more_input ? "ends before" : "is longer than", promised_));
   }
 
@@ -74,7 +74,8 @@ std::string unpacked_lz4(std::string_view packed, std::uint64_t bytes) {
   for (std::size_t left = 1; left != 0;) {
     std::size_t given = room.left(), taken = packed.size();
     left = LZ4F_decompress(context, room.at(), &given, packed.data(), &taken, nullptr);
-    if (LZ4F_isError(left) != 0) throw BadInput(fmt::format("the LZ4 frame is damaged: {}", LZ4F_getErrorName(left)));
+    if (LZ4F_isError(left) != 0)
+      throw BadInput(fmt::format("the LZ4 library reports that a frame is damaged: {}", LZ4F_getErrorName(left)));
     room.take(given);
     packed.remove_prefix(taken);
     if (left != 0 && given == 0 && taken == 0) room.stuck("LZ4", packed.empty());
@@ -93,7 +94,7 @@ std::string unpacked_zstd(std::string_view packed, std::uint64_t bytes) {
     ZSTD_outBuffer out{room.at(), size, 0};
     left = ZSTD_decompressStream(context.get(), &out, &in);
     if (ZSTD_isError(left) != 0)
-      throw BadInput(fmt::format("the Zstandard frame is damaged: {}", ZSTD_getErrorName(left)));
+      throw BadInput(fmt::format("the Zstandard library reports that a frame is damaged: {}", ZSTD_getErrorName(left)));
     room.take(out.pos);
     if (out.pos == 0 && in.pos == before) room.stuck("Zstandard", in.pos == in.size);
   }

@@ -5,19 +5,18 @@
 #include <string>
 #include <string_view>
 
-/// packed.hpp compresses and decompresses the chunks of bags, and computes checksums.
 namespace tumble::scenarios {
 
-/// Compresses the bytes to an LZ4 frame with independent blocks of at most 4 MiB, without checksums.
+/// The blocks of the LZ4 frame are independent, have at most 4 MiB, and have no checksums.
 std::string packed_lz4(std::string_view plain);
 
-/// Decompresses any LZ4 frame (linked blocks, checksums, content size), or a series of Zstandard frames, to `bytes`
-/// bytes. Memory grows with the decompressed data, so a wrong size in the file cannot exhaust it. Throws BadInput,
-/// without a location, if the data are damaged or have another size.
+/// Decompresses any LZ4 frame, or a series of Zstandard frames, to `bytes` bytes. Memory grows with the decompressed
+/// data, so a wrong size in the file cannot exhaust the memory. Throws BadInput, without a location, if the data are
+/// damaged or have another size.
 std::string unpacked_lz4(std::string_view packed, std::uint64_t bytes);
 std::string unpacked_zstd(std::string_view packed, std::uint64_t bytes);
 
-/// Returns the CRC-32 of zlib (IEEE 802.3, reflected) of the bytes, continued from the checksum `before`.
+/// Returns the CRC-32 of zlib (IEEE 802.3, reflected), continued from the checksum `before`.
 std::uint32_t crc32_of(std::string_view bytes, std::uint32_t before = 0);
 
 }  // namespace tumble::scenarios

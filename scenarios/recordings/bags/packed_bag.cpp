@@ -23,13 +23,12 @@ namespace {
 
 using std::filesystem::path;
 
-/// Returns an upper bound of the decompressed size; sensor messages compress by a factor of a few dozen at most.
+/// Sensor messages compress by a factor of a few dozen at most.
 constexpr std::uint64_t most_of(std::uint64_t packed_bytes) {
   constexpr std::uint64_t kAlways = 64u << 20, kBagRatioMax = 200;
   return kAlways + kBagRatioMax * packed_bytes;
 }
 
-/// Returns the size limit for a file that is decompressed to a folder.
 std::uint64_t most_bytes(const path& file, const path& folder) {
   constexpr std::uint64_t kLeftFree = 64u << 20;
   const std::uint64_t free = std::filesystem::space(folder).available;
@@ -67,7 +66,6 @@ void unpack(const path& file, const path& to) {
   if (!unpacked.flush()) fail("cannot be unpacked into " + to.parent_path().string());
 }
 
-/// UnpackedFiles reads decompressed files and removes them at its end.
 class UnpackedFiles : public BagReader {
  public:
   UnpackedFiles(const std::vector<path>& files,
@@ -109,10 +107,10 @@ class UnpackedMessages : public BagReader {
     const std::string where = fmt::format("{}: message {} of {}: ", place_, number, topic);
     const unsigned long long size = ZSTD_getFrameContentSize(bytes.data(), bytes.size());
     if (size == ZSTD_CONTENTSIZE_ERROR || size == ZSTD_CONTENTSIZE_UNKNOWN || size > most_of(bytes.size()))
-      throw BadInput(
-          fmt::format("{}the content is not a valid Zstandard frame; the stated size must be at most 64 MiB and at "
-                      "most 200 times the compressed size",
-                      where));
+      throw BadInput(fmt::format(
+          "{}the content of the message is not a valid Zstandard frame; its stated size must be at most 64 MiB and at "
+          "most 200 times the compressed size",
+          where));
     try {
       const std::string plain = unpacked_zstd({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, size);
       return {plain.begin(), plain.end()};

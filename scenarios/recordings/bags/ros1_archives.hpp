@@ -9,14 +9,12 @@
 #include <string>
 #include <vector>
 
-/// ros1_archives.hpp encodes and decodes messages in the little-endian layout of ROS 1. The decoder checks every length
-/// against the remaining bytes before it allocates memory.
+/// The decoder checks every length against the remaining bytes before it allocates memory.
 namespace tumble::scenarios::ros {
 
 using Bytes = std::vector<std::uint8_t>;
 static_assert(std::endian::native == std::endian::little, "ROS 1 messages are written in the byte order of memory");
 
-/// BadMessage is the exception for a message that is shorter than its fields.
 struct BadMessage : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

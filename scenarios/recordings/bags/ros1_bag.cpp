@@ -30,7 +30,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// TypedBytes contains the bytes of a message and its type, as librosbag requires.
 struct TypedBytes {
   std::string type, md5sum, definition;
   ros::Bytes bytes;
@@ -40,7 +39,6 @@ struct TypedBytes {
 
 }  // namespace tumble::scenarios
 
-// librosbag requires these traits of a message type.
 namespace ros {
 using tumble::scenarios::TypedBytes;
 namespace message_traits {
@@ -75,7 +73,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// QuietBag suppresses the log messages of librosbag during its lifetime.
 class QuietBag {
  public:
   QuietBag() { console_bridge::noOutputHandler(); }
@@ -89,7 +86,6 @@ std::string without_line_ends(std::string text) {
   return text;
 }
 
-/// Calls a function of librosbag and converts its exceptions to BadInput.
 template <class Call>
 auto guarded(const std::filesystem::path& path, const char* what, Call&& call) {
   const QuietBag quiet;
@@ -121,7 +117,7 @@ TypedBytes typed(const ros::Odometry& message) {
 TypedBytes typed(const ros::TransformStamped& message) {
   return typed_as<geometry_msgs::TransformStamped>(message);
 }
-// The build lacks headers of these three types; the checksums are those of the message definitions.
+// The build lacks headers of these three message types, so this file contains the checksums of their definitions.
 TypedBytes typed(const ros::TFMessage& message) {
   const std::string inner = ::ros::message_traits::Definition<geometry_msgs::TransformStamped>::value();
   return {ros::type_of(message), "94810edda583a504dfda3829e70d7eec",
@@ -163,8 +159,7 @@ class Ros1BagWriter : public BagWriter {
   }
 
  private:
-  /// Returns the connection header of a latched topic, whose last message is sent to new subscribers; null selects the
-  /// default of librosbag.
+  /// The last message of a latched topic is sent to new subscribers.
   boost::shared_ptr<::ros::M_string> connection_of(const std::string& topic, const TypedBytes& message) {
     if (topic != "/tf_static") return nullptr;
     return boost::make_shared<::ros::M_string>(::ros::M_string{{"topic", topic},
@@ -184,8 +179,8 @@ class Ros1BagWriter : public BagWriter {
     }
   }
 
-  /// Abandons the bag after an error. The destructor of librosbag's bag writes the file, and an exception on a full
-  /// disk would end the program. If closing fails here, the bag object stays in memory until the process ends.
+  /// On a full disk, an exception in the destructor of librosbag's bag would end the program. If closing fails here,
+  /// the bag object stays in memory until the process ends.
   void give_up() {
     if (!bag_) return;
     const QuietBag quiet;
@@ -202,7 +197,7 @@ class Ros1BagWriter : public BagWriter {
   std::unique_ptr<rosbag::Bag> bag_;
 };
 
-/// Bag files that are farther apart in time are separate recordings.
+/// Two bag files that are more than a minute apart in time are separate recordings.
 constexpr double kPartsApart_s = 60.0;
 
 class Ros1BagReader : public BagReader {
@@ -216,7 +211,9 @@ class Ros1BagReader : public BagReader {
     for (const auto& entry : std::filesystem::directory_iterator(path)) {
       if (lower_extension(entry.path()) == ".bag") files.insert(entry.path());
     }
-    if (files.empty()) throw BadInput(fmt::format("{}: the folder contains no file that ends in .bag", path.string()));
+    if (files.empty())
+      throw BadInput(
+          fmt::format("{}: the folder contains no ROS 1 bag, which is a file that ends in .bag", path.string()));
     std::string names;
     for (const std::filesystem::path& file : files) {
       add(file);
@@ -224,7 +221,7 @@ class Ros1BagReader : public BagReader {
     }
     if (files.size() < 2) return;
     require_one_recording();
-    notes.push_back(fmt::format("the import reads these bags as parts of one recording:{}", names));
+    notes.push_back(fmt::format("the import reads the bag files of this folder as parts of one recording:{}", names));
   }
 
   std::vector<BagTopic> topics() override {
@@ -278,10 +275,10 @@ class Ros1BagReader : public BagReader {
       double end = spans.empty() ? 0.0 : spans.begin()->second;
       for (const auto& [from, to] : spans) {
         if (from - end > kPartsApart_s)
-          throw BadInput(
-              fmt::format("{}: the bags are {:.0f} s apart, so they are not parts of one recording; import "
-                          "one bag at a time",
-                          path_.string(), from - end));
+          throw BadInput(fmt::format(
+              "{}: two bags of this folder are {:.0f} s apart, so they are not parts of one recording; import "
+              "one bag at a time",
+              path_.string(), from - end));
         end = std::max(end, to);
       }
     });
@@ -305,7 +302,7 @@ class Ros1BagReader : public BagReader {
     open(unpacked.unfinished());
   }
 
-  /// Checks the free disk space first, because a full disk affects other programs.
+  /// A full disk affects other programs, so the free disk space is checked first.
   static void require_room(const std::filesystem::path& file, const std::filesystem::path& folder) {
     const std::uint64_t needed = bytes_unpacked(file), free = std::filesystem::space(folder).available;
     if (needed <= free) return;

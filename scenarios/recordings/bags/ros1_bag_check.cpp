@@ -21,7 +21,6 @@ namespace {
 constexpr std::string_view kMagic = "#ROSBAG V2.0\n";
 constexpr std::uint32_t kRecordHeaderMax = 1u << 20, kChunkMax = 1u << 30;
 
-/// CheckedRecord is one record of a bag: its header fields, and the position of its data.
 struct CheckedRecord {
   std::uint64_t at = 0, data_at = 0;
   std::uint32_t data_bytes = 0;
@@ -29,7 +28,6 @@ struct CheckedRecord {
   std::uint64_t end() const { return data_at + data_bytes; }
 };
 
-/// Walk reads ranges of a file and checks that they are within the file.
 class Walk {
  public:
   explicit Walk(const std::filesystem::path& path) : path_(path), stream_(open_regular_file(path)) {
@@ -41,7 +39,7 @@ class Walk {
       fail(0, "the file does not begin with '#ROSBAG V2.0', so it is not a ROS 1 bag of version 2.0");
     std::uint64_t at = kMagic.size();
     const CheckedRecord file = record(at, bytes_);
-    if (op(file) != ros1::kFile) fail(at, "the first record is not a bag header");
+    if (op(file) != ros1::kFile) fail(at, "the first record of the bag is not a bag header: the file is damaged");
     if (number<std::uint64_t>(file, "index_pos") == 0)
       fail(at, "the bag was not closed and has no index (create the index with 'rosbag reindex')");
     const std::uint64_t index_at = number<std::uint64_t>(file, "index_pos");
@@ -53,7 +51,7 @@ class Walk {
       step(next);
       at = next.end();
     }
-    if (!indexed) fail(index_at, "there is no record at the stated start of the index");
+    if (!indexed) fail(index_at, "the bag header refers to an index, but no record starts there: the file is damaged");
     for (const auto& [info_at, chunk_at] : infos_) {
       if (!chunks_.contains(chunk_at))
         fail(info_at, fmt::format("the index refers to a chunk at byte {}, which does not exist: the file is damaged",
@@ -74,7 +72,6 @@ class Walk {
     return out;
   }
 
-  /// Returns the length stored at `at`, after checking that the item of this length ends before `end`.
   std::uint32_t length(std::uint64_t at, std::uint64_t end, const char* what, std::uint32_t most) {
     if (end - at < sizeof(std::uint32_t))
       fail(at, fmt::format("the file ends within the length of {}; the bag may be truncated", what));
@@ -82,23 +79,25 @@ class Walk {
     std::memcpy(&value, text(at, sizeof(value)).data(), sizeof(value));
     const std::uint64_t left = end - at - sizeof(value);
     if (value > left || value > most) {
-      fail(at, fmt::format("{} has {} bytes; it must have at most {}: the file is damaged or truncated", what, value,
-                           std::min<std::uint64_t>(left, most)));
+      fail(at,
+           fmt::format(
+               "{} states a length of {} bytes; its length must be at most {} bytes: the file is damaged or truncated",
+               what, value, std::min<std::uint64_t>(left, most)));
     }
     return value;
   }
 
-  /// Parses the header of the record at `at`.
   std::map<std::string, std::string> fields(std::uint64_t at, const std::string& bytes) const {
     std::map<std::string, std::string> out;
     for (std::size_t place = 0; place < bytes.size();) {
       std::uint32_t size = 0;
-      if (bytes.size() - place < 4) fail(at, "a field of the record's header is truncated");
+      if (bytes.size() - place < 4) fail(at, "a field in the header of a record is truncated: the file is damaged");
       std::memcpy(&size, bytes.data() + place, 4);
-      if (size > bytes.size() - place - 4) fail(at, "a field of the record's header is truncated");
+      if (size > bytes.size() - place - 4)
+        fail(at, "a field in the header of a record is truncated: the file is damaged");
       const std::string field = bytes.substr(place + 4, size);
       const std::size_t equals = field.find('=');
-      if (equals == std::string::npos) fail(at, "a field of the record's header has no '='");
+      if (equals == std::string::npos) fail(at, "a field in the header of a record has no '=': the file is damaged");
       out[field.substr(0, equals)] = field.substr(equals + 1);
       place += 4 + size;
     }
@@ -119,7 +118,8 @@ class Walk {
   Number number(const CheckedRecord& record, const char* name) const {
     const auto found = record.fields.find(name);
     if (found == record.fields.end() || found->second.size() != sizeof(Number)) {
-      fail(record.at, fmt::format("the record has no field '{}' of {} bytes", name, sizeof(Number)));
+      fail(record.at, fmt::format("the header of a record lacks the field '{}' of {} bytes: the file is damaged", name,
+                                  sizeof(Number)));
     }
     Number value;
     std::memcpy(&value, found->second.data(), sizeof(value));
@@ -128,7 +128,6 @@ class Walk {
 
   std::uint8_t op(const CheckedRecord& record) const { return number<std::uint8_t>(record, "op"); }
 
-  /// Registers a record and checks its references to other records.
   void step(const CheckedRecord& record) {
     switch (op(record)) {
       case ros1::kChunk:
@@ -146,13 +145,13 @@ class Walk {
         break;
       default:
         fail(record.at,
-             fmt::format("a record of kind {} is not allowed at this position: the file is damaged", op(record)));
+             fmt::format("a record of kind {} is not allowed outside chunks: the file is damaged", op(record)));
     }
   }
 
   void connection(const CheckedRecord& record) {
     connections_.insert(number<std::uint32_t>(record, "conn"));
-    if (!record.fields.contains("topic")) fail(record.at, "a connection has no topic");
+    if (!record.fields.contains("topic")) fail(record.at, "a connection record names no topic: the file is damaged");
     if (record.data_bytes > kRecordHeaderMax)
       fail(record.at, "a connection record is larger than 1 MiB, which is the maximum");
     fields(record.at, text(record.data_at, record.data_bytes));  // type information has the form of a header
@@ -182,14 +181,14 @@ class Walk {
       else if (op(inner) == ros1::kMessage)
         message(inner, at - record.data_at);
       else
-        fail(at, fmt::format("a record of kind {} is not allowed in a chunk", op(inner)));
+        fail(at, fmt::format("a record of kind {} is not allowed in a chunk: the file is damaged", op(inner)));
       at = inner.end();
     }
   }
 
   void message(const CheckedRecord& record, std::uint64_t offset) {
     if (!connections_.contains(number<std::uint32_t>(record, "conn")))
-      fail(record.at, "a message has no connection: the file is damaged");
+      fail(record.at, "a message refers to a connection that does not exist: the file is damaged");
     number<std::uint64_t>(record, "time");
     messages_->insert(offset);
   }
@@ -197,24 +196,25 @@ class Walk {
   std::uint32_t entries(const CheckedRecord& record, std::uint32_t each) const {
     const std::uint32_t count = number<std::uint32_t>(record, "count");
     if (std::uint64_t{count} * each != record.data_bytes) {
-      fail(record.at, fmt::format("the index states {} entries of {} bytes, but its size in bytes is {}", count, each,
-                                  record.data_bytes));
+      fail(record.at,
+           fmt::format("an index record states {} entries of {} bytes each, but has {} bytes: the file is damaged",
+                       count, each, record.data_bytes));
     }
     return count;
   }
 
-  /// Checks the offsets in the message index of the preceding chunk.
   void index(const CheckedRecord& record) {
     constexpr std::uint32_t kEntry = 12, kPlace = 8;
-    if (chunks_.empty()) fail(record.at, "an index precedes the first chunk: the file is damaged");
+    if (chunks_.empty()) fail(record.at, "an index record precedes the first chunk: the file is damaged");
     const std::uint32_t count = entries(record, kEntry);
     const std::string bytes = text(record.data_at, record.data_bytes);
     for (std::uint32_t i = 0; i < count; ++i) {
       std::uint32_t offset = 0;
       std::memcpy(&offset, bytes.data() + i * kEntry + kPlace, sizeof(offset));
       if (messages_ ? messages_->contains(offset) : offset < chunk_bytes_) continue;
-      fail(record.at,
-           fmt::format("entry {} of the index points to {} in its chunk, where no message starts", i, offset));
+      fail(record.at, fmt::format("entry {} of an index record points to byte {} of its chunk, where no message "
+                                  "starts: the file is damaged",
+                                  i, offset));
     }
   }
 
@@ -224,7 +224,8 @@ class Walk {
   std::set<std::uint64_t> chunks_;
   std::map<std::uint64_t, std::uint64_t> infos_;  ///< position of a record, position of the chunk that it refers to
   std::set<std::uint32_t> connections_;
-  std::optional<std::set<std::uint64_t>> messages_;  ///< message offsets in the preceding chunk; empty: compressed
+  std::optional<std::set<std::uint64_t>>
+      messages_;  ///< offsets of the messages in the preceding chunk; empty: compressed chunk
   std::uint32_t chunk_bytes_ = 0;
 };
 

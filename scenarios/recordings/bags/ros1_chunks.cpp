@@ -18,14 +18,11 @@ namespace {
 
 constexpr std::uint64_t kMagicBytes = 13;  // "#ROSBAG V2.0\n"
 
-/// RawRecord is one record of a ROS 1 bag. The header of the record is stored as bytes, so that a field can be changed
-/// in place.
 struct RawRecord {
   std::uint64_t at = 0;
   std::string header;
   std::uint32_t data_bytes = 0;
 
-  /// Returns offset and length of a field's value in the header; empty if the field is missing.
   std::optional<std::pair<std::size_t, std::size_t>> find(const std::string& name) const {
     for (std::size_t place = 0; place + 4 <= header.size();) {
       std::uint32_t size = 0;
@@ -66,7 +63,6 @@ std::string bytes_of(Number value) {
   return {reinterpret_cast<const char*>(&value), sizeof(value)};
 }
 
-/// Records iterates over the records of a bag that passed check_ros1_bag.
 class Records {
  public:
   explicit Records(const std::filesystem::path& path) : path_(path), stream_(path, std::ios::binary) {
@@ -115,7 +111,6 @@ class Records {
   std::string magic_;
 };
 
-/// Copy is the output bag of copy_ros1_bag.
 class Copy {
  public:
   explicit Copy(const std::filesystem::path& path) : path_(path), stream_(path, std::ios::binary) {}
@@ -151,7 +146,6 @@ std::string changed_chunk(RawRecord& record, std::string data, const std::functi
   Ros1Chunk chunk{record.text("compression"), record.number<std::uint32_t>("size"), std::move(data)};
   change(chunk);
   record.header.clear();
-  // Header fields have the order of ROS.
   append_field(record.header, "compression=" + chunk.compression);
   append_field(record.header, "op=" + std::string(1, static_cast<char>(ros1::kChunk)));
   append_field(record.header, "size=" + bytes_of(chunk.unpacked_bytes));
@@ -199,14 +193,17 @@ void copy_ros1_bag(const std::filesystem::path& from, const std::filesystem::pat
     if (record.op() == ros1::kChunkInfo) {
       const auto chunk = places.find(record.number<std::uint64_t>("chunk_pos"));
       if (chunk == places.end())
-        records.fail(before, "the index refers to a chunk that does not precede the index: the file is damaged");
+        records.fail(before,
+                     "the index of the bag refers to a chunk that does not precede the index: the file is damaged");
       record.set("chunk_pos", chunk->second);
     }
     places[before] = copy.write(record, data);
     if (record.op() == ros1::kFile && !first) first = record, first_at = places[before];
   }
   const auto index = first ? places.find(first->number<std::uint64_t>("index_pos")) : places.end();
-  if (index == places.end()) records.fail(kMagicBytes, "the stated start of the index is not a record");
+  if (index == places.end())
+    records.fail(kMagicBytes,
+                 "no record starts at the position of the index that the bag header states: the file is damaged");
   copy.overwrite(first_at + 4 + first->find("index_pos")->first, bytes_of(index->second));
   copy.finish();
 }

@@ -92,7 +92,6 @@ class Ros2BagWriter : public BagWriter {
     }
   }
 
-  /// Returns the id of a topic in the database, after registering a new topic.
   std::int64_t number_of(const BagTopic& topic) {
     const std::size_t known = summary_.topics.size();
     const std::size_t place = summary_.place_of(topic);
@@ -108,7 +107,7 @@ class Ros2BagWriter : public BagWriter {
     return static_cast<std::int64_t>(place) + 1;
   }
 
-  /// Stores the definition of a message type, for readers without ROS. Readers accept an empty type hash.
+  /// The stored definition lets programs without ROS read the bag. Readers accept an empty type hash.
   void define(const std::string& type) {
     SQLite::Statement statement(
         *database_,
@@ -141,11 +140,10 @@ class Ros2BagWriter : public BagWriter {
   std::unique_ptr<SQLite::Database> database_;
   std::unique_ptr<SQLite::Statement> insert_;
   Ros2Summary summary_;
-  std::set<std::string> defined_;  ///< types whose definition is stored
+  std::set<std::string> defined_;
 };
 
-/// StoredBag contains the files of a ROS 2 bag in order, their storage ("sqlite3" or "mcap"), and their compression
-/// ("", "file" or "message").
+/// `kind` is "sqlite3" or "mcap"; `packed` is "", "file" or "message".
 struct StoredBag {
   std::string kind = "sqlite3";
   std::vector<path> files;
@@ -153,7 +151,6 @@ struct StoredBag {
   std::string note = {};
 };
 
-/// Returns the compression of the bag according to its metadata.
 std::string packed_by(const YAML::Node& root, const path& metadata) {
   const auto text = [&](const char* key) {
     std::string out = root[key] ? root[key].as<std::string>("") : "";
@@ -169,8 +166,7 @@ std::string packed_by(const YAML::Node& root, const path& metadata) {
   return mode;
 }
 
-/// Adds the files in the folder that metadata.yaml does not list, but whose names differ from a listed file only by a
-/// number.
+/// A file may be missing in metadata.yaml if its name differs from a listed file only by a number.
 void add_unlisted(const path& folder, StoredBag& bag) {
   const auto stem = [](const path& file) { return stem_of(file.extension() == ".zstd" ? file.stem() : file); };
   const path& listed = bag.files.front();
@@ -182,12 +178,14 @@ void add_unlisted(const path& folder, StoredBag& bag) {
       found.insert(file);
   }
   if (found.empty()) return;
-  bag.note = "caution: metadata.yaml does not list these files; the import reads them as parts of the bag:";
+  bag.note =
+      "caution: the folder contains bag files that metadata.yaml does not list; the import reads these files as parts "
+      "of the bag:";
   for (const path& file : found) bag.note += " " + file.filename().string();
   bag.files.insert(bag.files.end(), found.begin(), found.end());
 }
 
-/// Returns the files of a bag whose folder has no metadata.yaml, if the names of the files differ only by a number.
+/// Without metadata.yaml, files belong to one bag only if their names differ only by a number.
 StoredBag parts_in(const path& folder) {
   std::set<path> parts;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
@@ -201,7 +199,9 @@ StoredBag parts_in(const path& folder) {
     fail_at(folder,
             "the folder has no metadata.yaml, and the names of its bags differ by more than a number; create "
             "metadata.yaml with 'ros2 bag reindex', or import one bag at a time");
-  out.note = "caution: the folder has no metadata.yaml; the import reads its bags as parts of one recording";
+  out.note =
+      "caution: the folder of the bag has no metadata.yaml; the import reads all its bag files as parts of one "
+      "recording";
   return out;
 }
 
@@ -219,14 +219,15 @@ StoredBag storage_of(const path& bag) {
     const YAML::Node root = YAML::LoadFile(metadata.string())["rosbag2_bagfile_information"];
     out.kind = root["storage_identifier"].as<std::string>();
     if (out.kind != "sqlite3" && out.kind != "mcap")
-      fail_at(metadata, fmt::format("the storage is '{}'; it must be sqlite3 or mcap", out.kind));
+      fail_at(metadata,
+              fmt::format("the storage_identifier in metadata.yaml is '{}'; it must be sqlite3 or mcap", out.kind));
     out.packed = packed_by(root, metadata);
     for (const YAML::Node& each : root["relative_file_paths"]) {
       const path name = path(each.as<std::string>()).filename();  // only files within the folder are read
       out.files.push_back(bag / name);
       if (!std::filesystem::exists(out.files.back()))
         fail_at(out.files.back(),
-                "no such file, although metadata.yaml lists it; copy the file into the "
+                "the file does not exist, although metadata.yaml lists it; copy the file into the "
                 "folder, or remove its line from metadata.yaml");
     }
   } catch (const YAML::Exception& error) {
@@ -282,7 +283,6 @@ class Ros2BagReader : public BagReader {
   bool cdr(const std::string&) const override { return true; }
 
  private:
-  /// Sorts the files of the bag by the times of their first messages.
   void sort_files() {
     std::map<path, std::int64_t> first_ns;
     for_files([&](const path& file, SQLite::Database& database) {

@@ -12,7 +12,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Ros2McapWriter writes a folder with metadata.yaml and one MCAP file, as rosbag2 does.
 class Ros2McapWriter : public BagWriter {
  public:
   explicit Ros2McapWriter(const std::filesystem::path& folder) : output_(folder) {

@@ -11,10 +11,9 @@
 #include "scenarios/recordings/bags/ros1_archives.hpp"
 #include "scenarios/recordings/bags/ros_fields.hpp"
 
-/// ros_bytes.hpp encodes and decodes messages in the little-endian layout of ROS 1 and in the CDR format of ROS 2.
 namespace tumble::scenarios::ros {
 
-/// Converts a message to bytes and back. Decoding throws BadMessage if the bytes are damaged.
+/// Decoding throws BadMessage if the bytes are damaged.
 template <class Message>
 Bytes to_ros1(Message message) {
   Ros1Writer writer;

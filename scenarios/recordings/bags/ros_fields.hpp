@@ -7,14 +7,13 @@
 
 #include "scenarios/recordings/bags/ros_messages.hpp"
 
-/// ros_fields.hpp lists the fields of each message type in the order of the message definition. The archives (encoders
-/// and decoders) in ros_bytes.hpp implement the encodings of ROS 1 and ROS 2.
-///
-/// An archive must have the following members:
+/// The fields of each message type have the order of the message definition. An archive (encoder or decoder) must have
+/// the following members:
 /// - operator()(uint8 | uint32 | uint64 | float | text | array of doubles) handles one field.
 /// - ros1_only(uint32) handles a field that ROS 2 removed.
-/// - count(number of entries, minimum bytes of an entry) handles the length before a list. A decoder returns the stored
-///   length.
+/// - count(number of entries, minimum bytes of an entry) handles the length before a list, and returns the stored
+/// length
+///   when decoding.
 /// - raw(first byte, bytes) handles a block of bytes.
 namespace tumble::scenarios::ros {
 

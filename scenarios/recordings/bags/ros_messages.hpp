@@ -7,7 +7,6 @@
 #include <variant>
 #include <vector>
 
-/// ros_messages.hpp defines the message types of an exported recording; ros_fields.hpp lists their fields.
 namespace tumble::scenarios::ros {
 
 struct Header {
@@ -75,14 +74,13 @@ struct Clock {
   std::uint32_t sec = 0, nanosec = 0;
 };
 
-/// LivoxPoint is one point of a Livox lidar (Livox-SDK/livox_ros_driver, README: "Livox pointcloud custom message").
+/// The fields follow Livox-SDK/livox_ros_driver, README: "Livox pointcloud custom message".
 struct LivoxPoint {
   std::uint32_t offset_time = 0;  ///< ns after `timebase` of the message
   float x = 0, y = 0, z = 0;      ///< m
   std::uint8_t reflectivity = 0, tag = 0, line = 0;
 };
 
-/// LivoxCustomMsg is the message type "CustomMsg" of the vendor's drivers.
 struct LivoxCustomMsg {
   Header header;
   std::uint64_t timebase = 0;  ///< time of the first point [ns]
@@ -92,7 +90,6 @@ struct LivoxCustomMsg {
   std::vector<LivoxPoint> points;
 };
 
-/// Message is any message type that the bag writers write. Type names are those of ROS 1.
 using Message = std::variant<Imu, PointCloud2, Odometry, TransformStamped, TFMessage, Clock, LivoxCustomMsg>;
 inline const char* type_of(const Imu&) {
   return "sensor_msgs/Imu";
@@ -112,7 +109,7 @@ inline const char* type_of(const TFMessage&) {
 inline const char* type_of(const Clock&) {
   return "rosgraph_msgs/Clock";
 }
-/// Returns the type name of CustomMsg in the ROS 2 driver. ROS 1 bags use kLivoxRos1.
+/// The type name is that of the ROS 2 driver; ROS 1 bags use kLivoxRos1.
 inline const char* type_of(const LivoxCustomMsg&) {
   return "livox_ros_driver2/CustomMsg";
 }

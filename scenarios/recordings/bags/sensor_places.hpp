@@ -10,25 +10,20 @@
 
 namespace tumble::scenarios {
 
-/// Converts a topic to a sensor name: "/imu/data" to imu_data, "/lidar/points" to lidar.
+/// Converts "/imu/data" to imu_data and "/lidar/points" to lidar.
 std::string sensor_name(std::string topic);
 
-/// SensorMountings stores the mountings of a bag's sensors on the body, from /tf_static or from the user.
 class SensorMountings {
  public:
-  /// `where` is the location of the topic for error messages.
   SensorMountings(StaticFrames frames, std::string where) : frames_(std::move(frames)), where_(std::move(where)) {}
 
   /// Sets the mounting T_BA of a sensor from /tf_static. If the user has set T_BA (`given`, or not the identity), only
-  /// reports a difference. The mounting is relative to the body's frame if the bag has this frame. Without a body
-  /// frame, the mounting is relative to the first earlier sensor that /tf_static connects to this sensor. If /tf_static
-  /// lacks the mounting, a note names the option that sets it.
+  /// reports a difference. Without a body frame in the bag, the mounting is relative to the first earlier sensor that
+  /// /tf_static connects to this sensor.
   void place(const std::string& topic, const std::string& frame, const char* option, bool given,
              Eigen::Isometry3d& T_BA, std::vector<std::string>& notes);
 
-  /// Returns the mounting of a frame that /tf_static connects to the body; empty for other frames.
   std::optional<Eigen::Isometry3d> of(const std::string& frame) const;
-  /// Returns the name of the body's frame; empty if the bag has none.
   std::string body() const { return frames_.body(); }
 
  private:
@@ -38,7 +33,6 @@ class SensorMountings {
   };
   void mounting_in_body(const std::string& topic, const Eigen::Isometry3d& stated, bool given, Eigen::Isometry3d& T_BA,
                         std::vector<std::string>& notes) const;
-  /// Returns the first earlier sensor that /tf_static connects to the frame.
   const Placed* neighbour(const std::string& frame) const;
 
   StaticFrames frames_;

@@ -30,14 +30,16 @@ void StaticFrames::add(const ros::TransformStamped& transform, const std::string
   if (!(p.cwiseAbs().maxCoeff() <= kFrameFar_m) || !p.allFinite()) {
     hung.problem = fmt::format("{}: the translation must be finite and at most 1 km", what);
   } else if (!(std::abs(q.norm() - 1.0) <= kFrameNormTolerance)) {
-    hung.problem = fmt::format("{}: the quaternion has norm {}; the norm must be 1", what, std::to_string(q.norm()));
+    hung.problem =
+        fmt::format("{}: the rotation quaternion has norm {}; its norm must be 1", what, std::to_string(q.norm()));
   } else if (parent == child) {
-    hung.problem = fmt::format("{}: the frame is its own parent", what);
+    hung.problem = fmt::format("{}: the frame is its own parent, but must have another parent", what);
   } else {
     hung.T_parent.linear() = q.normalized().toRotationMatrix();
     hung.T_parent.translation() = p;
   }
-  if (!hung.problem.empty()) remarks_.push_back(fmt::format("caution: {}; this transform is ignored", hung.problem));
+  if (!hung.problem.empty())
+    remarks_.push_back(fmt::format("caution: the import ignores an invalid transform: {}", hung.problem));
   if (const auto before = frames_.find(child); before != frames_.end() && before->second.parent != parent) {
     remarks_.push_back(
         fmt::format("caution: frame '{}' has the parent '{}' and later the parent '{}'; a frame may have only one "
@@ -69,7 +71,8 @@ std::vector<StaticFrames::FrameLink> StaticFrames::path_to_root(const std::strin
     const FrameLink& below = out.back();
     out.push_back({parent, T_parent * below.T_parent, below.problem.empty() ? problem : below.problem});
   }
-  throw BadInput(fmt::format("{}: '{}' and its parent frames form a loop", where, frame));
+  throw BadInput(fmt::format("{}: the frame '{}' and its parent frames form a loop; a tree of frames must have no loop",
+                             where, frame));
 }
 
 std::optional<Eigen::Isometry3d> StaticFrames::pose(const std::string& frame_A, const std::string& frame_B,

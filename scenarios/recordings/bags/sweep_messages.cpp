@@ -17,7 +17,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Returns the indices of a sweep's points in the order of the message.
 std::vector<std::size_t> order_of(const sim::LidarRecord& lidar, std::size_t sweep, bool in_time_order) {
   std::vector<std::size_t> points(lidar.sweep_first[sweep + 1] - lidar.sweep_first[sweep]);
   std::iota(points.begin(), points.end(), lidar.sweep_first[sweep]);
@@ -38,7 +37,7 @@ Number as(double value) {
   }
 }
 
-/// Returns the value of one field of a point. A time since 1970 has a resolution of 0.25 us in a double.
+/// A time since 1970 has a resolution of 0.25 us in a double.
 double value_of(const sim::LidarRecord& lidar, std::size_t point, const PointColumn& column, std::int64_t start_ns) {
   switch (column.quantity) {
     case PointQuantity::x_m:
@@ -78,7 +77,6 @@ WrittenType field_type(NumberType type) {
   return {ros::PointField::float64, 8};
 }
 
-/// Calls `put` with a zero of the number type.
 template <class Put>
 void with_number(NumberType type, Put&& put) {
   switch (type) {
@@ -127,9 +125,10 @@ ros::LivoxCustomMsg livox_of(const sim::LidarRecord& lidar, const std::vector<st
                              std::int64_t start_ns, const ros::Header& header) {
   constexpr double kFull = 255.0;
   if (!has_timed_points(lidar)) {
-    throw BadInput(fmt::format(
-        "the points of '{}' have no time stamps, but a CustomMsg needs measured time stamps; choose another format",
-        lidar.name));
+    throw BadInput(
+        fmt::format("the points of lidar '{}' have no time stamps, but a Livox CustomMsg needs measured time stamps; "
+                    "choose another format",
+                    lidar.name));
   }
   ros::LivoxCustomMsg out;
   out.header = header;
@@ -138,13 +137,13 @@ ros::LivoxCustomMsg livox_of(const sim::LidarRecord& lidar, const std::vector<st
   out.points.reserve(points.size());
   for (const std::size_t k : points) {
     if (lidar.ring[k] > std::numeric_limits<std::uint8_t>::max()) {
-      throw BadInput(fmt::format("a point of '{}' has ring {}; a CustomMsg stores lines 0 to 255 only", lidar.name,
-                                 lidar.ring[k]));
+      throw BadInput(fmt::format("a point of lidar '{}' has ring {}; a Livox CustomMsg can only store rings 0 to 255",
+                                 lidar.name, lidar.ring[k]));
     }
     const Eigen::Vector3f& p = lidar.position_L_m[k];
     if (!p.allFinite() || !std::isfinite(lidar.intensity[k])) {
-      throw BadInput(
-          fmt::format("point {} of '{}' is not finite; a CustomMsg cannot store a missing return", k, lidar.name));
+      throw BadInput(fmt::format(
+          "point {} of lidar '{}' is not finite; a Livox CustomMsg cannot store a missing return", k, lidar.name));
     }
     // Tag 0 means a single return with full confidence.
     out.points.push_back({lidar.offset_ns[k], p.x(), p.y(), p.z(), as<std::uint8_t>(lidar.intensity[k] * kFull), 0,

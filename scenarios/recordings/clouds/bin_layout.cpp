@@ -14,23 +14,21 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr std::size_t kKitti = 4;
-/// Multiples of four are omitted: they could be doubles, or two rows of points read as one.
+/// Multiples of four columns could be doubles, or two rows of points read as one.
 constexpr std::array<std::size_t, 8> kOtherFloats = {3, 5, 6, 7, 8, 9, 10, 12};
 constexpr std::array<std::size_t, 6> kDoubles = {3, 4, 5, 6, 7, 8};
-/// The sample has kSections sections of the file, each with kInRow consecutive numbers, so that a sweep in the order of
-/// its rings is sampled completely.
+/// Each section contains consecutive numbers, so that a sweep in the order of its rings is sampled completely.
 constexpr std::size_t kSections = 4, kInRow = 6000;
 constexpr std::size_t kPerColumnMin = 25;
 constexpr std::size_t kNumberBins = 16;
-/// Valid coordinates in metres and valid intensities have magnitudes from kSmallest to kLargest, or are 0. The limit
-/// kSmallest is low, because the sine of 180 degrees times a range is about 1e-16.
+/// Valid coordinates in metres and valid intensities have magnitudes from 1e-20 to 1e7, or are 0. The lower limit is
+/// low, because the sine of 180 degrees times a range is about 1e-16.
 constexpr double kLargest = 1e7, kSmallest = 1e-20, kOddShareMax = 0.01;
-/// A larger number of columns is chosen only if the difference between the columns grows at least by this factor. In
-/// valid sweeps, the difference grows by at most 0.08, for a lidar in which every second ring looks down.
+/// In valid sweeps, the difference between columns grows by at most 0.08 with another number of columns, for a lidar in
+/// which every second ring looks down.
 constexpr double kMultipleDiffers = 1.5;
 constexpr double kClearlyMore = 1.25, kClearlyMoreBy = 0.05;
 
-/// NumberSample contains some numbers of a file, and the index of each number in the file.
 struct NumberSample {
   std::vector<double> values;
   std::vector<std::size_t> index;
@@ -61,7 +59,6 @@ double odd_share(const NumberSample& sample) {
   return sample.values.empty() ? 0.0 : static_cast<double>(count) / static_cast<double>(sample.values.size());
 }
 
-/// Returns the histogram bin of each number; the bins are the quantiles of all numbers.
 std::vector<std::size_t> bins_of(const NumberSample& sample) {
   std::vector<double> sorted = sample.values;
   std::erase_if(sorted, [](double value) { return std::isnan(value); });
@@ -106,8 +103,7 @@ struct ColumnFit {
   double differ = 0.0;
 };
 
-/// Returns the smallest number of columns that divides the number count and whose columns differ about as much as with
-/// any other number. Multiples of the correct number differ somewhat more if the order of points repeats.
+/// Returns the smallest number of columns whose columns differ about as much as with any other number.
 template <std::size_t kCount>
 ColumnFit best_of(const NumberSample& sample, std::size_t numbers_in_file,
                   const std::array<std::size_t, kCount>& candidates) {
@@ -122,9 +118,9 @@ ColumnFit best_of(const NumberSample& sample, std::size_t numbers_in_file,
 }
 
 std::string contradiction_of_size(std::span<const char> bytes, const ColumnFit& floats) {
-  const std::string size =
-      fmt::format("the file has {} bytes; the size must be a multiple of 16 (float32 x y z intensity)", bytes.size());
-  if (floats.columns == 0) return fmt::format("{}; the file may be truncated", size);
+  const std::string size = fmt::format(
+      "the .bin file has {} bytes; its size must be a multiple of 16 (float32 x y z intensity)", bytes.size());
+  if (floats.columns == 0) return fmt::format("{}; it may be truncated", size);
   return size + fmt::format("; the numbers match {} columns of float32", floats.columns);
 }
 

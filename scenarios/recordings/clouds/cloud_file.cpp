@@ -36,7 +36,6 @@ void take_column(const pcl::PCLPointCloud2& cloud, std::size_t offset, std::vect
   }
 }
 
-/// Appends the values of a field to `out`. Returns false if the type of the field is not a number.
 bool take_field(const pcl::PCLPointCloud2& cloud, const pcl::PCLPointField& field, std::vector<double>& out) {
   using Field = pcl::PCLPointField;
   switch (field.datatype) {
@@ -75,7 +74,6 @@ Cloud to_columns(const pcl::PCLPointCloud2& cloud, std::size_t points) {
   out.points = points;
   for (const pcl::PCLPointField& field : cloud.fields) {
     std::vector<double> column(points);
-    // Padding ("_") and fields with several numbers are skipped.
     if (field.count > 1 || field.name == "_" || !take_field(cloud, field, column)) continue;
     out.names.push_back(plain_name(field.name));
     out.columns.push_back(std::move(column));
@@ -83,7 +81,7 @@ Cloud to_columns(const pcl::PCLPointCloud2& cloud, std::size_t points) {
   return out;
 }
 
-/// Returns true if PCL reads the whole word as a number, such as "nan" or "inf"; false for "0,5" or "x".
+/// PCL reads words such as "nan" or "inf" as numbers, but not "0,5" or "x".
 bool is_number_of_pcl(std::string_view word) {
   if (word.starts_with('+')) word.remove_prefix(1);
   double value = 0.0;
@@ -91,8 +89,7 @@ bool is_number_of_pcl(std::string_view word) {
   return error != std::errc::invalid_argument && end == word.data() + word.size();
 }
 
-/// Throws BadInput if a word of a text file is not a number, or a line has another count of numbers than the header
-/// states. PCL would silently read the start of a word, or 0, or NaN.
+/// PCL would silently read the start of a wrong word, or 0, or NaN, so the words of text files are checked here.
 void require_numbers(const std::filesystem::path& path, const CloudHeader& header) {
   std::ifstream stream(path, std::ios::binary);
   std::string text(static_cast<std::size_t>(header.header_bytes), '\0');
@@ -136,7 +133,6 @@ Cloud read_points(const std::filesystem::path& path, const CloudHeader& header, 
   return out;
 }
 
-/// Types of the columns of a .bin file, by their NumPy names.
 constexpr std::array<std::pair<const char*, std::uint8_t>, 10> kBinTypes = {{{"f4", pcl::PCLPointField::FLOAT32},
                                                                              {"f8", pcl::PCLPointField::FLOAT64},
                                                                              {"u1", pcl::PCLPointField::UINT8},
@@ -148,14 +144,13 @@ constexpr std::array<std::pair<const char*, std::uint8_t>, 10> kBinTypes = {{{"f
                                                                              {"i4", pcl::PCLPointField::INT32},
                                                                              {"i8", pcl::PCLPointField::INT64}}};
 
-/// Appends one column, written as "NAME" or "NAME:TYPE", to the fields of the cloud.
 void add_bin_column(const std::string& text, pcl::PCLPointCloud2& cloud) {
   const std::size_t colon = text.find(':');
   const std::string type = colon == std::string::npos ? "f4" : text.substr(colon + 1);
   const auto known = std::ranges::find_if(kBinTypes, [&](const auto& each) { return type == each.first; });
   if (known == kBinTypes.end())
     throw BadInput(
-        fmt::format("columns of a .bin file: type '{}'; it must be f4, f8, u1, u2, u4, u8, i1, i2, i4 or i8", type));
+        fmt::format("columns of a .bin file: the type '{}' must be f4, f8, u1, u2, u4, u8, i1, i2, i4 or i8", type));
   pcl::PCLPointField field;
   field.name = text.substr(0, colon);
   field.offset = cloud.point_step;
@@ -163,19 +158,19 @@ void add_bin_column(const std::string& text, pcl::PCLPointCloud2& cloud) {
   field.count = 1;
   const auto same = [&](const pcl::PCLPointField& other) { return other.name == field.name && field.name != "_"; };
   if (field.name.empty() || std::ranges::any_of(cloud.fields, same))
-    throw BadInput(fmt::format("columns of a .bin file: name '{}' is empty or occurs twice", field.name));
+    throw BadInput(fmt::format("columns of a .bin file: the name '{}' is empty or occurs twice; names must be unique",
+                               field.name));
   cloud.point_step += static_cast<std::uint32_t>(type.back() - '0');
   cloud.fields.push_back(field);
 }
 
-/// Returns a cloud with the fields in `columns`, without points.
 pcl::PCLPointCloud2 bin_fields(const std::string& columns) {
   pcl::PCLPointCloud2 cloud;
   std::istringstream stream(columns + ",");
   for (std::string column; std::getline(stream, column, ',');) add_bin_column(column, cloud);
   for (const char* needed : {"x", "y", "z"}) {
     if (std::ranges::none_of(cloud.fields, [&](const auto& field) { return field.name == needed; }))
-      throw BadInput(fmt::format("columns of a .bin file: '{}' lacks {}", columns, needed));
+      throw BadInput(fmt::format("columns of a .bin file: the list '{}' lacks the column {}", columns, needed));
   }
   return cloud;
 }

@@ -8,31 +8,30 @@
 
 namespace tumble::scenarios {
 
-/// Cloud contains the points of a file or message as named columns of numbers, without interpretation. A 64-bit integer
-/// keeps 53 bits, so a time stamp in nanoseconds since 1970 is accurate to 256 ns.
+/// Cloud contains the points of a file or message as named columns of numbers. A 64-bit integer keeps 53 bits, so a
+/// time stamp in nanoseconds since 1970 is accurate to 256 ns.
 struct Cloud {
   std::vector<std::string> names;            ///< names in the file, without CloudCompare's prefix "scalar_"
   std::vector<std::vector<double>> columns;  ///< parallel to `names`, one number per point
   std::size_t points = 0;
-  std::string viewpoint;  ///< VIEWPOINT of a PCD file, empty for the identity; not applied to the points
+  std::string viewpoint;  ///< VIEWPOINT of a PCD file; empty for the identity; not applied to the points
 
-  /// Returns the column `name`, or null.
   const std::vector<double>* find(const std::string& name) const;
 };
 
 inline constexpr std::uint64_t kCloudPointsMax = std::uint64_t{1} << 26;
 
-/// Reads the points of a file, whose extension selects the format: PLY and PCD of any encoding (by PCL), legacy VTK
-/// text (vtk_file.hpp), and .bin, which has no header. A file may have no points. The header is compared with the file
-/// size before memory is allocated.
+/// Reads PLY and PCD files of any encoding (by PCL), legacy VTK text (vtk_file.hpp), and .bin files without header. The
+/// header is compared with the file size before memory is allocated.
 ///
-/// @param bin_columns  Columns of a .bin file in order, "x,y,z,intensity,ring". Each column is float32, or has a NumPy
+/// @param bin_columns Columns of a .bin file in order, "x,y,z,intensity,ring". Each column is float32, or has a NumPy
 ///   type after a colon ("x:f8"); the name "_" skips bytes. An empty text selects KITTI's columns x y z intensity, if
-///   the content does not contradict them (bin_layout.hpp). Throws BadInput with file and location if the file is
-///   missing or damaged, has another format or more than 2^26 points, or if its columns are impossible.
+///   the content does not contradict them (bin_layout.hpp).
+///
+/// Throws BadInput with file and location if the file is missing or damaged, has another format or more than 2^26
+/// points, or if its columns are impossible.
 Cloud read_cloud(const std::filesystem::path& path, const std::string& bin_columns = "");
 
-/// CloudHeader is the content of a PLY or PCD header.
 struct CloudHeader {
   std::uint64_t points = 0;
   std::uint64_t point_bytes = 0;  ///< bytes per point; 0 for text
@@ -43,7 +42,7 @@ struct CloudHeader {
   std::string viewpoint;  ///< VIEWPOINT of a PCD file: x y z qw qx qy qz; empty for the identity
 };
 
-/// Reads and checks the header of a point file, without its points. Throws BadInput like read_cloud.
+/// Reads only the header. Throws BadInput like read_cloud.
 CloudHeader read_ply_header(const std::filesystem::path& path);
 CloudHeader read_pcd_header(const std::filesystem::path& path);
 

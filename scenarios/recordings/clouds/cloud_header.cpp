@@ -20,31 +20,29 @@ namespace {
 
 /// LZF expands 3 bytes to at most 264 bytes.
 constexpr std::uint64_t kLzfMost = 88;
-/// A longer header is invalid.
 constexpr std::size_t kCloudHeaderMax = 65536;
 
-/// HeaderLines contains the lines of a header with their locations in the file.
 class HeaderLines {
  public:
   explicit HeaderLines(const std::filesystem::path& path) : path_(path), stream_(open_regular_file(path)) {
     bytes_in_file_ = std::filesystem::file_size(path);
   }
 
-  /// Returns the words of the next header line, which must have a line end.
   std::vector<std::string> next() {
-    if (!std::getline(stream_, line_) || stream_.eof()) fail("the header does not end; the file may be truncated");
+    if (!std::getline(stream_, line_) || stream_.eof()) fail("the file ends within its header; it may be truncated");
     ++number_;
     bytes_ += line_.size() + 1;
-    if (bytes_ > kCloudHeaderMax) fail(fmt::format("the header is longer than {} bytes", kCloudHeaderMax));
+    if (bytes_ > kCloudHeaderMax)
+      fail(fmt::format("the header of the point file is longer than the maximum of {} bytes", kCloudHeaderMax));
     // PCL's reader of points separates words only by blanks and tabs.
-    if (line_.find_first_of("\v\f") != std::string::npos) fail("the header contains a form feed or a vertical tab");
+    if (line_.find_first_of("\v\f") != std::string::npos)
+      fail("the header contains a form feed or a vertical tab, which is not allowed");
     std::istringstream words(line_);
     std::vector<std::string> out;
     for (std::string word; words >> word;) out.push_back(word);
     return out;
   }
 
-  /// Returns true if the latest line is empty.
   bool line_is_empty() const { return line_.empty(); }
 
   [[noreturn]] void fail(const std::string& what) const {
@@ -53,13 +51,14 @@ class HeaderLines {
 
   std::uint64_t whole(const std::string& what, const std::string& text) const {
     std::uint64_t value = 0;
-    if (!read_number(text, value)) fail(fmt::format("{} is '{}'; it must be a whole number", what, text));
+    if (!read_number(text, value))
+      fail(fmt::format("the header states {} as '{}'; it must be a whole number", what, text));
     return value;
   }
 
   std::uint64_t bytes() const { return bytes_; }
 
-  /// Checks that the number of points in the header fits the remaining file size. One byte of the file gives at most
+  /// Throws BadInput if the points in the header do not fit the remaining file size. One byte of the file gives at most
   /// `made_of_a_byte` bytes of points.
   void require_room(const CloudHeader& header, std::uint64_t made_of_a_byte = 1) const {
     if (header.points > kCloudPointsMax) {
@@ -76,23 +75,24 @@ class HeaderLines {
     }
   }
 
-  /// Checks the compressed and the uncompressed size before compressed points, because PCL does not.
+  /// PCL does not check the compressed and the uncompressed size before compressed points.
   void require_sizes(const CloudHeader& header) {
     std::array<std::uint32_t, 2> sizes{};
     if (!stream_.read(reinterpret_cast<char*>(sizes.data()), sizeof(sizes)))
-      fail("there are no compressed points; the file may be truncated");
+      fail("the file ends before its compressed points; it may be truncated");
     const std::uint64_t rest = bytes_in_file_ - std::min(bytes_ + sizeof(sizes), bytes_in_file_);
     if (sizes[0] == 0 || sizes[0] > rest) {
-      fail(fmt::format("the file states {} bytes of compressed points, but {} follow", sizes[0], rest));
+      fail(fmt::format("the file states {} bytes of compressed points, but only {} bytes follow; it may be truncated",
+                       sizes[0], rest));
     }
     if (sizes[1] != header.points * header.point_bytes) {
-      fail(fmt::format("the file states {} bytes of uncompressed points; this number must be {}", sizes[1],
+      fail(fmt::format("the file states {} bytes of uncompressed points, but its header requires {} bytes", sizes[1],
                        header.points * header.point_bytes));
     }
   }
 
-  /// PCL continues the header up to the first line that is not empty, not a comment and starts with no header word. A
-  /// line of point data that looks like a header line would therefore change the header.
+  /// PCL continues the header up to the first line that starts with no header word. A line of point data that looks
+  /// like a header line would therefore change the header.
   void require_end_of_header(std::span<const char* const> words) {
     stream_.clear();
     stream_.seekg(static_cast<std::streamoff>(bytes_));
@@ -101,7 +101,8 @@ class HeaderLines {
       std::istringstream(line) >> first;
       if (line.empty() || first.starts_with("#")) continue;
       const auto begins = [&](const char* word) { return first.starts_with(word); };
-      if (std::any_of(words.begin(), words.end(), begins)) fail("the first points look like a line of the header");
+      if (std::any_of(words.begin(), words.end(), begins))
+        fail("the first points look like a line of the header, so PCL would misread the file");
       return;
     }
   }
@@ -114,7 +115,6 @@ class HeaderLines {
   std::uint64_t bytes_ = 0, bytes_in_file_ = 0;
 };
 
-/// Returns the number of bytes of a PLY type, or 0 for an unknown type.
 std::uint64_t ply_bytes(const std::string& type) {
   static const std::map<std::string, std::uint64_t> known = {
       {"char", 1},   {"int8", 1},    {"uchar", 1},  {"uint8", 1},  {"short", 2}, {"int16", 2},
@@ -124,11 +124,10 @@ std::uint64_t ply_bytes(const std::string& type) {
   return found == known.end() ? 0 : found->second;
 }
 
-/// Reads a line of a PLY header that describes a field of the points.
 void take_property(const HeaderLines& lines, const std::vector<std::string>& words, CloudHeader& header) {
   if (words.size() == 5 && words[1] == "list")
-    lines.fail("the points have a list property; such files are not supported");
-  if (words.size() != 3) lines.fail("a property line must be 'property TYPE NAME'");
+    lines.fail("the points of the PLY file have a list property, which is not supported");
+  if (words.size() != 3) lines.fail("a property line of a PLY header must be 'property TYPE NAME'");
   const std::uint64_t bytes = ply_bytes(words[1]);
   if (bytes == 0) lines.fail("unknown type '" + words[1] + "'");
   header.point_bytes += bytes;
@@ -137,12 +136,11 @@ void take_property(const HeaderLines& lines, const std::vector<std::string>& wor
 
 using Words = std::vector<std::string>;
 
-/// kPcdWords lists the header words in the order of the format; the final entry is an alternative name of FIELDS.
+/// The header words have the order of the format; the final entry is an alternative name of FIELDS.
 constexpr std::array<const char*, 11> kPcdWords = {"VERSION", "FIELDS",    "SIZE",   "TYPE", "COUNT",  "WIDTH",
                                                    "HEIGHT",  "VIEWPOINT", "POINTS", "DATA", "COLUMNS"};
 
-/// Reads the lines of a PCD header, and returns them by their first words. Each header word must occur once and in
-/// order, because PCL misreads other headers without an error.
+/// Each header word must occur once and in order, because PCL misreads other headers without an error.
 std::map<std::string, Words> pcd_lines(HeaderLines& lines) {
   const std::span order = std::span(kPcdWords).first<10>();
   std::map<std::string, Words> found;
@@ -150,34 +148,35 @@ std::map<std::string, Words> pcd_lines(HeaderLines& lines) {
   while (!found.contains("DATA")) {
     const Words words = lines.next();
     if (words.empty() && !lines.line_is_empty())
-      lines.fail("the line contains only blanks; it must be empty or contain a word");
+      lines.fail("a header line contains only blanks; it must be empty or contain a word");
     if (words.empty() || words.front().starts_with("#")) continue;
     const auto at = std::find(order.begin(), order.end(), words.front());
-    if (at == order.end()) lines.fail("the line does not begin with a keyword of a PCD header");
+    if (at == order.end()) lines.fail("a header line does not begin with a keyword of the PCD format");
     const auto place = static_cast<std::size_t>(at - order.begin());
-    if (place < next) lines.fail(fmt::format("the line {} occurs twice or in the wrong order", words.front()));
+    if (place < next) lines.fail(fmt::format("the header line {} occurs twice or in the wrong order", words.front()));
     next = place + 1;
     found[words.front()] = Words(words.begin() + 1, words.end());
   }
   for (const char* needed : {"FIELDS", "SIZE", "TYPE", "WIDTH", "HEIGHT"}) {
     if (!found.contains(needed))
-      lines.fail(fmt::format("there is no line {} before DATA; the file may not be a PCD file", needed));
+      lines.fail(fmt::format("the header has no line {} before DATA; the file may not be a PCD file", needed));
   }
   return found;
 }
 
 std::uint64_t single(const HeaderLines& lines, const std::string& name, const Words& words) {
-  if (words.size() != 1) lines.fail(fmt::format("{} has {} numbers; it must have 1", name, words.size()));
+  if (words.size() != 1)
+    lines.fail(fmt::format("the header line {} has {} numbers; it must have 1", name, words.size()));
   const std::uint64_t value = lines.whole(name, words.front());
   if (value > kCloudPointsMax) {
-    lines.fail(fmt::format("{} is {}; it must be at most {}", name, value, kCloudPointsMax));
+    lines.fail(fmt::format("the header line {} states {}; it must state at most {}", name, value, kCloudPointsMax));
   }
   return value;
 }
 
-/// Returns the line VIEWPOINT x y z qw qx qy qz as written in the file; "" if the viewpoint is the identity.
 std::string viewpoint_of(const HeaderLines& lines, const Words& words) {
-  if (words.size() != 7) lines.fail(fmt::format("VIEWPOINT has {} numbers; it must have 7", words.size()));
+  if (words.size() != 7)
+    lines.fail(fmt::format("the header line VIEWPOINT has {} numbers; it must have 7", words.size()));
   constexpr std::array<double, 7> kOwn = {0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0};
   std::string written;
   bool own = true;
@@ -203,7 +202,7 @@ CloudHeader read_ply_header(const std::filesystem::path& path) {
     if (words[0] == "format") {
       text = words.size() > 1 && words[1] == "ascii";
     } else if (words[0] == "element") {
-      if (words.size() != 3) lines.fail("an element line must be 'element NAME COUNT'");
+      if (words.size() != 3) lines.fail("an element line of a PLY header must be 'element NAME COUNT'");
       in_points = words[1] == "vertex";
       const std::uint64_t count = lines.whole("count of " + words[1], words[2]);
       if (in_points) header.points = count, before_points = false;
@@ -233,21 +232,22 @@ CloudHeader read_pcd_header(const std::filesystem::path& path) {
   if (!found.contains("COUNT")) found["COUNT"] = Words(header.fields, "1");
   for (const char* name : {"SIZE", "TYPE", "COUNT"}) {
     if (found[name].size() != header.fields) {
-      lines.fail(fmt::format("{} has {} words, but FIELDS has {}; the numbers must be equal", name, found[name].size(),
-                             header.fields));
+      lines.fail(fmt::format("the header line {} has {} words, but FIELDS has {}; the numbers must be equal", name,
+                             found[name].size(), header.fields));
     }
   }
   for (std::size_t i = 0; i < header.fields; ++i) {
     const std::uint64_t size = lines.whole("SIZE", found["SIZE"][i]), count = lines.whole("COUNT", found["COUNT"][i]);
     if (size == 0 || size > 8 || count == 0 || count > 4096) {
-      lines.fail(fmt::format("field {} has {} numbers of {} bytes; supported: 1 to 4096 numbers of 1 to 8 bytes",
+      lines.fail(fmt::format("the field {} has {} numbers of {} bytes; supported: 1 to 4096 numbers of 1 to 8 bytes",
                              found["FIELDS"][i], count, size));
     }
     const std::string& type = found["TYPE"][i];
     const bool whole = type == "I" || type == "U", real = type == "F";
     if (!(whole && (size == 1 || size == 2 || size == 4 || size == 8)) && !(real && (size == 4 || size == 8))) {
       lines.fail(fmt::format(
-          "field {} has an unsupported type; supported: I and U with 1, 2, 4 or 8 bytes, F with 4 or 8 bytes", i + 1));
+          "the type of field {} is not supported; supported: I and U with 1, 2, 4 or 8 bytes, F with 4 or 8 bytes",
+          i + 1));
     }
     header.point_bytes += size * count;
     header.numbers += count;
@@ -255,7 +255,7 @@ CloudHeader read_pcd_header(const std::filesystem::path& path) {
   const std::uint64_t width = single(lines, "WIDTH", found["WIDTH"]), height = single(lines, "HEIGHT", found["HEIGHT"]);
   header.points = width * height;
   if (found.contains("POINTS") && single(lines, "POINTS", found["POINTS"]) != header.points) {
-    lines.fail(fmt::format("POINTS is {}, but WIDTH times HEIGHT is {}; they must be equal", found["POINTS"].front(),
+    lines.fail(fmt::format("POINTS is {}, but WIDTH times HEIGHT is {}; both must be equal", found["POINTS"].front(),
                            header.points));
   }
   if (found.contains("VIEWPOINT")) header.viewpoint = viewpoint_of(lines, found["VIEWPOINT"]);

@@ -20,8 +20,6 @@ std::string ending_of(const std::string& format) {
   throw BadInput(fmt::format("the sweep format '{}' is not supported; supported: ply, pcd, vtk and kitti", format));
 }
 
-/// Returns the path of the file with time stamps: the caller's choice, or a file next to the sweeps; empty if there is
-/// none.
 path times_file(const SweepSource& source, const std::vector<path>& files) {
   if (!source.times.empty()) return source.times;
   for (const std::string& name : {stem_of(files.front()) + "_times.txt", std::string("times.txt")}) {
@@ -30,7 +28,6 @@ path times_file(const SweepSource& source, const std::vector<path>& files) {
   return {};
 }
 
-/// Returns one time stamp per file; empty if the time stamps are unknown. `disorder` is that of read_stamps.
 std::vector<std::int64_t> stamps_of(const SweepSource& source, const std::vector<path>& files,
                                     std::vector<std::string>& disorder) {
   const path file = times_file(source, files);
@@ -70,8 +67,9 @@ Imported import_sweeps(const SweepSource& source) {
   for (std::size_t k = 0; k < stamps.size(); ++k) {
     if (in_order[k]) continue;
     const bool decreases = k < disorder.size() && !disorder[k].empty();
-    left_out.add("a wrong time stamp",
-                 decreases ? disorder[k] : fmt::format("{}: the time stamp is out of order", files[k].string()));
+    left_out.add(
+        "a wrong time stamp",
+        decreases ? disorder[k] : fmt::format("{}: the time stamp of the sweep is out of order", files[k].string()));
   }
   left_out.require_few(kept.size());
   const std::int64_t given_ns = reading.device.sweep_period_ns;
@@ -84,7 +82,7 @@ Imported import_sweeps(const SweepSource& source) {
     if (cloud) builder.add(stamp, std::move(*cloud), files[k].string());
   }
   add_lidar(out, builder.finish(source.folder.string(), out.notes));
-  out.info.attribution = fmt::format("imported from {}, {} sweeps in format {}", source.folder.filename().string(),
+  out.info.attribution = fmt::format("imported from {}: {} sweeps in format {}", source.folder.filename().string(),
                                      files.size(), source.format);
   start_clock(out);
   return out;

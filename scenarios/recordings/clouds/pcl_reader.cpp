@@ -15,7 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns the path of the module relative to the program, or else in the build folder, for tests in other folders.
 fs::path module_file() {
   const fs::path built(TUMBLE_PCL_READER);
   std::error_code error;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The module pcl_reader_module.cpp contains PCL's readers (pcl_reader.hpp), and is linked to no library of this
-// project.
+// The module contains PCL's readers, and is linked to no library of this project.
 #include <pcl/io/pcd_io.h>
 #include <pcl/io/ply_io.h>
 
@@ -21,4 +20,4 @@ extern "C" bool tumble_pcl_read(const char* path, tumble::scenarios::PclFormat f
 }
 
 static_assert(std::is_same_v<decltype(tumble_pcl_read), tumble::scenarios::PclRead>,
-              "the signature of the function must be the signature that the program calls");
+              "the signature must equal PclRead, which the program calls");

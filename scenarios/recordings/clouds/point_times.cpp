@@ -18,17 +18,17 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// The point times of a sweep must cover a fraction of the sweep period between kSpanMin (a sector of 7 degrees) and
-/// kSpanMax (some overlap). Time units differ by factors of 1000, so at most one unit fits. If the times cover a
-/// shorter range, for example because they restart with each packet, still only one unit fits.
+/// The point times of a sweep must cover a fraction of the sweep period between 0.02 (a sector of 7 degrees) and 1.5
+/// (some overlap). Time units differ by factors of 1000, so at most one unit fits. If the times cover a shorter range,
+/// for example because they restart with each packet, still only one unit fits.
 constexpr double kSpanMin = 0.02, kSpanMax = 1.5, kShortSpanMin = kSpanMax / 1000.0;
-/// Times since 1970 that are later than 1973 exceed this value.
+/// Times since 1970 in seconds exceed 1e8 if they are later than 1973.
 constexpr double kEpochMin_s = 1e8;
-/// A sweep with at least this many points covers the whole sweep period. A smaller sweep may cover a short part, so its
-/// times do not contradict a time unit.
+/// A sweep with fewer than 100 points may cover a short part of the sweep period, so its times do not contradict a time
+/// unit.
 constexpr double kPointsThatSpan = 100.0;
 
-/// With at least this many clouds, times are absolute if two clouds start more than two periods from time zero.
+/// With at least five clouds, times are absolute if two clouds start more than two periods from time zero.
 constexpr std::size_t kCloudsToCompare = 5;
 
 using tumble::ros::kTimeUnits, tumble::ros::TimeUnit, tumble::ros::stated_unit;
@@ -43,8 +43,8 @@ std::string choose_field(const Cloud& cloud, const SweepReading& reading, const 
     std::string all;
     for (const std::string& name : cloud.names) all += " " + name;
     const std::string near = sim::nearest_name(reading.time_field, cloud.names);
-    throw BadInput(fmt::format("{}: there is no field '{}'{} (existing fields:{})", where, reading.time_field,
-                               near.empty() ? "" : fmt::format("; did you mean '{}'?", near), all));
+    throw BadInput(fmt::format("{}: the points have no field '{}'{} (existing fields:{})", where, reading.time_field,
+                               near.empty() ? "" : fmt::format(" (did you mean '{}'?)", near), all));
   }
   tumble::ros::TimeFieldChoice choice;
   for (const std::string& name : cloud.names) choice.offer(name);
@@ -55,10 +55,9 @@ std::string choose_field(const Cloud& cloud, const SweepReading& reading, const 
   return choice.field;
 }
 
-/// A point time that is farther from the median by more than this number of interquartile ranges is damaged.
+/// A point time that is farther from the median by more than 20 interquartile ranges is damaged.
 constexpr double kDamaged = 20.0;
 
-/// Returns the first and last time of the valid points of a cloud.
 std::pair<double, double> reach(const Cloud& cloud, const std::string& field) {
   std::pair<double, double> out(INFINITY, -INFINITY);
   const std::vector<double>* times = cloud.find(field);
@@ -87,10 +86,9 @@ bool fits(double span, const TimeUnit& unit, double period_ns, double least = kS
 std::string share_of(double span, const TimeUnit& unit, double period_ns) {
   std::string text = fmt::format("in {} this is ", name_of(unit));
   append_number(text, static_cast<float>(100.0 * span * unit.ns / period_ns));
-  return fmt::format("{} % of the sweep period", text);
+  return fmt::format("{} % of the period", text);
 }
 
-/// Throws BadInput if the numbers contradict the time unit in an option or in the name of the field.
 void require_no_other_unit(const TimeUnit& stated, double span, double period_ns, const std::string& field,
                            const std::string& where) {
   if (!(period_ns > 0.0) || fits(span, stated, period_ns)) return;
@@ -104,11 +102,9 @@ void require_no_other_unit(const TimeUnit& stated, double span, double period_ns
                              share_of(span, *read, period_ns)));
 }
 
-/// Determines the time unit from the range and the size of the numbers.
 double unit_by_size(double span, double largest, double period_ns, const std::string& field, const std::string& where) {
   for (const TimeUnit& unit : kTimeUnits) {
     if (period_ns > 0.0 && fits(span, unit, period_ns, kShortSpanMin)) return unit.ns;
-    // For times since 1970: the largest plausible unit.
     if (!(period_ns > 0.0) && largest >= kEpochMin_s * 1e9 / unit.ns && largest < kEpochMin_s * 1e12 / unit.ns)
       return unit.ns;
   }
@@ -146,7 +142,7 @@ PointTimeRule find_point_times(const std::vector<Cloud>& first, std::int64_t per
     largest = std::max({largest, std::abs(begin), std::abs(end)});
   }
   if (rule.field.empty() || spans.empty()) return {};
-  // times since 1970 replace assumed time stamps, even if all points of a sweep have the same time
+  // Times since 1970 replace assumed time stamps, even if all points of a sweep have the same time.
   const bool stamped = period_ns > 0 && !(reading.assumed && largest >= kEpochMin_s);
   if (stamped && std::ranges::max(spans) == 0.0 && upper_median(points) > 1.0) {
     rule.field.clear();

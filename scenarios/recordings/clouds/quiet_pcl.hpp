@@ -5,7 +5,7 @@
 
 namespace tumble::scenarios {
 
-/// QuietPcl suppresses PCL's console messages during its lifetime, because exceptions report the errors.
+/// PCL's console messages are suppressed, because exceptions report the errors.
 class QuietPcl {
  public:
   QuietPcl() { pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS); }

@@ -20,7 +20,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// The time unit comes from the first kProbe clouds, because a single cloud may be incomplete.
+/// A single cloud may be incomplete, so several clouds determine the time unit.
 constexpr std::ptrdiff_t kProbe = 10;
 constexpr double kByteIntensity = 255.0;
 constexpr double kPointFar_m = 1e6;
@@ -28,7 +28,6 @@ constexpr double kBeyond = 2.0;         // largest accepted distance, in ranges 
 constexpr double kFarthest_m = 500.0;   // range without a data sheet: above that of robot lidars
 constexpr std::size_t kBackwards = 20;  // smallest ratio of falling to rising point times of a reversed sweep
 constexpr double kOverlapMost = 1.05;   // largest accepted ratio of sweep period to time between sweep starts
-/// Largest time offset of a point if the period is unknown.
 constexpr std::int64_t kOffsetMax_ns = 1000000000;
 
 using tumble::ros::kRingNames, tumble::ros::kIntensityNames;
@@ -38,7 +37,7 @@ const std::vector<double>& coordinate(const Cloud& cloud, const char* name, cons
   if (found != nullptr) return *found;
   std::string all;
   for (const std::string& each : cloud.names) all += " " + each;
-  throw BadInput(fmt::format("{}: there is no field '{}' (existing fields:{})", where, name, all));
+  throw BadInput(fmt::format("{}: the points have no field '{}' (existing fields:{})", where, name, all));
 }
 
 bool is_among(const std::string& name, std::span<const std::string_view> names) {
@@ -52,7 +51,6 @@ const std::vector<double>* first_of(const Cloud& cloud, std::span<const std::str
   return nullptr;
 }
 
-/// Returns the indices of the points with a return.
 std::vector<std::size_t> hits(const Cloud& cloud, const std::string& where) {
   const std::vector<double>&x = coordinate(cloud, "x", where), &y = coordinate(cloud, "y", where),
         &z = coordinate(cloud, "z", where);
@@ -68,14 +66,13 @@ std::string in_ns(std::int64_t time_ns) {
   return std::to_string(time_ns) + " ns";
 }
 
-/// Describes the field and the unit of the point times.
 std::string said(const PointTimeRule& rule) {
   const char* unit = rule.unit_ns == 1e9 ? "s" : rule.unit_ns == 1e6 ? "ms" : rule.unit_ns == 1e3 ? "us" : "ns";
-  return fmt::format("point times: field '{}', in {}{}", rule.field, unit,
+  return fmt::format("the point times come from field '{}', in {}{}", rule.field, unit,
                      rule.absolute ? " of the clock" : " after the sweep's time stamp");
 }
 
-/// Returns a time in the middle of a sweep. Points that are farther from it than the longest sweep have wrong times.
+/// Points farther from the middle of a sweep than the longest sweep have wrong times.
 std::int64_t middle_of(const std::vector<std::optional<std::int64_t>>& times_ns) {
   std::vector<std::int64_t> known;
   for (const auto& time : times_ns) {
@@ -84,7 +81,6 @@ std::int64_t middle_of(const std::vector<std::optional<std::int64_t>>& times_ns)
   return upper_median(std::move(known));
 }
 
-/// Returns the ring numbers of the points in `kept`. Throws BadInput for an invalid number.
 std::vector<std::uint16_t> rings_of(const Cloud& cloud, const std::vector<std::size_t>& kept,
                                     const std::string& where) {
   const std::vector<double>* column = first_of(cloud, kRingNames);
@@ -93,7 +89,7 @@ std::vector<std::uint16_t> rings_of(const Cloud& cloud, const std::vector<std::s
     const double ring = column != nullptr ? (*column)[i] : 0.0;
     if (!(ring >= 0.0 && ring <= 65535.0 && ring == std::floor(ring)))
       throw BadInput(
-          fmt::format("{}: point {}: ring is {}; it must be a whole number from 0 to 65535", where, i, ring));
+          fmt::format("{}: the ring of point {} is {}; it must be a whole number from 0 to 65535", where, i, ring));
     rings.push_back(static_cast<std::uint16_t>(ring));
   }
   return rings;
@@ -123,7 +119,6 @@ void SweepBuilder::find_rule() {
   waiting_.clear();
 }
 
-/// Returns true if the absolute point times of most of the first clouds are far from the clouds' stamps.
 bool SweepBuilder::has_other_clock() const {
   if (!rule_->absolute || reading_.assumed || period_ns_ <= 0) return false;
   std::size_t apart = 0, all = 0;
@@ -181,8 +176,8 @@ void SweepBuilder::read(Waiting& sweep) {
   if (store_) store_->take(record_);
 }
 
-/// Returns the times of the points in the clock of the stamps. Points without times get the start of the sweep. Points
-/// with wrong times are removed from `kept`; if there are many, throws BadInput.
+/// Points without times get the start of the sweep. Points with wrong times are removed from `kept`; many such points
+/// throw BadInput.
 std::vector<std::int64_t> SweepBuilder::point_times(const Waiting& sweep, std::vector<std::size_t>& kept) {
   if (rule_->field.empty() || kept.empty()) {
     if (!sweep.stamp_ns)
@@ -194,8 +189,8 @@ std::vector<std::int64_t> SweepBuilder::point_times(const Waiting& sweep, std::v
   }
   const std::vector<double>* numbers = sweep.cloud.find(rule_->field);
   if (numbers == nullptr)
-    throw BadInput(
-        fmt::format("{}: there is no field '{}', but other sweeps have this field", sweep.where, rule_->field));
+    throw BadInput(fmt::format("{}: the points have no field '{}' for their times, but other sweeps have this field",
+                               sweep.where, rule_->field));
   if (!rule_->absolute && !sweep.stamp_ns)
     throw BadInput(fmt::format(
         "{}: the point times are relative to the start of the sweep, but the sweep has no time stamp", sweep.where));
@@ -219,9 +214,10 @@ std::vector<std::int64_t> SweepBuilder::point_times(const Waiting& sweep, std::v
     } else if (first_mistimed.empty()) {
       first_mistimed =
           times_ns[k]
-              ? fmt::format("{}: point {} is {} after the middle of the sweep; this difference must be within {}",
-                            sweep.where, kept[k], in_ns(*times_ns[k] - middle_ns), in_ns(bound_ns))
-              : fmt::format("{}: point {}: the time is {}; it must be finite and within 146 years", sweep.where,
+              ? fmt::format(
+                    "{}: the time of point {} is {} after the middle of the sweep; it must be within {} of the middle",
+                    sweep.where, kept[k], in_ns(*times_ns[k] - middle_ns), in_ns(bound_ns))
+              : fmt::format("{}: the time of point {} is {}; it must be finite and within 146 years", sweep.where,
                             kept[k], std::to_string((*numbers)[kept[k]]));
     }
   }
@@ -237,7 +233,6 @@ std::int64_t SweepBuilder::longest_sweep_ns() const {
   return period_ns_ > 0 ? 2 * period_ns_ : kOffsetMax_ns;
 }
 
-/// Returns the start of the sweep. If the point times have another clock, converts them to the clock of the stamp.
 std::int64_t SweepBuilder::start_of(const Waiting& sweep, std::vector<std::int64_t>& times_ns) const {
   if (times_ns.empty()) return *sweep.stamp_ns;
   const std::int64_t first = *std::min_element(times_ns.begin(), times_ns.end()), bound = longest_sweep_ns();
@@ -261,7 +256,6 @@ std::int64_t SweepBuilder::start_of(const Waiting& sweep, std::vector<std::int64
   return start;
 }
 
-/// Returns true if most points of a cloud are beyond twice the lidar's range; such a cloud counts as skipped.
 bool SweepBuilder::is_far(const Waiting& sweep, const std::vector<std::size_t>& kept) {
   if (kept.empty()) return false;
   const std::vector<double>&x = *sweep.cloud.find("x"), &y = *sweep.cloud.find("y"), &z = *sweep.cloud.find("z");
@@ -271,7 +265,7 @@ bool SweepBuilder::is_far(const Waiting& sweep, const std::vector<std::size_t>& 
   beyond_ += beyond;
   if (2 * beyond <= kept.size()) return false;
   far_ += kept.size();
-  left_out_.add_unlimited("most points farther than twice the lidar's range", sweep.where);
+  left_out_.add_unlimited("points beyond the lidar's range", sweep.where);
   return true;
 }
 
@@ -309,7 +303,7 @@ double SweepBuilder::range_max_m() const {
   return reading_.range_max_m > 0.0 ? reading_.range_max_m : kFarthest_m;
 }
 
-/// Throws BadInput if most points are beyond the range, probably because the coordinates are in mm.
+/// If most points are beyond the range, the coordinates are probably in mm.
 void SweepBuilder::require_range(const std::string& where) const {
   const std::size_t all = points() + far_;
   if (2 * beyond_ <= all) return;
@@ -324,8 +318,8 @@ void SweepBuilder::note_dropped_points(std::vector<std::string>& notes) const {
   for (const auto& [name, sweeps] : ignored_) names += " " + name;
   if (left_out_.count() > 0) notes.push_back(left_out_.note(record_.sweep_start_ns.size() + skipped_));
   if (mistimed_ > 0)
-    notes.push_back(fmt::format("caution: {} {} left out because of times outside their sweep (first: {})", mistimed_,
-                                mistimed_ == 1 ? "point is" : "points are", first_mistimed_));
+    notes.push_back(fmt::format("caution: the import leaves out {} {} with times outside their sweep (first: {})",
+                                mistimed_, mistimed_ == 1 ? "point" : "points", first_mistimed_));
   if (other_clock_)
     notes.push_back(
         "caution: the point times and the time stamps of the sweeps come from different clocks. The import assumes "
@@ -354,9 +348,8 @@ void SweepBuilder::note_dropped_points(std::vector<std::string>& notes) const {
                     "lidar's axes (first VIEWPOINT: {})",
                     viewpoints_, first_viewpoint_));
   if (record_.point_times == sim::PointTimes::unknown)
-    notes.push_back(
-        fmt::format("the points have no time stamps, so sweeps cannot be deskewed{}",
-                    (names.empty() ? "" : "; if one of these fields contains the times, set '--time-field':" + names)));
+    notes.push_back(fmt::format("the points have no time stamps, so sweeps cannot be deskewed{}",
+                                (names.empty() ? "" : " (set '--time-field' to a field with times):" + names)));
   if (!names.empty()) notes.push_back("ignored fields:" + names);
 }
 

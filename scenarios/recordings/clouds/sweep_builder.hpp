@@ -15,41 +15,36 @@
 
 namespace tumble::scenarios {
 
-/// SweepReading contains the options for reading lidar sweeps: information that the files lack.
 struct SweepReading {
   sim::LidarRecord device;   ///< name, device, T_BL; sweep_period_ns 0: median step of the sweep starts
   std::string time_field;    ///< empty: a field with a usual name
   std::string time_unit;     ///< s ms us ns; empty: from the field's name ("offset_ns") or the size of the numbers
-  bool not_skewed = false;   ///< the points are already deskewed or simultaneous; their times are ignored
+  bool not_skewed = false;   ///< true: the points are already deskewed or simultaneous; their times are ignored
   double range_max_m = 0.0;  ///< from the data sheet; 0: unknown
-  bool assumed = false;      ///< the stamps are assumed values, which absolute point times replace
+  bool assumed = false;      ///< true: absolute point times replace the stamps, which are assumed values
   /// Folder for storing the points on disk; empty: in memory.
   std::filesystem::path scratch;
 };
 
-/// PointTimeRule is the field and the unit of the point times in a series of clouds.
 struct PointTimeRule {
   std::string field;        ///< empty: the points have no times
   double unit_ns = 1.0;     ///< unit of the field [ns]
   bool absolute = false;    ///< true: times since a fixed origin; false: since the sweep's stamp
-  bool constant = false;    ///< all points of a sweep have the same time; `field` is then empty
-  bool short_span = false;  ///< the times cover only a small part of the sweep period
+  bool constant = false;    ///< true: all points of a sweep have the same time; `field` is then empty
+  bool short_span = false;  ///< true: the times cover only a small part of the sweep period
 };
 
-/// Finds the field of the point times and its unit from the clouds in `first`. The field has one of these names (any
-/// case): t time timestamp timestamps time_stamp offset_time time_offset offset_ns. A suffix _s _ms _us _ns determines
-/// the unit. Without a suffix, the times of a sweep must cover 0.15 to 150 % of `period_ns` (median over the clouds) in
-/// the correct unit. At most one unit fits. If the period is unknown (0), the size of times since 1970 determines the
-/// unit. If all times of a sweep are equal, the points have no times.
+/// The field of the point times has one of these names (any case): t time timestamp timestamps time_stamp offset_time
+/// time_offset offset_ns. A suffix _s _ms _us _ns determines the unit. Without a suffix, the times of a sweep must
+/// cover 0.15 to 150 % of `period_ns` in the correct unit; at most one unit fits. If the period is unknown (0), the
+/// size of times since 1970 determines the unit. If all times of a sweep are equal, the points have no times.
 ///
-/// A unit from an option or suffix is rejected if it does not fit, another unit fits, and the sweeps have at least 100
-/// points. Point times are absolute if they start more than two periods from 0 in one cloud; of five or more clouds, in
-/// two. If two fields have such names, the field with a suffix is used. Throws BadInput, with a message that starts
-/// with `where`, for a missing or ambiguous field, or if no unit fits.
+/// A unit from an option or suffix is rejected if another unit fits better and the sweeps have at least 100 points.
+/// Point times are absolute if they start more than two periods from 0 in one cloud; of five or more clouds, in two.
+/// Throws BadInput, with a message that starts with `where`, for a missing or ambiguous field, or if no unit fits.
 PointTimeRule find_point_times(const std::vector<Cloud>& first, std::int64_t period_ns, const SweepReading& reading,
                                const std::string& where);
 
-/// BuiltSweeps contains a lidar record and its points, which are either in the record or on disk.
 struct BuiltSweeps {
   sim::LidarRecord lidar;
   std::optional<PointStore> points;
@@ -58,19 +53,16 @@ struct BuiltSweeps {
   std::vector<std::optional<std::int64_t>> last_point_ns = {};
 };
 
-/// SweepBuilder builds a lidar record from clouds in order of time. The first ten clouds are kept in memory. If the
-/// points are stored on disk, memory then contains one cloud at a time.
+/// SweepBuilder builds a lidar record from clouds in order of time. Memory contains the first ten clouds; with points
+/// on disk, memory then contains one cloud at a time.
 ///
-/// A point counts as a ray without return if it is not finite, farther than 1000 km, or at the origin. Intensities
-/// (column "intensity" or "reflectivity") up to 1 are unchanged; otherwise they are divided by 255, or by their maximum
-/// if it exceeds 255. Ring numbers (column "ring", "line" or "channel") are integers up to 65535. A sweep starts at its
-/// time stamp; if its first point is earlier, or a period later, the sweep starts at this point. The columns x, y and z
-/// are required.
+/// The columns x, y and z are required. A point counts as a ray without return if it is not finite, farther than 1000
+/// km, or at the origin. Intensities above 1 are divided by 255, or by their maximum if it exceeds 255. A sweep starts
+/// at its time stamp; if its first point is earlier, or a period later, the sweep starts at this point.
 ///
-/// A few points with times outside the sweep are skipped. A cloud is skipped if it lacks a field, has an invalid ring,
-/// or starts before the previous sweep. A cloud is also skipped if many points have times outside the sweep, or if most
-/// points are beyond twice the lidar's range. If absolute point times and stamps come from different clocks, the stamp
-/// is assumed to be the time of the first point of the sweep.
+/// A few points with times outside the sweep are skipped. A cloud is skipped if many points have such times, it lacks a
+/// field, has an invalid ring, starts before the previous sweep, or has most points beyond twice the lidar's range. If
+/// absolute point times and stamps come from different clocks, the stamp is assumed to be the time of the first point.
 class SweepBuilder {
  public:
   /// `period_ns` is the sweep period for find_point_times: that of the device, or the median step of the stamps.
@@ -80,18 +72,15 @@ class SweepBuilder {
     if (!reading_.scratch.empty()) store_.emplace(reading_.scratch);
   }
 
-  /// Adds a sweep to the record. Error messages start with `where`. Throws BadInput if the times of the first clouds
-  /// cannot be interpreted.
+  /// Throws BadInput, with a message that starts with `where`, if the times of the first clouds cannot be interpreted.
   void add(std::optional<std::int64_t> stamp_ns, Cloud cloud, std::string where);
 
-  /// Counts of skipped clouds, to which the caller adds the clouds that cannot be read.
   LeftOut& left_out() { return left_out_; }
 
-  /// Returns the lidar record in the clock of the stamps, and adds notes, for example about the unit of point times. If
-  /// the device has no period, the period is the median step of the stamps, or the largest point offset if it is
-  /// larger. Throws BadInput, with a message that starts with `where`, if too many clouds were skipped or there are no
-  /// points. Throws BadInput if most points are beyond twice the range in the data sheet, or for a single sweep of
-  /// unknown length.
+  /// Returns the lidar record in the clock of the stamps. If the device has no period, the period is the median step of
+  /// the stamps, or the largest point offset if it is larger. Throws BadInput, with a message that starts with `where`,
+  /// if too many clouds were skipped, there are no points, most points are beyond twice the range in the data sheet, or
+  /// a single sweep has an unknown length.
   BuiltSweeps finish(const std::string& where, std::vector<std::string>& notes);
 
  private:
@@ -100,7 +89,7 @@ class SweepBuilder {
     Cloud cloud;
     std::string where;
   };
-  void find_rule();  ///< determines the time rule from the waiting clouds, then adds them
+  void find_rule();
   bool has_other_clock() const;
   void take(Waiting& sweep);
   void read(Waiting& sweep);
@@ -122,16 +111,16 @@ class SweepBuilder {
   sim::LidarRecord record_;
   std::optional<PointStore> store_;
   float brightest_ = 0.0f;
-  std::int64_t longest_ns_ = 0;  ///< largest point offset
+  std::int64_t longest_ns_ = 0;
   LeftOut left_out_;
-  bool other_clock_ = false;  ///< absolute point times and stamps come from different clocks
+  bool other_clock_ = false;  ///< true: absolute point times and stamps come from different clocks
   std::vector<std::optional<std::int64_t>> last_point_ns_;
   std::size_t misses_ = 0, dark_ = 0, skipped_ = 0, beyond_ = 0, far_ = 0;  ///< far_: points of far clouds (is_far)
-  std::size_t mistimed_ = 0;                    ///< number of points with times outside their sweep
-  std::string first_mistimed_;                  ///< message on the first of these points
-  std::size_t rises_ = 0, falls_ = 0;           ///< numbers of points later and earlier than the previous point
-  std::size_t viewpoints_ = 0;                  ///< number of sweeps with a viewpoint
-  std::string first_viewpoint_;                 ///< first viewpoint, with its file
+  std::size_t mistimed_ = 0;                                                ///< points with times outside their sweep
+  std::string first_mistimed_;
+  std::size_t rises_ = 0, falls_ = 0;           ///< points later and earlier than the previous point
+  std::size_t viewpoints_ = 0;                  ///< sweeps with a viewpoint
+  std::string first_viewpoint_;                 ///< with its file
   std::map<std::string, std::size_t> ignored_;  ///< ignored columns, with their number of sweeps
 };
 

@@ -23,7 +23,6 @@ bool is_digit(char c) {
   return std::isdigit(static_cast<unsigned char>(c)) != 0;
 }
 
-/// Compares numbers in the names by their values.
 bool natural_less(const std::filesystem::path& left, const std::filesystem::path& right) {
   const std::string a = left.filename().string(), b = right.filename().string();
   std::size_t i = 0, j = 0;
@@ -46,7 +45,6 @@ bool natural_less(const std::filesystem::path& left, const std::filesystem::path
   return a < b;  // names that differ in leading zeros
 }
 
-/// Removes the trailing digits from `text` and returns the digits.
 std::string_view take_digits(std::string_view& text) {
   std::size_t begin = text.size();
   while (begin > 0 && is_digit(text[begin - 1])) --begin;
@@ -87,7 +85,7 @@ std::vector<std::filesystem::path> sweep_files(const std::filesystem::path& fold
                                                const std::string& stem) {
   std::error_code error;
   if (!std::filesystem::is_directory(folder, error))
-    throw BadInput(fmt::format("{}: this path is not a folder", folder.string()));
+    throw BadInput(fmt::format("{}: the path of the sweeps is not a folder", folder.string()));
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     const std::filesystem::path& path = entry.path();
@@ -128,7 +126,7 @@ std::vector<std::int64_t> read_stamps(const std::filesystem::path& file, std::ve
   for (const Table::Row& row : table.rows) {
     const std::optional<std::int64_t> found = parse_stamp_ns(row.cells[0]);
     if (!found)
-      throw BadInput(fmt::format("{}:{}: '{}' is not a time: seconds, digits of ms, us or ns, or a date in UTC",
+      throw BadInput(fmt::format("{}:{}: the time stamp '{}' must be seconds, digits of ms, us or ns, or a date in UTC",
                                  file.string(), row.line, shortened(row.cells[0])));
     const std::int64_t stamp = *found;
     std::string wrong;

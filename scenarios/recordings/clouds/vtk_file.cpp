@@ -17,7 +17,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// VtkWords splits a text into words and counts the lines.
 class VtkWords {
  public:
   explicit VtkWords(const std::filesystem::path& path) : name_(path.string()) {
@@ -29,7 +28,6 @@ class VtkWords {
     throw BadInput(name_ + ":" + std::to_string(line_) + ": " + what);
   }
 
-  /// Returns the rest of the line and moves to the next line.
   std::string_view line() {
     const std::size_t end = std::min(text_.find('\n', at_), text_.size());
     std::string_view out = std::string_view(text_).substr(at_, end - at_);
@@ -39,7 +37,6 @@ class VtkWords {
     return out;
   }
 
-  /// Returns the next word; empty at the end of the file.
   std::string_view next() {
     while (at_ < text_.size() && is_blank(text_[at_])) line_ += text_[at_++] == '\n';
     const std::size_t begin = at_;
@@ -47,21 +44,21 @@ class VtkWords {
     return std::string_view(text_).substr(begin, at_ - begin);
   }
 
-  /// Returns the next word. Throws BadInput at the end of the file.
   std::string_view need(const char* what) {
     const std::string_view word = next();
-    if (word.empty()) fail(fmt::format("the file ends before {}; it may be truncated", what));
+    if (word.empty()) fail(fmt::format("the VTK file ends before {}; it may be truncated", what));
     return word;
   }
 
   std::uint64_t whole(const char* what) {
     const std::string_view word = need(what);
     std::uint64_t value = 0;
-    if (!read_number(word, value)) fail(fmt::format("{} is '{}'; it must be a whole number", what, shortened(word)));
+    if (!read_number(word, value))
+      fail(fmt::format("the VTK file states {} as '{}'; it must be a whole number", what, shortened(word)));
     return value;
   }
 
-  /// Reads a number. Lidar drivers write "nan" or "inf" for rays without a return.
+  /// Lidar drivers write "nan" or "inf" for rays without a return.
   double number() {
     std::string_view word = need("its numbers");
     if (word.starts_with('+')) word.remove_prefix(1);
@@ -71,7 +68,7 @@ class VtkWords {
     return value;
   }
 
-  /// Returns the number of remaining bytes. Each number needs at least two bytes: a digit and a separator.
+  /// Each number needs at least two bytes: a digit and a separator.
   std::uint64_t left() const { return text_.size() - at_; }
 
  private:
@@ -81,14 +78,15 @@ class VtkWords {
   int line_ = 1;
 };
 
-/// Checks the announced number of values against the remaining file size, before memory is allocated.
+/// The announced number of values is compared with the remaining file size before memory is allocated.
 void require_room(const VtkWords& words, std::uint64_t count, std::uint64_t each) {
   if (count > kCloudPointsMax) {
     words.fail(fmt::format("the file states {} points; at most {} can be read", count, kCloudPointsMax));
   }
   if (count * each * 2 > words.left() + 1) {
-    words.fail(fmt::format("the file states {} times {} numbers, but only {} bytes follow; the file may be truncated",
-                           count, each, words.left()));
+    words.fail(
+        fmt::format("the VTK file states {} times {} numbers, but only {} bytes follow; the file may be truncated",
+                    count, each, words.left()));
   }
 }
 
@@ -109,13 +107,13 @@ void pass_over(VtkWords& words, std::uint64_t count, std::uint64_t each) {
   for (std::uint64_t i = 0; i < count * each; ++i) words.number();
 }
 
-/// Reads "VERTICES lines numbers" and skips this many numbers.
+/// The section has the form "VERTICES lines numbers", followed by this many numbers.
 void pass_vertices(VtkWords& words) {
   words.whole("the number of vertices");
-  pass_over(words, words.whole("the numbers of the vertices"), 1);
+  pass_over(words, words.whole("the vertices' numbers"), 1);
 }
 
-/// Reads "SCALARS name type [numbers per point]" and "LOOKUP_TABLE name", one line each, and then the numbers.
+/// The section has the lines "SCALARS name type [numbers per point]" and "LOOKUP_TABLE name", followed by the numbers.
 void read_scalars(VtkWords& words, Cloud& cloud) {
   const std::string name(words.need("the name of scalars"));
   words.need("the scalars' type");
@@ -123,15 +121,15 @@ void read_scalars(VtkWords& words, Cloud& cloud) {
   std::string_view word = words.need("LOOKUP_TABLE");
   if (word != "LOOKUP_TABLE") {
     if (!read_number(word, each) || each < 1 || each > 4)
-      words.fail(fmt::format("scalars '{}' have '{}' numbers per point; they must have 1 to 4", shortened(name),
+      words.fail(fmt::format("the scalars '{}' have '{}' numbers per point; they must have 1 to 4", shortened(name),
                              shortened(word)));
     word = words.need("LOOKUP_TABLE");
   }
   if (word != "LOOKUP_TABLE") words.fail("'" + shortened(word) + "' instead of LOOKUP_TABLE");
-  words.need("the name of the lookup table");
+  words.need("the lookup table");
   if (each != 1) return pass_over(words, cloud.points, each);
   if (cloud.find(name) != nullptr)
-    words.fail(fmt::format("scalars '{}' occur twice; each name may occur once", shortened(name)));
+    words.fail(fmt::format("the name of the scalars '{}' occurs twice; each name may occur once", shortened(name)));
   require_room(words, cloud.points, 1);
   std::vector<double> column(cloud.points);
   for (double& value : column) value = words.number();
@@ -139,12 +137,12 @@ void read_scalars(VtkWords& words, Cloud& cloud) {
   cloud.columns.push_back(std::move(column));
 }
 
-/// Skips the data of a section NORMALS, VECTORS or TENSORS (name, type), or COLOR_SCALARS (name, count).
 void pass_data(VtkWords& words, const Cloud& cloud, std::string_view section) {
   words.need("a name");
   if (section == "COLOR_SCALARS") {
-    const std::uint64_t each = words.whole("the numbers of a colour");
-    if (each < 1 || each > 4) words.fail(fmt::format("colours have {} numbers; they must have 1 to 4", each));
+    const std::uint64_t each = words.whole("a colour's size");
+    if (each < 1 || each > 4)
+      words.fail(fmt::format("the colours of the VTK file have {} numbers each; they must have 1 to 4", each));
     return pass_over(words, cloud.points, each);
   }
   words.need("a type");
@@ -175,9 +173,10 @@ Cloud read_vtk(const std::filesystem::path& path) {
     } else if (section == "VERTICES") {
       pass_vertices(words);
     } else if (section == "POINT_DATA") {
-      const std::uint64_t points = words.whole("the number of point data");
+      const std::uint64_t points = words.whole("the point data");
       if (points != cloud.points)
-        words.fail(fmt::format("POINT_DATA has {} points, but POINTS has {}", points, cloud.points));
+        words.fail(fmt::format("the section POINT_DATA states {} points, but POINTS states {}; both must be equal",
+                               points, cloud.points));
       of_points = true;
     } else if (of_points && section == "SCALARS") {
       read_scalars(words, cloud);
@@ -185,7 +184,7 @@ Cloud read_vtk(const std::filesystem::path& path) {
                (section == "NORMALS" || section == "VECTORS" || section == "TENSORS" || section == "COLOR_SCALARS")) {
       pass_data(words, cloud, section);
     } else {
-      words.fail(fmt::format("section '{}' is not supported at this position", shortened(section)));
+      words.fail(fmt::format("the section '{}' is not supported at this position of a VTK file", shortened(section)));
     }
   }
   if (cloud.names.empty()) words.fail("has no POINTS section");

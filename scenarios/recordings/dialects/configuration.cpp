@@ -14,7 +14,7 @@ namespace {
 
 using Numbers = std::vector<double>;
 
-/// Returns a number with a decimal point: ROS 2 requires it for a double, and YAML 1.1 requires it before an exponent.
+/// ROS 2 requires a decimal point for a double, and YAML 1.1 requires a decimal point before an exponent.
 std::string decimal(double value) {
   std::string text;
   append_number(text, value == 0.0 ? 0.0 : value);  // avoids "-0"
@@ -23,7 +23,6 @@ std::string decimal(double value) {
   return exponent == std::string::npos ? text + ".0" : text.insert(exponent, ".0");
 }
 
-/// Returns the numbers as YAML, or as lines of a JSON array.
 std::string text_of(const Numbers& values, bool json) {
   std::string text;
   for (const double value : values)
@@ -35,7 +34,6 @@ Numbers position(const Eigen::Isometry3d& T) {
   return {T.translation().x(), T.translation().y(), T.translation().z()};
 }
 
-/// Returns a rotation matrix, row by row.
 Numbers rotation(const Eigen::Isometry3d& T) {
   const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> R = T.linear();
   return {R.data(), R.data() + R.size()};

@@ -28,18 +28,18 @@ const Dialect& dialect_of(const std::string& peer) {
     known += " " + dialect.name;
   }
   const std::string near = sim::nearest_name(peer, peer_dialects());
-  throw BadInput(fmt::format("unknown export target '{}'{} (known targets:{})", peer,
-                             near.empty() ? "" : fmt::format("; did you mean '{}'?", near), known));
+  throw BadInput(fmt::format("the export target '{}' is unknown{} (known targets:{})", peer,
+                             near.empty() ? "" : fmt::format(" (did you mean '{}'?)", near), known));
 }
 
-/// Points that are not finite are rejected, because the configuration needs the range of the points.
+/// The configuration needs the range of the points, so points that are not finite are rejected.
 void require_finite(const sim::LidarRecord& lidar, const PointStore& aside) {
   for (std::size_t number = 0; number < lidar.sweep_start_ns.size(); ++number) {
     const sim::LidarRecord sweep = sweep_alone(lidar, &aside, number);
     for (std::size_t k = 0; k < sweep.range_m.size(); ++k) {
       if (sweep.position_L_m[k].allFinite() && std::isfinite(sweep.range_m[k]) && std::isfinite(sweep.intensity[k]))
         continue;
-      throw BadInput(fmt::format("point {} of '{}' has a position, range or intensity that is not finite",
+      throw BadInput(fmt::format("point {} of lidar '{}' has a position, range or intensity that is not finite",
                                  lidar.sweep_first[number] + k, lidar.name));
     }
   }
@@ -53,7 +53,7 @@ void require_fitting(const Dialect& dialect, const sim::Sensors& sensors, const 
   if (!facts.lidar || facts.lidar->points == 0) refuse("the recording has no lidar return");
   if (dialect.needs_imu && (!facts.imu || facts.imu->samples == 0)) refuse("the recording has no IMU reading");
   if (dialect.needs_times && !facts.lidar->timed)
-    refuse(fmt::format("the points of '{}' have no time stamps", sensors.lidars.front().name));
+    refuse(fmt::format("the points of lidar '{}' have no time stamps", sensors.lidars.front().name));
   if (dialect.needs_rings && facts.lidar->livox)
     refuse(fmt::format("the lidar '{}' does not scan in rings", facts.lidar->device));
   require_finite(sensors.lidars.front(), points.front());
@@ -66,14 +66,13 @@ void write_bag(const Dialect& dialect, const sim::Sensors& sensors, const BagWri
   writers.at(dialect.bag_format)(sensors, writing, place);
 }
 
-/// Excludes empty sweeps from the bag if the published estimator cannot read them, and adds their number to the notes.
-/// Returns the notes for the user.
 std::vector<std::string> leave_out_empty_sweeps(Dialect& dialect, LidarFacts& lidar) {
   const std::size_t empty = lidar.empty_sweeps;
   if (dialect.takes_empty || empty == 0) return {};
   lidar.sweeps -= empty;
-  const std::string note = fmt::format("{}{} without points are left out, because {} cannot read an empty cloud", empty,
-                                       empty == 1 ? " sweep" : " sweeps", dialect.name);
+  const std::string note =
+      fmt::format("the export leaves out {}{} without points, because {} cannot read an empty cloud", empty,
+                  empty == 1 ? " sweep" : " sweeps", dialect.name);
   dialect.notes.push_back(note);
   return {note};
 }

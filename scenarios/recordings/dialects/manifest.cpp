@@ -31,7 +31,6 @@ const char* word(NumberType type) {
   return "float64";
 }
 
-/// Returns the unit of a point field.
 std::string unit(const PointColumn& column) {
   switch (column.quantity) {
     case PointQuantity::x_m:

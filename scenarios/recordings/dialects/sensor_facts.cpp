@@ -12,8 +12,8 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr double kStillRate_rad_s = 0.2, kStillForce_m_s2 = 1.0;
-/// kRigCage_m is the distance, rounded up, from the lidar to the farthest corner of the box (-0.5 -0.4 -0.27) to (0.5
-/// 0.4 0.23) m around the rig.
+/// The distance from the lidar to the farthest corner of the box (-0.5 -0.4 -0.27) to (0.5 0.4 0.23) m around the rig
+/// is rounded up.
 constexpr double kRigCage_m = 0.7;
 
 bool is_livox(const std::string& device) {
@@ -41,7 +41,6 @@ ImuFacts facts_of(const sim::ImuRecord& imu, double gravity_m_s2) {
   return out;
 }
 
-/// Sweeps contains a lidar record and its points.
 struct Sweeps {
   const sim::LidarRecord& lidar;
   const PointStore* aside;
@@ -52,7 +51,6 @@ struct Sweeps {
   }
 };
 
-/// Calls `take(step)` with each time step [ns] between consecutive points of one ring in a sweep.
 template <class Take>
 void for_steps(const Sweeps& sweeps, Take&& take) {
   sweeps.for_each([&](const sim::LidarRecord& sweep) {
@@ -65,17 +63,14 @@ void for_steps(const Sweeps& sweeps, Take&& take) {
   });
 }
 
-/// Returns the median of 16-bit values (the larger of two middle values) from their counts; `below` values are smaller
-/// than all counted values.
 std::uint32_t middle_of(const std::vector<std::uint64_t>& counts, std::uint64_t place, std::uint64_t& below) {
   std::uint32_t value = 0;
   for (; value + 1 < counts.size() && below + counts[value] <= place; ++value) below += counts[value];
   return value;
 }
 
-/// Returns how often a ring fires per sweep: the sweep period divided by the median time step between points of one
-/// ring. To save memory, the function first counts the upper 16 bits of the steps, then the lower 16 bits within the
-/// bin of the median.
+/// To save memory, the function first counts the upper 16 bits of the steps, then the lower 16 bits within the bin of
+/// the median.
 int columns_of(const Sweeps& sweeps) {
   constexpr std::uint32_t kHalf_bits = 16, kLower = 0xffff;
   std::vector<std::uint64_t> counts(std::size_t{1} << kHalf_bits, 0);

@@ -11,7 +11,6 @@
 
 namespace tumble::scenarios {
 
-/// ImuFacts contains the properties of the first IMU that configuration files need.
 struct ImuFacts {
   std::string device;
   std::size_t samples = 0;
@@ -22,23 +21,20 @@ struct ImuFacts {
   double still_at_start_s = 0.0;  ///< time until a rate above 0.2 rad/s or a force 1 m/s^2 off gravity
 };
 
-/// LidarFacts contains the properties of the first lidar that configuration files need.
 struct LidarFacts {
   std::string device;
-  bool livox = false;                                    ///< by the device's name
-  bool timed = false;                                    ///< points have individual times
+  bool livox = false;  ///< by the device's name
+  bool timed = false;
   std::size_t sweeps = 0, empty_sweeps = 0, points = 0;  ///< `sweeps` includes the empty ones
   double period_s = 0.0;
   int rings = 1;                             ///< highest ring plus one
   int columns = 1;                           ///< firings of a ring in a sweep, from the median step between its returns
   double nearest_m = 0.0, farthest_m = 0.0;  ///< range of the returns
-  /// Points closer to the lidar than `own_body_m` belong to the robot. For the rig, `own_body_m` is 0.7 m, the extent
-  /// of its cage from the lidar (the box that the mapper excludes). For other robots, `own_body_m` is the range of the
-  /// nearest point.
+  /// Points closer to the lidar than this distance belong to the robot: 0.7 m for the rig, the extent of its cage from
+  /// the lidar. For other robots, the value is the range of the nearest point.
   double own_body_m = 0.0;
 };
 
-/// SensorFacts contains the properties of the sensors that a published estimator reads, without the truth.
 struct SensorFacts {
   std::optional<ImuFacts> imu;
   std::optional<LidarFacts> lidar;
@@ -48,8 +44,7 @@ struct SensorFacts {
   Eigen::Isometry3d T_IL() const { return T_BI.inverse(Eigen::Isometry) * T_BL; }
 };
 
-/// Computes the properties of the sensors in a recording. The vector `points` gives access to the points of each lidar
-/// on disk; null if the points are in memory. Only one sweep is in memory at a time.
+/// The argument `points` is null if the points are in memory. Only one sweep is in memory at a time.
 SensorFacts facts_of(const sim::Sensors& sensors, const std::vector<PointStore>* points = nullptr);
 
 }  // namespace tumble::scenarios

@@ -24,7 +24,6 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-/// Returns the first line that is neither empty nor a comment, or else the first line.
 std::string_view first_row(std::string_view text) {
   for (std::string_view rest = text; !rest.empty();) {
     const std::string_view line = trimmed(rest.substr(0, rest.find('\n')));
@@ -43,19 +42,18 @@ char likely_separator(std::string_view text) {
   return line.find(most) == std::string_view::npos ? ' ' : most;
 }
 
-/// Throws BadInput if the file is not UTF-8 text with lines. The text is checked before the columns, for a better error
-/// message.
 void require_lines(const std::string& name, std::string_view text) {
   const std::string_view mark = text.substr(0, 2);
   if (mark == "\xFF\xFE" || mark == "\xFE\xFF")
-    throw BadInput(fmt::format("{}: the text is in UTF-16; it must be in UTF-8", name));
+    throw BadInput(fmt::format("{}: the text of the file is in UTF-16; it must be in UTF-8", name));
   if (const std::size_t zero = text.find('\0'); zero != std::string_view::npos) {
     const auto line = std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(zero), '\n') + 1;
     throw BadInput(
         fmt::format("{}:{}: the file contains a zero byte: it is damaged or is not a text file", name, line));
   }
   if (text.find('\n') == std::string_view::npos && text.find('\r') != std::string_view::npos)
-    throw BadInput(fmt::format("{}: the lines end in a carriage return; they must end in a line feed", name));
+    throw BadInput(
+        fmt::format("{}: the lines of the file end in a carriage return; they must end in a line feed", name));
 }
 
 }  // namespace
@@ -109,7 +107,8 @@ double csv_number(const CsvLine& line, std::size_t index, const std::string& col
   const std::string place = line.where + ": column " + column;
   if (!parse_number(text, value)) {
     const bool comma = text.find(',') != std::string_view::npos;
-    throw BadInput(fmt::format("{} must be a number; it is '{}'{}", place, text, comma ? "; use a decimal point" : ""));
+    throw BadInput(fmt::format("{} must contain a number, but contains '{}'{}", place, text,
+                               comma ? " (use a decimal point)" : ""));
   }
   if (!std::isfinite(value)) throw BadInput(place + " is not finite");
   return value;

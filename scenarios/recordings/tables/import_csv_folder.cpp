@@ -15,7 +15,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Returns the .csv files of a folder, sorted by name.
 std::vector<std::filesystem::path> tables_in(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator(folder))
@@ -24,7 +23,6 @@ std::vector<std::filesystem::path> tables_in(const std::filesystem::path& folder
   return files;
 }
 
-/// Explains why a table has no IMU readings; empty if it has the columns of an IMU.
 std::string imu_problem(const std::filesystem::path& file) {
   try {
     imu_columns(LoggedTable(file));
@@ -43,7 +41,7 @@ Imported import_csv_folder(const std::filesystem::path& folder, const sim::ImuRe
   for (const std::filesystem::path& file : tables_in(folder)) {
     if (is_pose_table(file)) continue;  // a pose table is a reference
     if (const std::string problem = imu_problem(file); !problem.empty()) {
-      left_out.push_back(fmt::format("this file is left out, because it is not a table of IMU readings: {}", problem));
+      left_out.push_back(fmt::format("the import leaves out a file that is not a table of IMU readings: {}", problem));
       continue;
     }
     Imported imu = import_imu_csv(file, device, unit, gyro_unit);
@@ -54,8 +52,8 @@ Imported import_csv_folder(const std::filesystem::path& folder, const sim::ImuRe
       attach_imus(out, std::move(imu));
   }
   if (out.sensors.imus.empty())
-    throw BadInput(fmt::format("{}: the folder contains no table of IMU readings{}", folder.string(),
-                               (left_out.empty() ? "" : "; " + left_out.front())));
+    throw BadInput(fmt::format("{}: the folder must contain a table of IMU readings, but contains none{}",
+                               folder.string(), (left_out.empty() ? "" : "; " + left_out.front())));
   if (out.sensors.imus.size() > 1)
     out.notes.push_back(
         fmt::format("IMU '{}' is the primary IMU, because its file comes first. Tables do not state the poses of the "

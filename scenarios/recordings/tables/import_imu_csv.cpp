@@ -17,7 +17,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Returns the unit in the column names, or else the caller's unit. Throws BadInput if both differ.
 template <class Unit>
 Unit chosen(std::optional<Unit> stated, Unit asked, Unit usual, const CsvLine& header) {
   if (!stated || *stated == asked) return asked;
@@ -36,24 +35,22 @@ std::string unit_of_stamps(int decimals) {
   return decimals == 9 ? "s" : decimals == 6 ? "ms" : decimals == 3 ? "us" : "ns";
 }
 
-/// Adds notes on units that were inferred, and on ignored columns.
 void say_columns(const ImuColumns& columns, bool stated, std::vector<std::string>& notes) {
   if (columns.stamp_form != StampForm::decimal) return;
   if (!stated)
-    notes.push_back(
-        fmt::format("the import reads times in {}, because of the time step", unit_of_stamps(*columns.stamp_decimals)));
+    notes.push_back(fmt::format("the import reads time stamps in {}, because this unit gives a plausible time step",
+                                unit_of_stamps(*columns.stamp_decimals)));
   if (columns.gyro_unit == GyroUnit::deg_s)
-    notes.push_back("the import reads rates in deg/s, because of the column names");
+    notes.push_back("the import reads angular rates in deg/s, as stated in the column names");
   if (columns.accel_unit == AccelUnit::g)
-    notes.push_back("the import reads the specific force in g, because of the column names");
+    notes.push_back("the import reads the specific force in g, as stated in the column names");
   std::string others;
   for (const std::string& name : columns.left_out) others += (others.empty() ? "" : ", ") + name;
   if (!others.empty()) notes.push_back("ignored columns: " + others);
 }
 
-/// In a table of several IMUs, their rows alternate. Keeps the rows of the first IMU and returns a note; for a single
-/// IMU, returns an empty text. A column with more than kImusMax different numbers contains row numbers and not IMU
-/// numbers.
+/// In a table of several IMUs, their rows alternate. A column with more than eight different numbers contains row
+/// numbers and not IMU numbers.
 std::string keep_one_imu(LoggedTable& table, std::size_t id) {
   constexpr std::size_t kImusMax = 8;
   std::map<std::string, std::size_t> rows;
@@ -75,7 +72,6 @@ std::string keep_one_imu(LoggedTable& table, std::size_t id) {
       first, others);
 }
 
-/// Reads the samples from the IMU columns of a table, with the location of each line. `left_out` counts faulty rows.
 sim::ImuRecord readings_of(LoggedTable& table, const ImuColumns& columns, const sim::ImuRecord& device, AccelUnit unit,
                            GyroUnit gyro_unit, LeftOut& left_out, std::vector<std::string>& places) {
   sim::ImuRecord imu = without_readings(device);
@@ -120,7 +116,7 @@ Imported import_imu_csv(const std::filesystem::path& path, const sim::ImuRecord&
   std::erase(out.notes, "");
   const std::int64_t first_ns = imu.time_ns.front();
   for (std::int64_t& time : imu.time_ns) time -= first_ns;
-  out.info.attribution = fmt::format("imported from {}, first time stamp {} ns", path.filename().string(), first_ns);
+  out.info.attribution = fmt::format("imported from {} (first time stamp: {} ns)", path.filename().string(), first_ns);
   out.info.origin_ns = first_ns;
   out.sensors.imus.push_back(std::move(imu));
   return out;

@@ -18,30 +18,27 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Smallest number of columns of a sensor_msgs/Imu table without header.
 constexpr std::size_t kColumnsByPlace = 15;
 
 const std::array<std::string, 3> kAxes = {"x", "y", "z"};
 
-/// Columns that the command `export` writes, each once.
 const std::vector<std::string> kExported = {"stamp_s",  "stamp_ns", "frame_id", "qx",
                                             "qy",       "qz",       "qw",       "orientation_covariance",
                                             "wx_rad_s", "wy_rad_s", "wz_rad_s", "angular_velocity_covariance",
                                             "fx_m_s2",  "fy_m_s2",  "fz_m_s2",  "linear_acceleration_covariance"};
 
-/// Returns the only column that `fits` accepts. Throws BadInput for a second one, which would belong to another sensor.
 template <class Fits>
 std::optional<std::size_t> find_column(const CsvLine& header, const std::string& name, const Fits& fits) {
   std::optional<std::size_t> found;
   for (std::size_t i = 0; i < header.fields.size(); ++i) {
     if (!fits(header.fields[i])) continue;
-    if (found) fail(header, fmt::format("two columns have the name {}", name));
+    if (found) fail(header, fmt::format("two columns have the name {}; column names must be unique", name));
     found = i;
   }
   return found;
 }
 
-/// Finds the column whose name ends in `name`, after a point or slash: "/imu/header/stamp", "field.header.stamp".
+/// The name follows a point or slash: "/imu/header/stamp", "field.header.stamp".
 std::optional<std::size_t> find_ending(const CsvLine& header, const std::string& name) {
   return find_column(header, name, [&](std::string_view field) {
     std::string parts(field);
@@ -50,7 +47,6 @@ std::optional<std::size_t> find_ending(const CsvLine& header, const std::string&
   });
 }
 
-/// Finds the column whose name has one of these endings.
 std::optional<std::size_t> find_any_ending(const CsvLine& header, const std::vector<std::string>& names) {
   for (const std::string& name : names) {
     if (const auto found = find_ending(header, name)) return found;
@@ -64,7 +60,6 @@ std::optional<std::size_t> find_any(const CsvLine& header, const std::vector<std
   });
 }
 
-/// RequiredColumns collects columns that a header must contain.
 class RequiredColumns {
  public:
   explicit RequiredColumns(const CsvLine& header) : header_(header) {}
@@ -74,7 +69,6 @@ class RequiredColumns {
     else
       missing_ += " " + name;
   }
-  /// Returns false if none of the columns exists. Throws BadInput if only some exist.
   bool complete() const {
     if (found_ == 0) return false;
     if (!missing_.empty()) fail(header_, "missing columns:" + missing_);
@@ -87,9 +81,8 @@ class RequiredColumns {
   std::string missing_;
 };
 
-/// Finds the column with the stamp of a message header. The column "field.header.stamp" of `rostopic echo -p` contains
-/// nanoseconds; other tools write seconds, or seconds and nanoseconds in two columns. Returns false if there is no
-/// stamp.
+/// The column "field.header.stamp" of `rostopic echo -p` contains nanoseconds. Other tools write seconds, or seconds
+/// and nanoseconds in two columns.
 bool find_header_stamp(const CsvLine& header, ImuColumns& layout) {
   const auto seconds = find_any_ending(header, {"header/stamp/sec", "header/stamp/secs"});
   const auto rest = find_any_ending(header, {"header/stamp/nsec", "header/stamp/nsecs", "header/stamp/nanosec"});
@@ -105,8 +98,7 @@ bool find_header_stamp(const CsvLine& header, ImuColumns& layout) {
   return true;
 }
 
-/// Finds the IMU columns in a table of ROS messages. The stamp of the message header has priority over the time of
-/// recording.
+/// In a table of ROS messages, the stamp of the message header has priority over the time of recording.
 std::optional<ImuColumns> flattened(const CsvLine& header) {
   ImuColumns layout;
   if (!find_header_stamp(header, layout)) return std::nullopt;
@@ -119,8 +111,7 @@ std::optional<ImuColumns> flattened(const CsvLine& header) {
   return columns.complete() ? std::optional(layout) : std::nullopt;
 }
 
-/// Finds columns with the short names "wx_rad_s" or "wx", "fx_m_s2", "fx" or "ax", and "stamp_s", "sec", "secs" or "s"
-/// with "stamp_ns".
+/// Short names are "wx_rad_s" or "wx", "fx_m_s2", "fx" or "ax", and "stamp_s", "sec", "secs" or "s" with "stamp_ns".
 std::optional<ImuColumns> named(const CsvLine& header) {
   ImuColumns layout;
   RequiredColumns columns(header);
@@ -134,7 +125,6 @@ std::optional<ImuColumns> named(const CsvLine& header) {
   return columns.complete() ? std::optional(layout) : std::nullopt;
 }
 
-/// Throws BadInput if a header of the command `export` repeats a column name or has another name.
 void require_exported(const CsvLine& header) {
   for (const std::string_view field : header.fields) {
     const std::string name(field);
@@ -143,7 +133,7 @@ void require_exported(const CsvLine& header) {
   }
   for (const std::string& name : kExported) {
     const auto count = std::count(header.fields.begin(), header.fields.end(), name);
-    if (count > 1) fail(header, fmt::format("two columns have the name {}", name));
+    if (count > 1) fail(header, fmt::format("two columns have the name {}; column names must be unique", name));
   }
 }
 
@@ -154,7 +144,7 @@ double number(const CsvLine& line, std::size_t column) {
 std::int64_t whole_number(const CsvLine& line, std::size_t column, std::int64_t largest) {
   const double value = number(line, column);
   if (value != std::floor(value) || value < 0.0 || value > static_cast<double>(largest)) {
-    fail(line, fmt::format("column {} must be a whole number from 0 to {}; it is '{}'", column, largest,
+    fail(line, fmt::format("column {} must contain a whole number from 0 to {}, but contains '{}'", column, largest,
                            std::string(line.fields[column])));
   }
   return static_cast<std::int64_t>(value);
@@ -163,15 +153,13 @@ std::int64_t whole_number(const CsvLine& line, std::size_t column, std::int64_t 
 std::int64_t decimal_ns(const CsvLine& line, std::size_t column, int decimals) {
   const std::string_view text = line.fields[column];
   if (const auto ns = is_number(text) ? parse_time_ns(text, decimals) : parse_stamp_ns(text)) return *ns;
-  fail(line, fmt::format("column {} must be a time up to the year 2255; it is '{}'", column, text));
+  fail(line, fmt::format("column {} must contain a time up to the year 2255, but contains '{}'", column, text));
 }
 
-/// Returns true if the time stamp has separate columns for seconds and nanoseconds.
 bool has_split_stamp(const CsvLine& header) {
   return find_any(header, {"sec", "secs", "s"}) || find_any(header, {"nsec", "nsecs", "ns"});
 }
 
-/// Returns true if only the command `export` writes this column name.
 bool is_own(std::string_view field) {
   return (field == "stamp_s" || field.ends_with("_rad_s") || field.ends_with("_m_s2")) &&
          std::find(kExported.begin(), kExported.end(), field) != kExported.end();

@@ -12,10 +12,8 @@
 #include "scenarios/recordings/import.hpp"
 #include "scenarios/recordings/tables/logged_table.hpp"
 
-/// imu_columns.hpp finds the IMU columns of a table.
 namespace tumble::scenarios {
 
-/// StampForm is the format of the time stamps in a table.
 enum class StampForm {
   split,   ///< whole seconds, and nanoseconds in another column
   decimal  ///< decimal number in some unit
@@ -32,20 +30,18 @@ struct ImuColumns {
   std::vector<std::string> left_out;  ///< names of ignored columns
 };
 
-/// Finds the IMU columns of a table by their names, or by their positions if the table has no header. There are four
-/// groups of names: ROS messages (".../angular_velocity/x", "field.angular_velocity.x"), the command `export` (each
-/// once and no other names), its short forms (sec nsec wx.. fx..), and loggers (logger_columns.hpp). Throws BadInput
-/// with file and line for unknown, repeated or missing columns.
+/// Finds the IMU columns by their names, or by their positions if the table has no header. Known names are those of ROS
+/// messages (".../angular_velocity/x"), of the command `export`, their short forms (sec nsec wx.. fx..), and of loggers
+/// (logger_columns.hpp). Throws BadInput with file and line for unknown, repeated or missing columns.
 ImuColumns imu_columns(const LoggedTable& table);
 
-/// Parses the time stamp of a line, in nanoseconds: a number or a date in UTC (number_text.hpp). Throws BadInput with
-/// file, line and column if the time stamp is invalid.
+/// Parses a number or a date in UTC (number_text.hpp). Throws BadInput with file, line and column if the time stamp is
+/// invalid.
 std::int64_t stamp_ns(const CsvLine& line, const ImuColumns& columns);
 
-/// Infers the unit of the time stamps from up to a thousand steps at the start of the table, and returns it as a number
-/// of decimals. The unit is that of s, ms, us and ns that gives 10 to 1000 samples per second; at most one fits. For
-/// other sample rates, the file must contain the unit. If no unit fits, throws BadInput with a message that starts with
-/// `file`.
+/// Infers the unit of the time stamps from up to a thousand steps at the start of the table; returns its number of
+/// decimals. The unit is that of s, ms, us and ns that gives 10 to 1000 samples per second; at most one fits. Throws
+/// BadInput, with a message that starts with `file`, if no unit fits.
 int decimals_by_step(LoggedTable& table, std::size_t stamp, const std::string& file);
 
 }  // namespace tumble::scenarios

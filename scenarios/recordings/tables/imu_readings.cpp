@@ -18,15 +18,13 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Limits of the median specific force. At rest, rolling or hand-held, it is near g in m/s^2; the limits exclude
-/// readings in g, in mg and in raw counts.
+/// The median specific force of a robot is near g. The limits exclude readings in g, in mg and in raw counts.
 constexpr double kLeastMedian_m_s2 = 3.0, kLargestMedian_m_s2 = 30.0;
 
 bool near_factor(double ratio, double factor) {
   return ratio > factor / 2.0 && ratio < factor * 2.0;
 }
 
-/// Returns the unit in which the median specific force would be near gravity; null for raw counts.
 const char* likely_force_unit(double median, AccelUnit read_as) {
   constexpr double kThousand = 1000.0;
   const double numbers = read_as == AccelUnit::g ? median / kStandardGravity_m_s2 : median;
@@ -47,22 +45,19 @@ void require_plausible_force(const std::string& where, const sim::ImuRecord& imu
       "{}: the median specific force is {} m/s^2 if the accelerometer is read in {}. The median must be from 3 to 30 "
       "m/s^2. The specific force may be in {}{}{}",
       where, std::to_string(middle), read_as, likely, known ? " (set '--accel-unit " + likely + "')" : "",
-      middle < kLeastMedian_m_s2 ? ". The device may also have removed gravity" : "");
+      middle < kLeastMedian_m_s2 ? "; gravity may be removed" : "");
   if (known) throw RepairableInput(text, {"--accel-unit", likely});
   throw BadInput(text);
 }
 
 constexpr const char *kTakenInDegrees = " (set '--gyro-unit deg/s')", *kTakenInRadians = " (set '--gyro-unit rad/s')";
 
-/// Largest accepted reading of gyro and accelerometer [rad/s, m/s^2], as in the estimator.
 constexpr double kSensorReadingMax = 1e6;
 
-/// Returns the largest absolute value of the three axes; NaN if an axis is not finite.
 double largest_of_triad(const Eigen::Vector3d& reading) {
   return reading.allFinite() ? reading.cwiseAbs().maxCoeff() : std::nan("");
 }
 
-/// Sample rates of IMUs are between 0.5 Hz and 50 kHz.
 constexpr double kLeastPeriod_s = 2e-5, kLargestPeriod_s = 2.0;
 
 void require_plausible_period(const std::string& where, const sim::ImuRecord& imu) {
@@ -74,14 +69,12 @@ void require_plausible_period(const std::string& where, const sim::ImuRecord& im
       period_s > kLargestPeriod_s ? ", ms or us" : " than s or ns"));
 }
 
-/// Largest plausible rate of a robot's IMU without a data sheet.
+/// The IMU of a robot does not rotate faster than 100 rad/s.
 constexpr double kLargestRate_rad_s = 100.0;
-/// At most the fraction kBeyondShare of the samples may exceed kBeyondRange times the range; such single samples are
-/// glitches.
+/// A small fraction of the samples may exceed twice the range, because single samples are glitches.
 constexpr double kBeyondShare = 0.01, kBeyondRange = 2.0;
 constexpr double kDegreesPerRadian = 57.29577951308232;
 
-/// Returns the fraction of samples with a rate about one axis above the limit. `factor` converts the rate.
 double beyond_share(const sim::ImuRecord& imu, double bound_rad_s, double factor) {
   const auto beyond = std::count_if(imu.gyro_rad_s.begin(), imu.gyro_rad_s.end(), [&](const Eigen::Vector3d& w) {
     return factor * w.cwiseAbs().maxCoeff() > bound_rad_s;
@@ -100,8 +93,8 @@ void require_rates_in_range(const std::string& where, const sim::ImuRecord& imu,
       "{}: if the gyro is read in {}, {} % of the rates exceed {} rad/s, which is {}. At most 1 % of the rates may "
       "exceed this limit. The rates may be in {}{}",
       where, as_rad ? "rad/s" : "deg/s", rounded(100.0 * share), rounded(bound),
-      stated ? "twice the stated range of the device" : "more than any robot rotates",
-      degrees ? "deg/s" : "raw counts of the sensor", degrees ? kTakenInDegrees : "");
+      stated ? "twice the device's range" : "above any robot's rate", degrees ? "deg/s" : "raw counts of the sensor",
+      degrees ? kTakenInDegrees : "");
   if (degrees) throw RepairableInput(text, {"--gyro-unit", "deg/s"});
   throw BadInput(text);
 }
@@ -110,26 +103,25 @@ constexpr double kRotationWindow_s = 0.2, kNearGravity = 0.1;
 constexpr double kLeastRotation = 0.0175, kMostRotation = 0.4;  // change of the force, relative to its size
 constexpr int kLeastWindows = 10;
 constexpr double kLeastCorrelation = 0.8;
-/// A window of kind `brisk` ends when the direction of gravity has changed by this value.
 constexpr double kBriskRotation = 0.25;
 
-/// Within a burst of readings, a time step is at most kBurstStep times the mean step. In a recording with bursts, at
-/// least the fraction kBurstShare of the steps is within a burst.
+/// Within a burst of readings, a time step is at most 0.2 times the mean step. In a recording with bursts, at least
+/// half of the steps are within a burst.
 constexpr double kBurstStep = 0.2, kBurstShare = 0.5;
 constexpr std::size_t kLeastBursts = 10;
 constexpr std::int64_t kBurstsApart_ns = 1'000'000'000;
 
 std::string disorder_text(const std::vector<std::int64_t>& times_ns, std::size_t reading) {
   if (reading == 0 || times_ns[reading] > times_ns[reading - 1])
-    return fmt::format("the time stamp {} ns is out of order", times_ns[reading]);
+    return fmt::format("the time stamp of this IMU reading, {} ns, is out of order", times_ns[reading]);
   return fmt::format(
       "the time stamp (first time stamp + {} ns) must be larger than the previous time stamp (first time stamp + {} "
       "ns)",
       times_ns[reading] - times_ns.front(), times_ns[reading - 1] - times_ns.front());
 }
 
-/// Distributes the readings of each burst evenly over the time since the previous burst; the last reading of a burst
-/// keeps its time. Returns a note; empty if there are no bursts.
+/// The last reading of a burst keeps its time; the other readings are distributed evenly over the time since the
+/// previous burst.
 std::string even_out_bursts(sim::ImuRecord& imu) {
   std::vector<std::int64_t>& times = imu.time_ns;
   if (times.size() < 2) return "";
@@ -205,7 +197,7 @@ GravityRotation gravity_rotation(const sim::ImuRecord& imu, RotationWindows wind
     const bool whole = near(end) && end >= begin + 4 && (length_s >= kRotationWindow_s || turned()) &&
                        length_s < 1.5 * kRotationWindow_s;
     if (whole) {
-      // Averages over a quarter of the window at each end, so that noise does not appear as rotation.
+      // Averages over a quarter of the window at each end keep noise from appearing as rotation.
       const std::size_t quarter = std::max<std::size_t>(1, (end - begin) / 4);
       Eigen::Vector3d first = Eigen::Vector3d::Zero(), last = Eigen::Vector3d::Zero(), middle = Eigen::Vector3d::Zero();
       for (std::size_t k = 0; k < quarter; ++k) first += imu.accel_m_s2[begin + k], last += imu.accel_m_s2[end - k];
@@ -239,7 +231,6 @@ GravityRotation sufficient_rotation(const sim::ImuRecord& imu) {
   return has_sufficient_rotation(turn) ? turn : gravity_rotation(imu, RotationWindows::brisk);
 }
 
-/// Explains why the motion is insufficient to check the units with gravity.
 std::string undetermined_text(const GravityRotation& turn) {
   if (turn.windows < kLeastWindows)
     return "unit and axes are not checked, because gravity rotates too little in the accelerometer axes";
@@ -278,7 +269,7 @@ std::string require_plausible_rates(const std::string& where, const sim::ImuReco
                     "rad/s{}",
                     where, seen, kTakenInRadians),
         {"--gyro-unit", "rad/s"});
-  if (near_factor(turn.ratio, 1.0)) return fmt::format("{}: units and axes agree", seen);
+  if (near_factor(turn.ratio, 1.0)) return fmt::format("{}, so units and axes agree", seen);
   return fmt::format("caution: {}. The ratio should be 1. Check the unit, the signs and the order of the axes", seen);
 }
 
@@ -300,11 +291,11 @@ sim::ImuRecord without_readings(sim::ImuRecord device) {
 void add_reading(const std::string& where, std::int64_t stamp_ns, const Eigen::Vector3d& rate_rad_s,
                  const Eigen::Vector3d& force_m_s2, sim::ImuRecord& imu) {
   for (const double value : {largest_of_triad(rate_rad_s), largest_of_triad(force_m_s2)}) {
-    if (!std::isfinite(value)) throw BadInput(fmt::format("{}: a reading is not finite", where));
+    if (!std::isfinite(value)) throw BadInput(fmt::format("{}: an IMU reading has a value that is not finite", where));
     if (value > kSensorReadingMax)
       throw BadInput(fmt::format(
-          "{}: a reading has the magnitude {} rad/s or m/s^2; it must be at most {}, the limit of any sensor", where,
-          rounded(value), rounded(kSensorReadingMax)));
+          "{}: an IMU reading has the magnitude {} rad/s or m/s^2; it must be at most {}, the limit of any sensor",
+          where, rounded(value), rounded(kSensorReadingMax)));
   }
   imu.time_ns.push_back(stamp_ns);
   imu.gyro_rad_s.push_back(rate_rad_s);
@@ -328,7 +319,7 @@ std::string leave_out_faulty(const ReadingText& where, const ReadingText& disord
   std::size_t lost = 0;
   for (std::size_t k = 0; k < kept.size(); ++k) {
     if (!kept[k] || !imu.gyro_rad_s[k].isZero(0.0) || !imu.accel_m_s2[k].isZero(0.0)) continue;
-    left_out.add_unlimited("values that are all exactly 0, so the readings are missing", where(k));
+    left_out.add_unlimited("values that are exactly 0", where(k));
     kept[k] = false;
     ++lost;
   }
@@ -341,7 +332,7 @@ std::string leave_out_faulty(const ReadingText& where, const ReadingText& disord
 
 void finish_readings(const std::string& where, AccelUnit unit, sim::ImuRecord& imu) {
   if (imu.time_ns.size() < 2)
-    throw BadInput(fmt::format("{}: the file has {} samples; it needs at least 2", where, imu.time_ns.size()));
+    throw BadInput(fmt::format("{}: the file has {} IMU samples; it needs at least 2", where, imu.time_ns.size()));
   require_plausible_force(where, imu, unit);
   if (imu.period_ns <= 0) imu.period_ns = median_step_ns(imu.time_ns);
   require_plausible_period(where, imu);

@@ -19,17 +19,15 @@ std::size_t numbers_in(const CsvLine& line) {
   return static_cast<std::size_t>(std::count_if(line.fields.begin(), line.fields.end(), is_number));
 }
 
-/// Returns true if at least half of the fields are numbers; other fields of a sample are names of frames.
+/// At least half of the fields of a sample are numbers; other fields are names of frames.
 bool is_sample(const CsvLine& line) {
   return 2 * numbers_in(line) >= line.fields.size();
 }
 
-/// Removes an empty field after the last separator of a line.
 void drop_open_end(CsvLine& line) {
   if (line.fields.size() > 1 && line.fields.back().empty()) line.fields.pop_back();
 }
 
-/// Removes the comment sign from the first column name.
 void uncomment(CsvLine& line) {
   std::string_view& first = line.fields.front();
   first.remove_prefix(std::min(first.find_first_not_of("#%/ \t"), first.size()));

@@ -9,31 +9,25 @@
 
 #include "scenarios/recordings/tables/csv_text.hpp"
 
-/// LoggedTable reads text tables of loggers: IMU readings and poses.
 namespace tumble::scenarios {
 
-/// LoggedTable is a table of samples with an optional header line. Empty lines, comments (csv_text.hpp) and an empty
-/// field after the last separator of a line are skipped. The header is the first line that is no comment and contains
-/// fewer numbers than other texts. If samples directly follow comments, the last comment is the header if it has as
-/// many fields as a sample ("#timestamp [ns],w_RS_S_x [rad s^-1],..."). A row of units below the header is appended to
-/// the column names, in brackets.
+/// Empty lines, comments (csv_text.hpp) and an empty field after the last separator of a line are skipped. The header
+/// is the first line that is no comment and contains fewer numbers than other texts. If samples directly follow
+/// comments, the last comment is the header if it has as many fields as a sample ("#timestamp [ns],w_RS_S_x [rad
+/// s^-1],..."). A row of units below the header is appended to the column names, in brackets.
 class LoggedTable {
  public:
-  /// Opens a table. Throws BadInput like CsvText.
   explicit LoggedTable(const std::filesystem::path& path);
   LoggedTable(const LoggedTable&) = delete;
   LoggedTable& operator=(const LoggedTable&) = delete;
 
-  /// Returns the names of the columns; without a header, the fields of the first sample.
   const CsvLine& header() const { return header_; }
   bool has_header() const { return has_header_; }
 
-  /// Reads the next sample. Returns false at the end of the table. Throws BadInput with file and line for a wrong
-  /// number of fields, or for a last line without newline. The caller can then continue with the next sample.
+  /// Throws BadInput with file and line for a wrong number of fields, or for a last line without newline. The caller
+  /// can then continue with the next sample.
   bool next(CsvLine& line);
-  /// Reads the next sample without such a fault. Returns false at the end of the table.
   bool next_sound(CsvLine& line);
-  /// Moves the reader back to the first sample.
   void restart() { text_.back_to(samples_); }
   /// After this call, `next` returns only samples with the text `value` in this column.
   void keep(std::size_t column, const std::string& value) { kept_ = {column, value}; }

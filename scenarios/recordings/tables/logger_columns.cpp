@@ -16,7 +16,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Name is the quantity and the unit in a column name, in lower case without separators.
 struct Name {
   std::string quantity, unit;
 };
@@ -28,7 +27,6 @@ const std::vector<std::string_view> kTimes = {"t",     "time", "timestamp", "tim
                                               "stamp", "ts",   "elapsed",   "secondselapsed"};
 constexpr const char* kExample = "time=NAME,gyro=X,Y,Z,accel=X,Y,Z";
 
-/// Times that loggers write in addition to the time stamp.
 const std::vector<std::string_view> kSecondTimes = {"elapsed", "secondselapsed"};
 const std::vector<std::string_view> kRates = {"g",           "gyro", "gyr",    "gyroscope", "angularvelocity",
                                               "angularrate", "w",    "omega",  "angvel",    "rate",
@@ -36,7 +34,6 @@ const std::vector<std::string_view> kRates = {"g",           "gyro", "gyr",    "
 const std::vector<std::string_view> kForces = {
     "a", "acc",           "accel", "accelerometer", "acceleration",    "linearacceleration",
     "f", "specificforce", "arss",  "linacc",        "accelerometerms2"};
-/// Names of the column with the number of the IMU.
 const std::vector<std::string_view> kIds = {"i", "id", "instance", "imuid", "sensorid"};
 
 /// Xsens' SampleTimeFine counts units of 0.1 ms.
@@ -75,8 +72,7 @@ bool is_one_of(const std::vector<std::string_view>& names, std::string_view name
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// Splits a column name with the unit in brackets: "gx [deg/s]", "gx (deg/s)". A number in brackets is an axis:
-/// "gyro_rad[0]".
+/// A number in brackets is an axis: "gyro_rad[0]".
 Name split_brackets(std::string_view field) {
   const std::size_t open = field.find_first_of("[(");
   if (open == std::string_view::npos) return {letters(field), ""};
@@ -85,8 +81,7 @@ Name split_brackets(std::string_view field) {
   return {quantity, unit};
 }
 
-/// Splits names in which the unit follows the quantity, after an underscore ("time_ms", "gyro_x_deg_s") or directly
-/// ("TimeUS").
+/// The unit follows the quantity after an underscore ("time_ms", "gyro_x_deg_s") or directly ("TimeUS").
 template <class Value, class IsQuantity>
 Name split_suffix(std::string_view field, const UnitNames<Value>& units, const IsQuantity& is_quantity) {
   for (std::size_t at = field.find('_'); at != std::string_view::npos; at = field.find('_', at + 1)) {
@@ -105,13 +100,11 @@ Name split_suffix(std::string_view field, const UnitNames<Value>& units, const I
   return name;
 }
 
-/// NamedAxis is an axis of a gyro or accelerometer, and the number of the IMU in the name (empty: none).
 struct NamedAxis {
   std::size_t axis = 0;
   std::string number;
 };
 
-/// Removes digits from the beginning or the end of `text`, and returns the digits.
 std::string take_number(std::string_view& text, bool from_end) {
   std::string digits;
   while (!text.empty() && std::isdigit(static_cast<unsigned char>(from_end ? text.back() : text.front())) != 0) {
@@ -121,7 +114,7 @@ std::string take_number(std::string_view& text, bool from_end) {
   return digits;
 }
 
-/// Returns the axis if the quantity is one of `names`, with or without the prefix "imu" and a number.
+/// The quantity may have the prefix "imu" and a number.
 std::optional<NamedAxis> axis_of(const std::vector<std::string_view>& names, std::string_view quantity) {
   NamedAxis out;
   if (quantity.starts_with("imu")) {
@@ -137,7 +130,6 @@ std::optional<NamedAxis> axis_of(const std::vector<std::string_view>& names, std
   return is_one_of(names, quantity) ? std::optional(out) : std::nullopt;
 }
 
-/// Returns the unit in the name of a column of any quantity; empty if the name contains no unit.
 template <class Value>
 std::optional<Value> unit_in(std::string_view field, const UnitNames<Value>& units) {
   if (const std::size_t open = field.find_first_of("[("); open != std::string_view::npos)
@@ -147,7 +139,6 @@ std::optional<Value> unit_in(std::string_view field, const UnitNames<Value>& uni
   return std::nullopt;
 }
 
-/// HeaderReader finds the columns of each quantity in a header.
 class HeaderReader {
  public:
   explicit HeaderReader(const CsvLine& header) : header_(header), taken_(header.fields.size(), false) {}
@@ -161,8 +152,8 @@ class HeaderReader {
       const bool weak = header_.fields[i] == "T" || is_one_of(kSecondTimes, name.quantity);
       std::optional<std::size_t>& place = weak ? second : found;
       if (place && !weak)
-        fail(fmt::format("two columns are time stamps, '{}' and '{}'; name one of them with --columns", text(*place),
-                         text(i)));
+        fail(fmt::format("two columns contain time stamps, '{}' and '{}'; choose one of them with --columns",
+                         text(*place), text(i)));
       place = i;
     }
     if (!found) found = second;
@@ -188,7 +179,7 @@ class HeaderReader {
       if (!number_) number_ = named->number;
       if (*number_ != named->number) fail_of_several(called, named->number);
       if (found[axis])
-        fail(fmt::format("two columns belong to the {}'s axis {}: '{}' and '{}'; name the columns with --columns",
+        fail(fmt::format("two columns contain the {}'s axis {}: '{}' and '{}'; choose the columns with --columns",
                          called, "xyz"[axis], text(*found[axis]), text(i)));
       stated[axis] = unit_of(units, name, i);
       found[axis] = i;
@@ -202,15 +193,14 @@ class HeaderReader {
     return stated[0];
   }
 
-  /// Returns false if no column of readings is known. Throws BadInput if only some columns are missing.
   bool complete(std::size_t readings) const {
     if (readings == 0) return false;
     if (!missing_.empty())
-      fail(fmt::format("missing columns:{}; if other columns contain these values, name these columns: --columns {}",
-                       missing_, kExample));
+      fail(fmt::format(
+          "the table lacks these columns:{}; if other columns contain the values, choose them with --columns {}",
+          missing_, kExample));
     return true;
   }
-  /// Finds the column with the number of the IMU.
   std::optional<std::size_t> id() {
     for (std::size_t i = 0; i < header_.fields.size(); ++i)
       if (is_one_of(kIds, letters(header_.fields[i]))) return i;
@@ -228,8 +218,9 @@ class HeaderReader {
  private:
   [[noreturn]] void fail(const std::string& what) const { throw BadInput(header_.where + ": " + what); }
   [[noreturn]] void fail_of_several(const char* called, const std::string& number) const {
-    fail(fmt::format("the {} has columns of several IMUs, '{}' and '{}'; choose the columns of one IMU: --columns {}",
-                     called, *number_, number, kExample));
+    fail(fmt::format(
+        "the {} columns belong to several IMUs, '{}' and '{}'; choose the columns of one IMU with --columns {}", called,
+        *number_, number, kExample));
   }
   std::string text(std::size_t i) const { return std::string(header_.fields[i]); }
   void take(std::size_t from, std::size_t& column) {
@@ -241,19 +232,19 @@ class HeaderReader {
     if (name.unit.empty()) return std::nullopt;
     std::optional<Unit> unit = value_of(units, name.unit);
     if (!unit)
-      fail(fmt::format(
-          "column '{}' has an unknown unit; name the columns with --columns and state the unit with an option",
-          text(i)));
+      fail(
+          fmt::format("the unit in the name of column '{}' is unknown; choose the columns with --columns and state the "
+                      "unit with an option",
+                      text(i)));
     return unit;
   }
 
   const CsvLine& header_;
   std::vector<bool> taken_;
   std::string missing_;
-  std::optional<std::string> number_;  ///< number of the IMU in the column names
+  std::optional<std::string> number_;
 };
 
-/// Splits a text such as "time=t,gyro=gx,gy,gz,accel=ax,ay,az" and returns the columns of one quantity.
 std::vector<std::string> names_of(const std::string& choice, const std::string& quantity) {
   std::vector<std::string> names;
   std::string current;
@@ -266,13 +257,13 @@ std::vector<std::string> names_of(const std::string& choice, const std::string& 
       word.remove_prefix(key.size());
       break;
     }
-    if (current.empty()) throw BadInput(fmt::format("--columns: '{}' must begin with time=, gyro= or accel=", word));
+    if (current.empty())
+      throw BadInput(fmt::format("the entry '{}' of --columns must begin with time=, gyro= or accel=", word));
     if (current == quantity) names.emplace_back(word);
   }
   return names;
 }
 
-/// Returns the column named `name`, or else the column at position `name`.
 std::size_t column_of(const LoggedTable& table, const std::string& name) {
   const std::vector<std::string_view>& fields = table.header().fields;
   const auto count = table.has_header() ? std::count(fields.begin(), fields.end(), name) : 0;
@@ -290,7 +281,7 @@ void require_count(const std::string& quantity, std::size_t count, std::size_t l
   throw BadInput(
       fmt::format("--columns: {} has {} columns; it must have {}; for example "
                   "time=t,gyro=gx,gy,gz,accel=ax,ay,az",
-                  quantity, count, most == 3 ? "3" : "1, or 2 for seconds and nanoseconds"));
+                  quantity, count, most == 3 ? "3" : "1 (2 with nanoseconds)"));
 }
 
 template <class Unit>

@@ -5,7 +5,6 @@
 
 #include "scenarios/recordings/tables/imu_columns.hpp"
 
-/// logger_columns.hpp identifies the columns in IMU tables of loggers and data sets.
 namespace tumble::scenarios {
 
 /// Finds the IMU columns of a table by common names, in any order. Case, blanks, points and underscores are ignored.
@@ -15,17 +14,14 @@ namespace tumble::scenarios {
 /// - Specific force: ax, acc_x, accel_x, fx, linear_acceleration_x, a_RS_S_x, accelerometer_m_s2[0] and similar.
 /// - Number of the IMU, if the rows of several IMUs alternate: I, id or instance.
 ///
-/// A unit in a column name is used: "time_ms", "#timestamp [ns]", "gx (deg/s)", "w_RS_S_x [rad s^-1]", "ax [g]". Other
-/// columns are ignored and listed in the notes.
-///
-/// Returns nothing if the table has none of these column names. Throws BadInput with file and line if some columns are
-/// missing, an axis is repeated, or a unit is unknown. Throws BadInput if axes have different units, or if names
-/// contain several IMU numbers (gyro1_x, gyro2_x).
+/// A unit in a column name is used: "time_ms", "#timestamp [ns]", "gx (deg/s)", "w_RS_S_x [rad s^-1]", "ax [g]". Throws
+/// BadInput with file and line for missing columns, a repeated axis, an unknown unit, different units of the axes, or
+/// several IMU numbers in the names (gyro1_x, gyro2_x).
 std::optional<ImuColumns> logger_columns(const CsvLine& header);
 
-/// Finds the columns that the user lists, for example "time=t,gyro=gx,gy,gz,accel=ax,ay,az". A word that is no column
-/// name is the position of a column, from 0. Two time columns contain seconds and nanoseconds. Units in the column
-/// names are used. Throws BadInput for an invalid list, and for names that are missing or repeated in the table.
+/// The list has the form "time=t,gyro=gx,gy,gz,accel=ax,ay,az". A word that is no column name is the position of a
+/// column, from 0. Two time columns contain seconds and nanoseconds. Throws BadInput for an invalid list, and for names
+/// that are missing or repeated in the table.
 ImuColumns chosen_columns(const LoggedTable& table, const std::string& choice);
 
 }  // namespace tumble::scenarios

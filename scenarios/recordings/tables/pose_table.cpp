@@ -19,7 +19,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Returns a column name in lower case, without separators and units in brackets.
 std::string plain(std::string_view field) {
   std::string out;
   for (const char c : field.substr(0, field.find_first_of("[(")))
@@ -43,16 +42,14 @@ bool is_quaternion(const std::string& name, char axis) {
   return false;
 }
 
-/// PoseColumns contains the column positions in a table of poses.
 struct PoseColumns {
   std::size_t time = 0;
   std::optional<std::size_t> nanoseconds;  ///< second time column, if the stamp is seconds and nanoseconds
-  bool time_in_ns = false;                 ///< whether the column name states ns
+  bool time_in_ns = false;                 ///< the column name states ns
   std::array<std::size_t, 3> position{};
   std::array<std::size_t, 4> quaternion{};  ///< x y z w
 };
 
-/// PoseHeader finds the columns of a header, and collects the names of missing columns.
 class PoseHeader {
  public:
   explicit PoseHeader(const CsvLine& header) : header_(header) {
@@ -66,8 +63,9 @@ class PoseHeader {
     const auto again = std::find_if(found + 1, names_.end(), fits);
     const auto at = static_cast<std::size_t>(found - names_.begin());
     if (again != names_.end())
-      fail(header_, fmt::format("two columns have the same meaning, '{}' and '{}'; remove one of them",
-                                header_.fields[at], header_.fields[static_cast<std::size_t>(again - names_.begin())]));
+      fail(header_,
+           fmt::format("two columns of the pose table have the same meaning, '{}' and '{}'; remove one of them",
+                       header_.fields[at], header_.fields[static_cast<std::size_t>(again - names_.begin())]));
     return at;
   }
 
@@ -116,7 +114,6 @@ class PoseHeader {
   std::string missing_;
 };
 
-/// Finds the columns of a table of poses. `missing` receives the names of absent columns.
 PoseColumns columns_of(const CsvLine& header, std::string& missing) {
   PoseColumns columns;
   PoseHeader names(header);
@@ -138,8 +135,8 @@ PoseColumns columns_of(const CsvLine& header, std::string& missing) {
 std::int64_t whole_of(const CsvLine& line, std::size_t column, std::int64_t most) {
   const auto value = parse_time_ns(line.fields[column], 0);
   if (!value || *value < 0 || *value > most)
-    fail(line,
-         fmt::format("column {} must be a whole number from 0 to {}; it is '{}'", column, most, line.fields[column]));
+    fail(line, fmt::format("column {} must contain a whole number from 0 to {}, but contains '{}'", column, most,
+                           line.fields[column]));
   return *value;
 }
 
@@ -149,14 +146,14 @@ std::int64_t time_of(const CsvLine& line, const PoseColumns& columns) {
            whole_of(line, *columns.nanoseconds, kSecond_ns - 1);
   const std::string_view text = line.fields[columns.time];
   const auto time_ns = columns.time_in_ns ? parse_time_ns(text, 0) : parse_stamp_ns(text);
-  if (!time_ns) fail(line, fmt::format("column {} must be a time; it is '{}'", columns.time, text));
+  if (!time_ns) fail(line, fmt::format("column {} must contain a time, but contains '{}'", columns.time, text));
   return *time_ns;
 }
 
 double number_of(const CsvLine& line, std::size_t column) {
   double value = 0.0;
   if (!parse_number(line.fields[column], value))
-    fail(line, fmt::format("column {} must be a number; it is '{}'", column, line.fields[column]));
+    fail(line, fmt::format("column {} must contain a number, but contains '{}'", column, line.fields[column]));
   return value;
 }
 

@@ -17,7 +17,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Returns true if the pose is known; a reference may have gaps.
+/// A reference may have gaps.
 bool known(const sim::Truth& truth, std::size_t i) {
   return truth.q_WB[i].coeffs().allFinite() && truth.p_WB_m[i].allFinite();
 }
@@ -37,7 +37,6 @@ Pose pose(const sim::Truth& truth, std::size_t i, const Eigen::Isometry3d& T_BA)
   return {truth.p_WB_m[i] + q_WB * T_BA.translation(), q_WB * Eigen::Quaterniond(T_BA.linear())};
 }
 
-/// `first_ns` is the time stamp of the first pose.
 void append_poses(const sim::Truth& truth, const Eigen::Isometry3d& T_BA, std::int64_t first_ns, std::string& text) {
   for (std::size_t i = 0; i < truth.p_WB_m.size(); ++i) {
     if (!known(truth, i)) continue;
@@ -49,7 +48,6 @@ void append_poses(const sim::Truth& truth, const Eigen::Isometry3d& T_BA, std::i
   }
 }
 
-/// Finds the sensor with the exported name `frame`, or with the original name if that cannot be exported.
 template <class Record>
 std::optional<Eigen::Isometry3d> mounting_in(const std::vector<Record>& records, const GivenNames& given,
                                              Eigen::Isometry3d Record::*mounting, const std::string& frame) {
@@ -72,7 +70,8 @@ Eigen::Isometry3d true_mounting(const sim::Truth& truth, const std::string& fram
   std::vector<std::string> known = {"body", "centre"};
   for (const GivenNames* given : {&names.imus, &names.lidars, &names.series})
     known.insert(known.end(), given->names.begin(), given->names.end());
-  throw BadInput(fmt::format("the truth has no frame '{}' (known frames: {})", frame, fmt::join(known, " ")));
+  throw BadInput(
+      fmt::format("the recording's truth has no frame '{}' (known frames: {})", frame, fmt::join(known, " ")));
 }
 
 void export_tum(const sim::Truth& truth, const std::filesystem::path& file, std::int64_t origin_ns,

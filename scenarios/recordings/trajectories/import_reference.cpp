@@ -12,7 +12,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Returns the times of the poses of a KITTI file without sweeps.
 std::vector<std::int64_t> own_times(const ReferenceSource& source) {
   if (!source.times.empty()) return read_stamps(source.times);
   if (source.steady_ns <= 0) {
@@ -34,7 +33,6 @@ std::vector<ReferencePose> poses_of(const ReferenceSource& source, const std::ve
       fmt::format("the pose format '{}' is not supported; supported: tum, kitti and odometry", source.format));
 }
 
-/// Converts poses of frame A to poses of frame B.
 void move_to(std::vector<ReferencePose>& poses, const Eigen::Isometry3d& T_AB) {
   if (T_AB.matrix().isIdentity(0.0)) return;
   const Eigen::Quaterniond q_AB(T_AB.linear());
@@ -80,7 +78,7 @@ void attach_poses(Imported& recording, std::vector<ReferencePose> poses, const E
     const auto shift_ns =
         clock_shift_ns({poses.front().time_ns, poses.back().time_ns}, span, {0, kExportOrigin_ns, -kExportOrigin_ns});
     for (ReferencePose& pose : poses) pose.time_ns += shift_ns.value_or(0);
-    if (shift_ns.value_or(0) != 0) recording.notes.push_back(clock_note("the stamps of the reference", *shift_ns));
+    if (shift_ns.value_or(0) != 0) recording.notes.push_back(clock_note("the reference", *shift_ns));
   }
   std::string remark = check_reference(poses, T_BA, sensors, where);
   move_to(poses, T_BA.inverse(Eigen::Isometry));

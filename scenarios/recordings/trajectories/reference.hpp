@@ -9,50 +9,45 @@
 
 #include "sim/recording.hpp"
 
-/// reference.hpp reads the motion of a real recording that a reference instrument measured (FORMAT.md, "References").
 namespace tumble::scenarios {
 
-/// ReferencePose is a pose of frame A (body or lidar) in the instrument's world, whose z axis is up. NaN: unknown
-/// position.
+/// The world of the reference instrument has an upward z axis. NaN marks an unknown position.
 struct ReferencePose {
   std::int64_t time_ns = 0;
   Eigen::Vector3d p_WA_m = Eigen::Vector3d::Zero();
   Eigen::Quaterniond q_WA = Eigen::Quaterniond::Identity();
 };
 
-/// Largest accepted difference of a reference quaternion's norm from 1.
 inline constexpr double kReferenceNormTolerance = 1e-2;
 
-/// Returns whether all numbers of a pose are NaN: optical systems and the command `export` write unknown poses so.
-/// Readers skip unknown poses.
+/// Optical systems and the command `export` write unknown poses with NaN in all numbers; readers skip these poses.
 bool is_unknown(const ReferencePose& pose);
 
-/// Explains why a pose is invalid; empty if it is valid. A pose is invalid if it has non-finite numbers, or a
-/// quaternion norm that differs from 1 by more than 1 %. A pose is also invalid if its stamp is not later than the
-/// stamp of `before`. A valid quaternion is normalised.
+/// Returns an empty text for a valid pose, and normalises its quaternion. A pose is invalid if it has non-finite
+/// numbers, a quaternion norm that differs from 1 by more than 1 %, or a stamp that is not later than the stamp of
+/// `before`.
 std::string problem_of(ReferencePose& pose, const ReferencePose* before);
 
-/// Checks the number and order of the poses of a file. If `sorted` is true, sorts the poses by time and keeps the first
-/// of several poses with equal stamps. Throws BadInput with the file for fewer than two poses.
+/// If `sorted` is true, sorts the poses by time and keeps the first of several poses with equal stamps. Throws BadInput
+/// with the file for fewer than two poses.
 void finish_poses(const std::filesystem::path& file, bool sorted, std::vector<ReferencePose>& poses);
 
-/// Returns the format of a pose file: "tum" if the first line has 8 numbers, "kitti" if it has 12, "odometry" if it is
-/// the header of a table of poses. Throws BadInput for another file.
+/// Returns "tum" if the first line has 8 numbers, "kitti" if it has 12, "odometry" for the header of a table of poses.
+/// Throws BadInput for another file.
 std::string pose_format(const std::filesystem::path& file);
 
-/// Reads a TUM file with "t x y z qx qy qz qw" per line, t in seconds; '#' starts a comment, and blanks or commas
-/// separate numbers. `sorted` is that of finish_poses. Throws BadInput with file and line for a line without eight
-/// finite numbers, or a quaternion norm that differs from 1 by more than 1 %. Throws BadInput for a stamp that does not
-/// increase (if `sorted` is false), or fewer than two poses.
+/// A line of a TUM file is "t x y z qx qy qz qw", t in seconds; '#' starts a comment, and blanks or commas separate
+/// numbers. Throws BadInput with file and line for a line without eight finite numbers, or a quaternion norm that
+/// differs from 1 by more than 1 %. Throws BadInput for a stamp that does not increase (if `sorted` is false), or fewer
+/// than two poses.
 std::vector<ReferencePose> read_tum_poses(const std::filesystem::path& file, bool sorted);
 
-/// Reads a KITTI file, whose lines contain the upper three rows of pose matrices. `times_ns` contains the times of the
-/// poses. Throws BadInput with file and line for a line without twelve finite numbers, or a matrix that is not a
-/// rotation (within 1e-3). Throws BadInput for different numbers of poses and times.
+/// The lines of a KITTI file contain the upper three rows of pose matrices. Throws BadInput with file and line for a
+/// line without twelve finite numbers, or a matrix that is not a rotation (within 1e-3). Throws BadInput for different
+/// numbers of poses and times.
 std::vector<ReferencePose> read_kitti_poses(const std::filesystem::path& file,
                                             const std::vector<std::int64_t>& times_ns);
 
-/// Returns true if the file is a table of poses whose header names time, position and quaternion.
 bool is_pose_table(const std::filesystem::path& file);
 
 /// Reads a table of poses with the separators of IMU tables (tables/logged_table.hpp), one pose per line. The names in
@@ -62,19 +57,18 @@ bool is_pose_table(const std::filesystem::path& file);
 ///   "field.transform.translation.x"),
 /// - truth.csv of the command `export`, and short names ("timestamp tx ty tz qx qy qz qw").
 ///
-/// A time without a unit is in decimal seconds, or in ms, us or ns since 1970 according to its number of digits. Rows
-/// without a known pose (all NaN) are skipped. Throws like read_tum_poses, and also for a missing or repeated column.
+/// A time without a unit is in decimal seconds, or in ms, us or ns since 1970 according to its number of digits. Throws
+/// like read_tum_poses, and also for a missing or repeated column.
 std::vector<ReferencePose> read_pose_table(const std::filesystem::path& file, bool sorted);
 
-/// Returns the number of poses in a KITTI file. Throws like read_kitti_poses, but has no times to check.
 std::size_t count_kitti_poses(const std::filesystem::path& file);
 
-/// Converts reference poses of the body to a truth. The stamps of `poses` must increase in the recording's clock; they
-/// may start before time 0. If all poses are on a regular grid from time 0 (at least 0.1 ms), the truth uses this grid
-/// with unchanged poses. If the poses are not on a grid, the truth has steps of 1 ms, or longer steps if it would have
-/// more than two million samples. Between poses that are at most 2.5 median steps apart, position is interpolated
-/// linearly and attitude by slerp. In larger gaps, both are unknown. The truth ends with the poses or at `end_ns`,
-/// whichever is earlier. Throws BadInput if no pose is known, or if the truth would be longer than a day.
+/// The stamps of `poses` must increase in the recording's clock; they may start before time 0. If all poses are on a
+/// regular grid from time 0 (at least 0.1 ms), the truth uses this grid with unchanged poses. Otherwise, the truth has
+/// steps of 1 ms, or longer steps if it would have more than two million samples. Between poses at most 2.5 median
+/// steps apart, position is interpolated linearly and attitude by slerp. In larger gaps, both are unknown. The truth
+/// ends with the poses or at `end_ns`, whichever is earlier. Throws BadInput if no pose is known, or if the truth would
+/// be longer than a day.
 sim::Truth reference_truth(const std::vector<ReferencePose>& poses, std::int64_t end_ns);
 
 }  // namespace tumble::scenarios

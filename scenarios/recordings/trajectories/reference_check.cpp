@@ -12,16 +12,16 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Limits of the rotation difference between reference and gyro, as a fraction of the rotation. Above kContradicts, the
-/// reference contradicts the gyro; below kReferenceAgrees, it agrees.
+/// Reference and gyro contradict each other if their rotations differ by more than half of the rotation; they agree
+/// below 30 %.
 constexpr double kContradicts = 0.5, kReferenceAgrees = 0.3;
-/// A rotation difference above kExplained is a fault of the file if another quaternion convention reduces it to less
-/// than the fraction kExplanationLeaves.
+/// A rotation difference above 0.15 is a fault of the file if another quaternion convention reduces it to less than 0.4
+/// times its value.
 constexpr double kExplained = 0.15, kExplanationLeaves = 0.4;
-/// A longer delay gives a note; the filters of an IMU cause about 0.02 s.
+/// The filters of an IMU cause a delay of about 0.02 s.
 constexpr double kDelayNoted_s = 0.03;
 
-/// Returns the frames to which the poses may belong. The user's choice is first, so it is kept if the poses fit it.
+/// The user's choice of the frame is first, so it is kept if the poses fit it.
 std::vector<CandidateFrame> candidate_frames(const Eigen::Isometry3d& T_BA, const sim::Sensors& sensors) {
   const Eigen::Quaterniond q_BI(sensors.imus.front().T_BI.linear());
   std::vector<CandidateFrame> out = {{"as stated", Eigen::Quaterniond(T_BA.linear()).conjugate() * q_BI},
@@ -36,7 +36,6 @@ std::string share_text(double share) {
   return fmt::format("{:.0f} %", 100.0 * share);
 }
 
-/// Describes the fault of a pose file and its correction.
 std::string remedy(QuaternionConvention written, double delay_s) {
   std::string out;
   if (written == QuaternionConvention::w_first || written == QuaternionConvention::w_first_inverse)
@@ -55,10 +54,9 @@ std::string disagreement(const TurningCheck& check, const std::string& imu) {
       imu, share_text(check.stated.difference), check.pairs);
 }
 
-/// Describes a contradiction that the IMU, a mounting or the reference may cause.
 std::string caution(const TurningCheck& check, const std::string& frame, const std::string& imu) {
   const std::string text =
-      "caution: " + disagreement(check, imu) + fmt::format(", but at most {} is expected; ", share_text(kContradicts));
+      "caution: " + disagreement(check, imu) + fmt::format("; expected: at most {}; ", share_text(kContradicts));
   const TurningFit& reading = check.reading.undelayed;
   if (reading.difference < kReferenceAgrees && reading.written == QuaternionConvention::as_stated) {
     return text + fmt::format("the difference would be {} if the poses belonged to the {}{}",
@@ -93,7 +91,6 @@ std::string agreement(const TurningCheck& check, const std::string& imu) {
          (check.order_known ? "" : "; this motion does not reveal whether the quaternions have w first");
 }
 
-/// Returns true if the reference differs from the gyro at most by a small delay.
 bool fits_as_stated(const TurningCheck& check) {
   const TurningFit& fit = check.reading.likely();
   return fit.written == QuaternionConvention::as_stated && fit.frame == 0 && fit.difference < kReferenceAgrees;
@@ -102,10 +99,9 @@ bool fits_as_stated(const TurningCheck& check) {
 [[noreturn]] void refuse(const TurningCheck& check, const std::string& imu, const std::string& where, double corrected,
                          const std::string& remedies) {
   throw BadInput(where + ": " + disagreement(check, imu) +
-                 fmt::format(", but only by {} after a correction", share_text(corrected)) + remedies);
+                 fmt::format(", only {} after correction", share_text(corrected)) + remedies);
 }
 
-/// Throws BadInput if the gyro contradicts the quaternion convention or the clock of the poses.
 void require_reading_as_stated(const TurningCheck& check, const std::string& imu, const std::string& where) {
   const TurningFit& fit = check.reading.likely();
   if (fit.difference >= kReferenceAgrees) return;
@@ -116,7 +112,6 @@ void require_reading_as_stated(const TurningCheck& check, const std::string& imu
            remedy(rewritten ? fit.written : QuaternionConvention::as_stated, fit.delay_s));
 }
 
-/// Throws BadInput if the gyro contradicts the clock of a reference, for which another mounting fits better.
 void require_clock(const TurningCheck& check, const std::string& imu, const std::string& where) {
   const MountingFit& fit = check.mounting.likely();
   if (fit.difference < kReferenceAgrees && is_delayed(fit.delay_s))
@@ -128,7 +123,7 @@ void require_clock(const TurningCheck& check, const std::string& imu, const std:
 std::string check_reference(const std::vector<ReferencePose>& poses, const Eigen::Isometry3d& T_BA,
                             const sim::Sensors& sensors, const std::string& where) {
   const std::string unchecked = "the reference is not checked against a gyro: ";
-  if (sensors.imus.empty()) return fmt::format("{}the recording has no IMU", unchecked);
+  if (sensors.imus.empty()) return fmt::format("{}the recording contains no IMU", unchecked);
   const sim::ImuRecord& imu = sensors.imus.front();
   std::vector<TimedAttitude> attitudes;
   for (const ReferencePose& pose : poses) attitudes.push_back({pose.time_ns, pose.q_WA});

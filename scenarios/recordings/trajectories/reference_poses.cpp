@@ -26,7 +26,7 @@ constexpr double kRotationTolerance = 1e-3;
 
 double finite(const Table& table, const Table::Row& row, std::size_t column) {
   const double value = table.number(row, column);
-  if (!std::isfinite(value)) fail(table, row, fmt::format("column {} is not finite", column));
+  if (!std::isfinite(value)) fail(table, row, fmt::format("the number in column {} is not finite", column));
   return value;
 }
 
@@ -64,11 +64,11 @@ std::string problem_of(ReferencePose& pose, const ReferencePose* before) {
   if (!pose.p_WA_m.allFinite() || !pose.q_WA.coeffs().allFinite()) return "the pose is not finite";
   constexpr double kFurthest_m = 1e9;  // above any Earth-centred coordinate
   if (const double far_m = pose.p_WA_m.cwiseAbs().maxCoeff(); far_m > kFurthest_m)
-    return fmt::format("the position is {:.3g} m from the origin; it must be within {:.0g} m", far_m, kFurthest_m);
+    return fmt::format("the position of this pose is {:.3g} m from the origin; it must be within {:.0g} m", far_m,
+                       kFurthest_m);
   const double norm = pose.q_WA.norm();
   if (!(std::abs(norm - 1.0) <= kReferenceNormTolerance))
-    return fmt::format("the quaternion's norm is {:f}; it must be 1 within 1 %", norm);
-  // A quaternion whose norm is 1 except for rounding stays unchanged.
+    return fmt::format("the norm of this pose's quaternion is {:f}; it must be 1 within 1 %", norm);
   if (std::abs(norm - 1.0) > 1e-12) pose.q_WA.normalize();
   if (before == nullptr || pose.time_ns > before->time_ns) return "";
   return fmt::format(

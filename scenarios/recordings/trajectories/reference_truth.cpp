@@ -18,8 +18,8 @@ namespace {
 constexpr std::int64_t kStepMin_ns = 100000, kStepUsual_ns = 1000000;
 constexpr std::int64_t kSamplesMax = 2000000;
 constexpr std::int64_t kLongestReference_ns = 86400ll * 1000000000;
-/// kReach_ns is half of the time interval for differentiating poses. With 70 ms, the noise of an optical reference at
-/// rest is below the thresholds for rest.
+/// Poses are differentiated over twice this interval. With 70 ms, the noise of an optical reference at rest is below
+/// the thresholds for rest.
 constexpr std::int64_t kReach_ns = 70000000;
 
 std::vector<std::int64_t> times_of(const std::vector<ReferencePose>& poses) {
@@ -28,7 +28,6 @@ std::vector<std::int64_t> times_of(const std::vector<ReferencePose>& poses) {
   return times;
 }
 
-/// Returns the step of a regular grid from time 0 that contains all poses, or else the default step.
 std::int64_t grid_step(const std::vector<std::int64_t>& times, std::int64_t end_ns) {
   std::int64_t step = std::numeric_limits<std::int64_t>::max();
   for (std::size_t k = 1; k < times.size(); ++k) step = std::min(step, times[k] - times[k - 1]);
@@ -39,12 +38,10 @@ std::int64_t grid_step(const std::vector<std::int64_t>& times, std::int64_t end_
   return usual_steps * kStepUsual_ns;
 }
 
-/// Interpolation interpolates between two poses that are close in time; elsewhere, the pose is unknown.
 class Interpolation {
  public:
   Interpolation(const std::vector<ReferencePose>& poses, std::int64_t gap_ns) : poses_(poses), gap_ns_(gap_ns) {}
 
-  /// The times of successive calls must not decrease.
   ReferencePose at(std::int64_t time_ns) {
     while (next_ < poses_.size() && poses_[next_].time_ns < time_ns) ++next_;
     ReferencePose out{time_ns, Eigen::Vector3d::Constant(kNaN), {}};
@@ -67,14 +64,13 @@ class Interpolation {
   std::size_t next_ = 0;
 };
 
-/// Returns the rotation vector of `q`, with an angle of at most pi.
 Eigen::Vector3d rotation_vector(const Eigen::Quaterniond& q) {
   const Eigen::AngleAxisd turn(q);
   return turn.angle() * turn.axis();
 }
 
-/// Computes velocity and rate of the truth by central differences over `reach` samples on each side. Velocity and rate
-/// are unknown if a sample within `reach` is unknown.
+/// Velocity and rate are central differences over `reach` samples on each side. Both are unknown if a sample within
+/// `reach` is unknown.
 void differentiate(sim::Truth& truth, std::size_t reach) {
   const Eigen::Vector3d unknown = Eigen::Vector3d::Constant(kNaN);
   const std::size_t count = truth.q_WB.size();
@@ -92,7 +88,7 @@ void differentiate(sim::Truth& truth, std::size_t reach) {
 }  // namespace
 
 sim::Truth reference_truth(const std::vector<ReferencePose>& poses, std::int64_t end_ns) {
-  if (poses.empty()) throw BadInput("the reference has no poses");
+  if (poses.empty()) throw BadInput("the reference file contains no pose with known position and attitude");
   const std::int64_t last_ns = std::min(end_ns, poses.back().time_ns);
   if (last_ns < 0 || poses.front().time_ns > end_ns) {
     throw BadInput(fmt::format(

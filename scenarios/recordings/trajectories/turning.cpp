@@ -20,20 +20,17 @@ namespace {
 constexpr std::int64_t kTurnShortest_ns = 50'000'000, kTurnLongest_ns = 1'000'000'000;
 constexpr std::int64_t kReadingHole_ns = 100'000'000;
 constexpr double kLeast_rad = 0.02, kMost_rad = 2.5;
-/// A pair of attitudes extends until the body has rotated by this angle, so that the attitude noise is a small
-/// fraction.
 constexpr double kEnough_rad = 0.2;
 constexpr std::size_t kTurnPairsMin = 6, kTurnPairsMax = 400, kDelayPairsMin = 20;
 constexpr std::uint8_t kGyroClipped = 0b111;
 constexpr double kCoarse_s = 0.02, kFine_s = 0.002;
-/// A delay of kShown_s is detectable if it multiplies the rotation difference by at least kShows.
+/// A delay of 0.3 s is detectable if it at least doubles the rotation difference.
 constexpr double kShown_s = 0.3, kShows = 2.0, kShowsBy = 0.02;
-/// Other quaternion conventions are tried only if the rotation difference between the stated attitudes and the gyro is
-/// below this fraction of the rotation.
+/// Other quaternion conventions are tried only if the stated attitudes differ from the gyro by less than 30 % of the
+/// rotation.
 constexpr double kAgreesAsStated = 0.3;
 constexpr double kNoFit = std::numeric_limits<double>::infinity();
 
-/// GyroIntegral contains the rotation since the first sample, integrated from the gyro.
 class GyroIntegral {
  public:
   explicit GyroIntegral(const sim::ImuRecord& imu) : imu_(imu) {
@@ -49,8 +46,7 @@ class GyroIntegral {
     }
   }
 
-  /// Returns the rotation between two times. Returns nothing outside the readings, across a gap, or if a reading is
-  /// saturated.
+  /// Returns nothing outside the readings, across a gap, or if a reading is saturated.
   std::optional<Eigen::Quaterniond> between(std::int64_t from_ns, std::int64_t to_ns) const {
     const std::size_t first = sample_at(from_ns), last = sample_at(to_ns);
     if (last == imu_.time_ns.size() || from_ns < imu_.time_ns.front()) return std::nullopt;
@@ -59,7 +55,6 @@ class GyroIntegral {
   }
 
  private:
-  /// Returns the sample whose averaging window contains `time_ns`: the first sample that is not earlier.
   std::size_t sample_at(std::int64_t time_ns) const {
     return static_cast<std::size_t>(std::ranges::lower_bound(imu_.time_ns, time_ns) - imu_.time_ns.begin());
   }
@@ -80,8 +75,6 @@ double angle_rad(const Eigen::Quaterniond& a, const Eigen::Quaterniond& b) {
   return 2.0 * std::acos(std::min(std::abs(a.dot(b)), 1.0));
 }
 
-/// Returns the pair of the attitude `first` and the first later attitude with sufficient rotation, or else the last
-/// attitude within the time limit.
 std::optional<AttitudePair> pair_from(std::span<const TimedAttitude> attitudes, std::size_t first) {
   std::optional<AttitudePair> out;
   for (std::size_t k = first + 1; k < attitudes.size(); ++k) {
@@ -96,8 +89,8 @@ std::optional<AttitudePair> pair_from(std::span<const TimedAttitude> attitudes, 
   return out;
 }
 
-/// Pairs of attitudes begin 50 ms apart and may overlap. Pairs with little rotation contain mainly attitude noise, so
-/// they count only if there are few other pairs.
+/// Pairs begin 50 ms apart and may overlap. Pairs with little rotation contain mainly attitude noise, so they count
+/// only if there are few other pairs.
 std::vector<AttitudePair> pairs_of(std::span<const TimedAttitude> attitudes) {
   std::vector<AttitudePair> out;
   for (std::size_t first = 0; first < attitudes.size();) {
@@ -123,8 +116,6 @@ Eigen::Quaterniond as_meant(const Eigen::Quaterniond& read, QuaternionConvention
                                                                                                       : q;
 }
 
-/// TurningComparison compares the rotations of attitude pairs, in each interpretation (convention and frame) of a file,
-/// with the rotations from the gyro.
 class TurningComparison {
  public:
   TurningComparison(std::span<const TimedAttitude> attitudes, const std::vector<CandidateFrame>& frames,
@@ -136,7 +127,6 @@ class TurningComparison {
     }
   }
 
-  /// Sets the delay of the gyro's rotations. Returns false if the gyro readings then cover fewer than `least` pairs.
   bool set_delay(double delay_s, std::size_t least) {
     const auto delay_ns = std::llround(1e9 * delay_s);
     measured_.clear();
@@ -160,7 +150,7 @@ class TurningComparison {
             share([&](const Measured& said) { return angle_rad(each.seen_I[said.pair], said.turn); })};
   }
 
-  /// Returns the best fit over all interpretations; of equal fits, that of the file as written.
+  /// Of equal fits, the file as written is preferred.
   TurningFit best() const {
     TurningFit out = fit(0);
     for (std::size_t k = 1; k < readings_.size(); ++k) {
@@ -169,8 +159,8 @@ class TurningComparison {
     return out;
   }
 
-  /// Returns the mean specific force in the world of the attitudes, in the interpretation of `fit`. For a correct
-  /// interpretation, it points up and has about the size of gravity.
+  /// For a correct interpretation, the mean specific force in the world of the attitudes points up and has about the
+  /// size of gravity.
   Eigen::Vector3d force(const TurningFit& fit, const sim::ImuRecord& imu) const {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     for (const Measured& said : measured_) {
@@ -183,8 +173,7 @@ class TurningComparison {
     return sum / std::max(static_cast<double>(measured_.size()), 1.0);
   }
 
-  /// Returns the interpretations in the frame of `fitted` that fit about equally well, for example in a motion about a
-  /// single axis. If the file as written fits equally well, this interpretation is first.
+  /// In a motion about a single axis, several interpretations fit about equally well.
   std::vector<TurningFit> alike(const TurningFit& fitted) const {
     std::vector<TurningFit> out;
     for (std::size_t k = 0; k < readings_.size(); ++k) {
@@ -194,7 +183,7 @@ class TurningComparison {
     return out;
   }
 
-  /// Computes the mounting of the IMU that fits best: Wahba's problem (1965), solved by singular values.
+  /// The best mounting of the IMU solves Wahba's problem (1965), by singular values.
   MountingFit mounting() const {
     Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
     for (const Measured& said : measured_) sum += seen_A(said.pair) * so3::log(said.turn).transpose();
@@ -255,7 +244,6 @@ void take_better(const Fit& found, Fit& best) {
   if (found.difference < best.difference) best = found;
 }
 
-/// Searches for the best delay: first coarsely over all delays, then finely around the best one.
 template <class Fit, class FitNow>
 void search_delay(TurningComparison& comparison, double delay_max_s, std::size_t least, FitNow&& fit_now, Fit& best) {
   const auto search = [&](double centre_s, double reach_s, double step_s) {
@@ -272,14 +260,12 @@ void search_delay(TurningComparison& comparison, double delay_max_s, std::size_t
 constexpr double kUpMin_m_s2 = 5.0;              ///< smallest mean force that determines the vertical
 constexpr double kUpright = 0.9, kTilted = 0.5;  ///< cosines of the tilt of the mean force
 
-/// Returns the cosine of the angle between the mean specific force and the vertical; 0 if the force is too small.
 double uprightness(const TurningComparison& comparison, const sim::ImuRecord& imu, const TurningFit& fit) {
   const Eigen::Vector3d up = comparison.force(fit, imu);
   return up.norm() < kUpMin_m_s2 ? 0.0 : up.z() / up.norm();
 }
 
-/// If several quaternion conventions fit the rotations, selects the one in which gravity is most vertical, at the delay
-/// of `fit`.
+/// If several quaternion conventions fit the rotations, gravity is most vertical in the correct one.
 void prefer_upright(TurningComparison& comparison, const sim::ImuRecord& imu, TurningFit& fit) {
   if (fit.written == QuaternionConvention::as_stated) return;
   comparison.set_delay(fit.delay_s, 0);

@@ -12,8 +12,8 @@
 
 #include "sim/recording.hpp"
 
-/// turning.hpp compares the attitudes in a pose file with a gyro. A pose file does not state the frame of its poses,
-/// its quaternion convention or its clock; the comparison determines them.
+/// A pose file does not state the frame of its poses, its quaternion convention or its clock. A comparison of its
+/// attitudes with a gyro determines them.
 namespace tumble::scenarios {
 
 struct TimedAttitude {
@@ -21,18 +21,15 @@ struct TimedAttitude {
   Eigen::Quaterniond q_WA = Eigen::Quaterniond::Identity();
 };
 
-/// CandidateFrame is a frame to which the attitudes in a pose file may belong.
 struct CandidateFrame {
   std::string name;
   Eigen::Quaterniond q_AI = Eigen::Quaterniond::Identity();  ///< rotates vectors from IMU axes to axes of the frame
 };
 
-/// QuaternionConvention lists possible meanings of the quaternions in a pose file.
 enum class QuaternionConvention { as_stated, w_first, inverse, w_first_inverse };
 
-/// TurningFit is the difference between gyro and attitudes in one interpretation (convention, frame, delay) of the
-/// file. The difference is the median rotation difference over pairs of attitudes, as a fraction of the median
-/// rotation.
+/// The difference is the median rotation difference between gyro and attitudes over pairs of attitudes, as a fraction
+/// of the median rotation.
 struct TurningFit {
   QuaternionConvention written = QuaternionConvention::as_stated;
   std::size_t frame = 0;  ///< index of the candidate
@@ -40,13 +37,11 @@ struct TurningFit {
   double difference = 0.0;
 };
 
-/// MountingFit is the mounting of the IMU in the frame that fits best, for the attitudes as written in the file.
 struct MountingFit {
   Eigen::Quaterniond q_AI = Eigen::Quaterniond::Identity();
   double delay_s = 0.0, difference = 0.0;
 };
 
-/// DelayedFit contains the best fits without and with a delay.
 template <class Fit>
 struct DelayedFit {
   Fit undelayed, delayed;
@@ -63,25 +58,21 @@ struct TurningCheck {
   DelayedFit<MountingFit> mounting;
   bool clock_known = false;  ///< true: a delay of 0.3 s would be detected
   bool order_known = false;  ///< true: another order or direction of the quaternions would be detected
-  /// Fit with another quaternion convention that agrees equally well with the gyro, and in which gravity is vertical.
-  /// The member is empty if gravity is vertical in the written convention.
+  /// Gravity is vertical in this fit, but not in the written convention; both agree equally well with the gyro.
   std::optional<TurningFit> upright;
 };
 
-/// Largest delay in the search, and largest accepted delay. Valid files have a delay of 0.1 s if stamps belong to the
-/// ends of the sweeps and not to the starts.
+/// Valid files have a delay of 0.1 s if stamps belong to the ends of the sweeps and not to the starts.
 inline constexpr double kDelaySearched_s = 5.0, kDelayMax_s = 0.15;
 inline bool is_delayed(double delay_s) {
   return std::abs(delay_s) >= kDelayMax_s;
 }
-/// Describes a delay: "0.300 s too late" or "0.300 s too early".
 std::string delay_text(double delay_s);
-/// Describes a delay, its limit and its correction: "stamps are 0.300 s too late, at most 0.15 s is accepted: ...".
 std::string delay_remedy(double delay_s);
 
 /// Compares the rotations between pairs of attitudes (0.05 to 1 s and 0.02 to 2.5 rad apart) with the rotations from
-/// the gyro. A rotation from the gyro is the product of exponentials of unsaturated samples, without a gap above 0.1 s.
-/// At most 400 pairs are used, spread evenly over the recording. Fewer than 6 pairs give no result.
+/// the gyro: products of exponentials of unsaturated samples, without a gap above 0.1 s. At most 400 pairs are used,
+/// spread evenly over the recording. Fewer than 6 pairs give no result.
 ///
 /// @param frames       Frames to which the attitudes may belong; the first is the user's choice.
 /// @param delay_max_s  Largest delay in either direction, searched in steps of 20 ms, then of 2 ms. With fewer than 20

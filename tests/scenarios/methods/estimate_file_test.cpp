@@ -163,7 +163,7 @@ TEST_F(EstimateFile, ComplaintsNameFileAndLine) {
 // without this check, the reader would read an endless device such as /dev/zero into memory
 TEST_F(EstimateFile, ALineWithoutEndIsRefused) {
   const std::string said = complaint(write("z.tum", "0 1 2 3 0 0 0 1\n" + std::string((1 << 20) + 1, '\0')));
-  EXPECT_NE(said.find("z.tum:2: the line has more than 1048576 bytes, so this is not a line of a table"),
+  EXPECT_NE(said.find("z.tum:2: the line has more than 1048576 bytes, so the file is not a table of numbers"),
             std::string::npos)
       << said;
   EXPECT_NE(complaint("/dev/zero").find("/dev/zero:1: the line has more than"), std::string::npos);

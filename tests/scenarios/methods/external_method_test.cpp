@@ -157,7 +157,7 @@ TEST_F(ExternalMethod, WhatItLeavesIsRefusedWithItsPlace) {
 
 TEST_F(ExternalMethod, WhatItLeavesIsBoundedBeforeItIsRead) {
   EXPECT_THAT(refused(describe("slam", "truncate -s 100000000000 {output}")),
-              HasSubstr("poses.tum: the file has 100000000000 bytes; for this recording, it may have at most"));
+              HasSubstr("poses.tum: the output file has 100000000000 bytes; for this recording, it may have at most"));
   EXPECT_THAT(refused(describe("rate", "truncate -s 100000000000 {output}")),
               HasSubstr("rates.csv: the file has 100000000000 bytes"));
   EXPECT_THAT(refused(describe("position", "mkdir {output}; truncate -s 100000000000 {output}/estimate.json",
@@ -199,10 +199,10 @@ TEST_F(ExternalMethod, NonsenseIsRefusedWithLineValueAndBound) {
   EXPECT_THAT(left("0.2 1e300 0 0 0 0 0 1"),
               HasSubstr("poses.tum:3: the position is (1e+300, 0, 0) m; it must be finite and within 1e+07 m"));
   EXPECT_THAT(left("1000000 0 0 0 0 0 0 1"),
-              HasSubstr("poses.tum:3: the stamp is 1000000 s; it must be within -10 and"));
-  EXPECT_THAT(left("1000000 0 0 0 0 0 0 1", "attitude"), HasSubstr("poses.tum:3: the stamp is 1000000 s"));
+              HasSubstr("poses.tum:3: the time stamp is 1000000 s; it must be within -10 and"));
+  EXPECT_THAT(left("1000000 0 0 0 0 0 0 1", "attitude"), HasSubstr("poses.tum:3: the time stamp is 1000000 s"));
   EXPECT_THAT(refused(describe("position", "printf '%s\\n' '-1000000000 0 0 0 0 0 0 1' > {output}")),
-              HasSubstr("poses.tum:1: the stamp is -1e+09 s"));
+              HasSubstr("poses.tum:1: the time stamp is -1e+09 s"));
   EXPECT_THAT(refused(describe("rate", kRawByAwk + "; sed -i '7s/,[^,]*/,nan/' {output}")),
               HasSubstr("rates.csv:7: the rate is (nan,"));
   EXPECT_THAT(refused(describe("rate", kRawByAwk + "; sed -i '7s/,[^,]*/,1e7/' {output}")), HasSubstr("1e+06 rad/s"));
@@ -215,7 +215,7 @@ TEST_F(ExternalMethod, StampsInAnotherUnitAreNamedWithTheFirstThatIsOutside) {
   };
   EXPECT_GT(run(in("0")).poses.size(), 100u);
   EXPECT_THAT(refused(in("9")),
-              ::testing::AllOf(HasSubstr("poses.tum:1: the stamp is"),
+              ::testing::AllOf(HasSubstr("poses.tum:1: the time stamp is"),
                                HasSubstr("must be in seconds; the values seem to be in nanoseconds")));
   EXPECT_THAT(refused(in("6", "position")), HasSubstr("the values seem to be in microseconds"));
   EXPECT_THAT(refused(in("3", "attitude")), HasSubstr("the values seem to be in milliseconds"));
@@ -238,10 +238,11 @@ TEST_F(ExternalMethod, WhatIsNoCovarianceIsRefused) {
     return describe("rate", kRawByAwk + "; sed -i -e 's/$/," + covariance +
                                 "/' -e '1s/,[^a-z].*$/,cxx,cxy,cxz,cyy,cyz,czz/' {output}");
   };
-  EXPECT_THAT(refused(with("1,0,0,-2,0,1")), HasSubstr("rates.csv:2: a variance is -2; it must be at least 0"));
+  EXPECT_THAT(refused(with("1,0,0,-2,0,1")),
+              HasSubstr("rates.csv:2: the covariance has a variance of -2; variances must be at least 0"));
   EXPECT_THAT(
       refused(with("1,3,0,4,0,1")),
-      HasSubstr("a covariance is 3, with the variances 1 and 4; the magnitude of the covariance must be at most 2"));
+      HasSubstr("the covariance of two components is 3, with the variances 1 and 4; its magnitude must be at most 2"));
   EXPECT_EQ(run(with("1,2,0,4,0,1")).rates[0].covariance_rad2_s2(0, 1), 2.0);
 }
 

@@ -169,7 +169,7 @@ TEST_F(PythonMethod, WhatItReturnsIsRefusedWithPlaceValueAndBound) {
   EXPECT_THAT(wrong("attitude", "t, np.tile([0, 0, 0, 2], (n, 1))"), HasSubstr("norm 2"));
   EXPECT_THAT(wrong("position", "t, np.full((n, 3), 1e300), np.tile([0, 0, 0, 1], (n, 1))"),
               AllOf(HasSubstr("pose 0 of the result"), HasSubstr("within 1e+07 m")));
-  EXPECT_THAT(wrong("attitude", "t + 10**15, np.tile([0, 0, 0, 1], (n, 1))"), HasSubstr("the stamp is 1000000"));
+  EXPECT_THAT(wrong("attitude", "t + 10**15, np.tile([0, 0, 0, 1], (n, 1))"), HasSubstr("the time stamp is 1000000"));
   EXPECT_THAT(wrong("slam", "t, np.zeros((n, 3)), np.tile([0, 0, 0, 1], (n, 1)), np.full((1, 3), 1e300)"),
               HasSubstr("map: point 0"));
   EXPECT_THAT(wrong("rate", "imu.gyro + 1e7"), HasSubstr("rate[0]: the rate is (1e+07"));

@@ -114,10 +114,10 @@ TEST_P(Stamps, APlaceThatNobodyStatesIsSaid) {
 }
 
 TEST_P(Stamps, BrokenHeadersAreRefusedWithTheWayOut) {
-  EXPECT_THAT(complaint_of(zero, sweep_before),
-              AllOf(HasSubstr("message 1 of /imu: the time stamp does not increase: the header's is 0 in this message "
-                              "and in the previous message"),
-                    HasSubstr("the record's increases by 0.005 s; set '--stamps record' to use the record stamps")));
+  EXPECT_THAT(
+      complaint_of(zero, sweep_before),
+      AllOf(HasSubstr("message 1 of /imu: the time stamp does not increase: the header's is 0 in both messages"),
+            HasSubstr("the record's increases by 0.005 s (set '--stamps record')")));
   EXPECT_THAT(complaint_of(constant, sweep_before), HasSubstr("the header's does not change"));
   EXPECT_THAT(complaint_of(back, sweep_before), HasSubstr("the header's decreases by 0.005 s"));
   EXPECT_THAT(complaint_of(same, constant), HasSubstr("message 1 of /points: the time stamp does not increase"));
@@ -134,8 +134,10 @@ TEST_P(Stamps, RecordsAreTakenInstead) {
         << "recorded when it was over";
     EXPECT_THAT(
         read.notes,
-        Contains(AllOf(HasSubstr("/points: "), HasSubstr("this import uses the stamps of the records"),
-                       HasSubstr("the import assumes that each sweep starts 0.100000 s before its record stamp"))));
+        Contains(AllOf(
+            HasSubstr("/points: "), HasSubstr("this import uses the stamps of the records"),
+            HasSubstr(
+                "the import assumes that each sweep starts 0.100000 s (one sweep period) before its record stamp"))));
   }
 }
 

@@ -93,7 +93,8 @@ TEST_P(Bag, TheTruthIsLeftOutUnlessAskedFor) {
     EXPECT_EQ(imported.reference->q_WB[k].coeffs(), recording_.truth.q_WB[5 * k].coeffs());
   }
   reading_.reference_topic = "/imu";
-  EXPECT_THAT(complaint_of(), HasSubstr("topic '/imu' is of type sensor_msgs/Imu; it must be nav_msgs/Odometry"));
+  EXPECT_THAT(complaint_of(),
+              HasSubstr("topic '/imu' has the type sensor_msgs/Imu; its type must be nav_msgs/Odometry"));
 }
 
 TEST_P(Bag, TopicsAreChosenByName) {
@@ -121,7 +122,7 @@ TEST_P(Bag, ForceInGIsReadSoAndSaid) {
   const Imported imported = read();
   EXPECT_TRUE(imported.sensors.imus.at(0).accel_m_s2.front().isApprox(9.80665 * Eigen::Vector3d(0.6, 0.0, -0.8)));
   EXPECT_THAT(imported.notes,
-              testing::Contains(testing::AllOf(HasSubstr("/imu: caution: the message definition requires m/s^2"),
+              testing::Contains(testing::AllOf(HasSubstr("/imu: caution: sensor_msgs/Imu requires m/s^2"),
                                                HasSubstr("(set '--accel-unit m/s^2'"))));
   reading_.accel_unit = AccelUnit::m_s2;
   EXPECT_THAT(complaint_of(), HasSubstr("The specific force may be in g (set '--accel-unit g')"));
@@ -217,7 +218,7 @@ TEST_P(Bag, AnImuThatIsNoneIsSaidWithTheWayOut) {
   for (Eigen::Vector3d& force : recording_.sensors.imus[1].accel_m_s2) force.setZero();  // only a gyro
   write();
   EXPECT_THAT(complaint_of(), testing::AllOf(HasSubstr("topic /imu_reference:"),
-                                             HasSubstr("(--imu-topic selects the topics to read)")));
+                                             HasSubstr("the option --imu-topic can select other topics")));
   reading_.imu_topics = {"/imu"};
   EXPECT_EQ(complaint_of(), "");
 }

@@ -91,10 +91,10 @@ TEST_F(CloudFile, SizesOfACompressedPcdAreHeldAgainstTheFile) {
     return complaint_of("a.pcd",
                         kPcd + "binary_compressed\n" + bytes(compressed) + bytes(plain) + std::string(20, 'x'));
   };
-  EXPECT_THAT(with(20, 0), HasSubstr("states 0 bytes of uncompressed points; this number must be 24"));
+  EXPECT_THAT(with(20, 0), HasSubstr("states 0 bytes of uncompressed points, but its header requires 24 bytes"));
   EXPECT_THAT(with(20, 4000000000u), HasSubstr("must be 24"));
   EXPECT_THAT(with(0, 24), HasSubstr("states 0 bytes of compressed points"));
-  EXPECT_THAT(with(21, 24), HasSubstr("but 20 follow"));
+  EXPECT_THAT(with(21, 24), HasSubstr("but only 20 bytes follow"));
 }
 
 TEST_F(CloudFile, BinaryPlyOfBothByteOrders) {
@@ -125,7 +125,7 @@ TEST_F(CloudFile, KittiBin) {
   EXPECT_EQ((*cloud.find("intensity"))[0], 0.5);
   EXPECT_THAT(
       complaint_of("a.bin", "123456789012345"),
-      HasSubstr("a.bin: the file has 15 bytes; the size must be a multiple of 16 (float32 x y z intensity); the file "
+      HasSubstr("a.bin: the .bin file has 15 bytes; its size must be a multiple of 16 (float32 x y z intensity); it "
                 "may be truncated"));
 }
 
@@ -166,7 +166,7 @@ TEST_F(CloudFile, KittiBinOfOtherColumnsIsRefused) {
   // with one point more, the size is no multiple of 16 either
   EXPECT_THAT(
       complaint_of("a.bin", sweep_of<float>(5) + sweep_of<float>(5).substr(0, 20)),
-      AllOf(HasSubstr("has 12820 bytes; the size must be a multiple of 16"), HasSubstr("5 columns of float32")));
+      AllOf(HasSubstr("has 12820 bytes; its size must be a multiple of 16"), HasSubstr("5 columns of float32")));
 }
 
 TEST_F(CloudFile, ColumnsOfABinFileMayBeNamed) {
@@ -197,7 +197,7 @@ TEST_F(CloudFile, ColumnsOfABinFileMayBeNamed) {
   EXPECT_THAT(complaint("x,y,z,intensity"), "") << "as stated, whatever it looks like";
   EXPECT_THAT(complaint("x,y,intensity"), HasSubstr("'x,y,intensity' lacks z"));
   EXPECT_THAT(complaint("x,y,z,x"), HasSubstr("name 'x' is empty or occurs twice"));
-  EXPECT_THAT(complaint("x,y,z:f2"), HasSubstr("type 'f2'; it must be f4, f8"));
+  EXPECT_THAT(complaint("x,y,z:f2"), HasSubstr("the type 'f2' must be f4, f8"));
   EXPECT_THAT(complaint("x:f8,y:f8,z:f8"), HasSubstr("has 12800 bytes, but the size must be a multiple of 24"));
 }
 
@@ -219,7 +219,7 @@ TEST_F(CloudFile, WhatAHeaderPromisesIsHeldAgainstTheFile) {
               HasSubstr("a.ply:7: the file states 4000000000 points; at most 67108864"));
   EXPECT_THAT(complaint_of("a.ply", ply("99999999999999999999")), HasSubstr("a.ply:3: count of vertex is"));
   EXPECT_THAT(complaint_of("a.ply", ply("-1")),
-              HasSubstr("a.ply:3: count of vertex is '-1'; it must be a whole number"));
+              HasSubstr("a.ply:3: the header states count of vertex as '-1'; it must be a whole number"));
   EXPECT_THAT(complaint_of("a.ply", kAsciiPly + "1 2 3\n"), HasSubstr("the file may be truncated"));
   const auto pcd = [](const std::string& width, const std::string& data) {
     return "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH " + width + "\nHEIGHT 1\nPOINTS " + width +
@@ -229,7 +229,8 @@ TEST_F(CloudFile, WhatAHeaderPromisesIsHeldAgainstTheFile) {
               HasSubstr("a.pcd:8: the header states 3 points of at least 12 bytes, but only 35 bytes follow"));
   EXPECT_THAT(complaint_of("a.pcd", pcd("60000000", "binary_compressed") + std::string(100, 'x')),
               HasSubstr("a.pcd:8"));
-  EXPECT_THAT(complaint_of("a.pcd", pcd("5000000000", "binary")), HasSubstr("WIDTH is 5000000000; it must be at most"));
+  EXPECT_THAT(complaint_of("a.pcd", pcd("5000000000", "binary")),
+              HasSubstr("WIDTH states 5000000000; it must state at most"));
   EXPECT_THAT(complaint_of("a.pcd", pcd("1", "zip")), HasSubstr("DATA is 'zip'"));
 }
 
@@ -246,17 +247,18 @@ TEST_F(CloudFile, DamageIsOneClearLine) {
   EXPECT_THAT(fixture::complaint([&] { read_cloud(folder_ / "none.ply"); }), HasSubstr("none.ply: no such file"));
   EXPECT_THAT(fixture::complaint([&] { read_cloud(folder_ / "a.las"); }),
               HasSubstr("must end in .ply, .pcd, .vtk or .bin"));
-  EXPECT_THAT(complaint_of("a.ply", ""), HasSubstr("a.ply:0: the header does not end"));
+  EXPECT_THAT(complaint_of("a.ply", ""), HasSubstr("a.ply:0: the file ends within its header"));
   EXPECT_THAT(complaint_of("a.ply", "plyy\n"), HasSubstr("a.ply:1: the file does not begin with 'ply'"));
   EXPECT_THAT(complaint_of("a.ply", "ply\nformat ascii 1.0\nelement vertex 1\n"),
-              HasSubstr("does not end; the file may be truncated"));
+              HasSubstr("ends within its header; it may be truncated"));
   EXPECT_THAT(complaint_of("a.ply", "ply\nformat ascii 1.0\nend_header\n"), HasSubstr("the file has no points"));
   EXPECT_THAT(complaint_of("a.ply", "ply\nelement vertex 1\nproperty quad x\nend_header\n"),
               HasSubstr("a.ply:3: unknown type"));
   EXPECT_THAT(complaint_of("a.ply", "ply\nelement vertex 1\nproperty list uchar int x\nend_header\n"),
               HasSubstr("list"));
-  EXPECT_THAT(complaint_of("a.ply", "ply\n" + std::string(70000, 'c') + "\n"), HasSubstr("longer than 65536 bytes"));
-  EXPECT_THAT(complaint_of("a.pcd", "FIELDS x\nDATA ascii\n"), HasSubstr("there is no line SIZE"));
+  EXPECT_THAT(complaint_of("a.ply", "ply\n" + std::string(70000, 'c') + "\n"),
+              HasSubstr("longer than the maximum of 65536 bytes"));
+  EXPECT_THAT(complaint_of("a.pcd", "FIELDS x\nDATA ascii\n"), HasSubstr("the header has no line SIZE"));
   EXPECT_THAT(complaint_of("a.pcd", "FIELDS x y\nSIZE 4\nTYPE F F\nWIDTH 1\nHEIGHT 1\nDATA ascii\n"),
               HasSubstr("SIZE has 1 words"));
 }

@@ -60,13 +60,14 @@ TEST(Diagnosis, ReadingsAtRestAreSound) {
 }
 
 TEST(Diagnosis, LateSensorsLossAndMotionAreFound) {
-  EXPECT_THAT(evidence_of(at_rest(0.6, 4.0)), ElementsAre("lidar: the sensor starts 0.6 s after 'imu' (limit 0.5 s)"));
+  EXPECT_THAT(evidence_of(at_rest(0.6, 4.0)), ElementsAre("lidar: this sensor starts 0.6 s after 'imu' (limit 0.5 s)"));
   sim::Sensors lossy = at_rest(0.0, 4.0);
   lossy.lidars[0].sweep_start_ns.erase(lossy.lidars[0].sweep_start_ns.begin() + 5);
   EXPECT_THAT(evidence_of(lossy), IsEmpty()) << "a single sweep";
   lossy.lidars[0].sweep_start_ns.erase(lossy.lidars[0].sweep_start_ns.begin() + 8);
-  EXPECT_THAT(evidence_of(lossy), ElementsAre("lidar: 2 of 40 sweeps are lost (5 %, limit 0.5 %); the longest gap "
-                                              "lasts 0.2 s"));
+  EXPECT_THAT(evidence_of(lossy),
+              ElementsAre("lidar: in the recording, 2 of 40 sweeps are lost (share 5 %, limit 0.5 %); the longest gap "
+                          "lasts 0.2 s"));
   sim::Sensors moving = at_rest(0.0, 4.0);
   for (std::size_t k = 0; k < 400; ++k) moving.imus[0].gyro_rad_s[k].z() = std::sin(0.1 * static_cast<double>(k));
   EXPECT_THAT(evidence_of(moving),

@@ -191,13 +191,14 @@ TEST_P(Dialects, WhatThePeerCannotDoWithoutIsRefused) {
   recording = unordered();
   recording.sensors.lidars[0].point_times = sim::PointTimes::unknown;
   recording.sensors.lidars[0].offset_ns.assign(recording.sensors.lidars[0].offset_ns.size(), 0);
-  EXPECT_EQ(complaint_of(recording),
-            lidar_alone ? "" : "the points of 'lidar' have no time stamps; " + peer + " cannot read such a recording");
+  EXPECT_EQ(
+      complaint_of(recording),
+      lidar_alone ? "" : "the points of lidar 'lidar' have no time stamps; " + peer + " cannot read such a recording");
   std::filesystem::remove_all(folder_ / "refused");
   recording = unordered();
   recording.sensors.lidars[0].range_m[7] = std::nanf("");
   EXPECT_THAT(complaint_of(recording),
-              HasSubstr("point 7 of 'lidar' has a position, range or intensity that is not finite"));
+              HasSubstr("point 7 of lidar 'lidar' has a position, range or intensity that is not finite"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "refused"));
   recording = unordered();
   recording.sensors.lidars.clear();
@@ -224,7 +225,8 @@ TEST_P(Dialects, AnEmptySweepIsThereOnlyForThosePeersThatTakeIt) {
   EXPECT_EQ(manifest()["lidar"]["sweeps"], clouds.size());
   EXPECT_EQ(std::count_if(clouds.begin(), clouds.end(), [](const auto& cloud) { return cloud.width == 0; }),
             takes ? 2 : 0);
-  const std::string note = "2 sweeps without points are left out, because " + peer + " cannot read an empty cloud";
+  const std::string note =
+      "the export leaves out 2 sweeps without points, because " + peer + " cannot read an empty cloud";
   EXPECT_THAT(notes, testing::Conditional(takes, testing::IsEmpty(), testing::ElementsAre(note)));
   EXPECT_EQ(fixture::bytes_of(out() / "manifest.json").find(note) != std::string::npos, !takes);
 }
@@ -312,7 +314,7 @@ TEST_F(Configuration, ALivoxComesAsItsDriversMessage) {
 
 TEST_F(Configuration, AnUnknownPeerIsRefusedWithTheNearest) {
   EXPECT_THAT(fixture::complaint([&] { yaml("fast_lio", "", recording_); }),
-              HasSubstr("unknown export target 'fast_lio'; did you mean 'fast-lio'?"));
+              HasSubstr("the export target 'fast_lio' is unknown (did you mean 'fast-lio'?)"));
   EXPECT_EQ(peer_dialects().size(), std::size(kWanted)) << "each has its line in the table above";
 }
 

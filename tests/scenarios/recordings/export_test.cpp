@@ -81,7 +81,7 @@ TEST_F(Export, ATrajectoryIsOfTheFrameThatIsAskedFor) {
   EXPECT_THAT(fixture::bytes_of(folder_ / "b.tum"), HasSubstr("true pose of '" + choices.frame + "' in the world"));
   choices.frame = "wheel";
   EXPECT_THAT(fixture::complaint([&] { export_recording(folder_ / "a.h5", "kitti", folder_ / "c", choices); }),
-              HasSubstr("the truth has no frame 'wheel' (known frames: body centre " + truth.imus[0].name));
+              HasSubstr("the recording's truth has no frame 'wheel' (known frames: body centre " + truth.imus[0].name));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "c"));
 }
 
@@ -140,9 +140,10 @@ TEST_F(Export, NoFileOfASensorIsWrittenOverAnother) {
   fixture::Numbers numbers;
   fixture::add_lidar(numbers, recording_, "lidar", 2, 4);
   write_recording(folder_ / "a.h5", fixture::info(), recording_.sensors, &recording_.truth);
-  EXPECT_THAT(export_recording(folder_ / "a.h5", "csv", folder_ / "csv"),
-              ElementsAre("'truth' is the name of a topic or frame that does not belong to a sensor, so IMU 0 is "
-                          "written as 'truth_2'"));
+  EXPECT_THAT(
+      export_recording(folder_ / "a.h5", "csv", folder_ / "csv"),
+      ElementsAre("name conflict in the export: 'truth' is reserved for another topic or frame, so the sensor IMU 0 is "
+                  "exported as 'truth_2'"));
   const auto lines = [&](const char* file) {
     const std::string text = fixture::bytes_of(folder_ / "csv" / file);
     return std::count(text.begin(), text.end(), '\n');
@@ -151,7 +152,8 @@ TEST_F(Export, NoFileOfASensorIsWrittenOverAnother) {
   EXPECT_EQ(lines("truth_2.csv"), 71);
   EXPECT_EQ(lines("imu.csv"), 71);
   EXPECT_THAT(export_recording(folder_ / "a.h5", "pcd", folder_ / "pcd"),
-              ElementsAre("'lidar' is also the name of another sensor, so lidar 1 is written as 'lidar_2'"));
+              ElementsAre("name conflict in the export: 'lidar' is the name of another sensor, so the sensor lidar 1 "
+                          "is exported as 'lidar_2'"));
   EXPECT_TRUE(std::filesystem::exists(folder_ / "pcd/lidar_000002.pcd"));
   EXPECT_TRUE(std::filesystem::exists(folder_ / "pcd/lidar_2_000001.pcd"));
 }
@@ -172,9 +174,10 @@ TEST(ExportNames, ASensorGivesWayOnlyToAnother) {
   const ExportNames mixed = named({"os", "no name of a file", "imu_1"}, {"os", "os"});
   EXPECT_THAT(mixed.imus.names, ElementsAre("os", "imu_1_2", "imu_1"));
   EXPECT_THAT(mixed.lidars.names, ElementsAre("os_2", "os_3"));
-  EXPECT_THAT(mixed.lidars.notes,
-              ElementsAre("'os' is also the name of another sensor, so lidar 0 is written as 'os_2'",
-                          "'os' is also the name of another sensor, so lidar 1 is written as 'os_3'"));
+  EXPECT_THAT(mixed.lidars.notes, ElementsAre("name conflict in the export: 'os' is the name of another sensor, so the "
+                                              "sensor lidar 0 is exported as 'os_2'",
+                                              "name conflict in the export: 'os' is the name of another sensor, so the "
+                                              "sensor lidar 1 is exported as 'os_3'"));
   for (const char* name : {"truth", "body", "world", "map", "odom", "base_link", "tf", "tf_static", "clock"})
     EXPECT_THAT(named({}, {name}).lidars.names, ElementsAre(std::string(name) + "_2"));
 }
@@ -201,7 +204,7 @@ TEST_F(Export, WrongUseIsNamed) {
   const auto complaint_of = [&](const std::string& format, const std::filesystem::path& out) {
     return fixture::complaint([&] { export_recording(folder_ / "real.h5", format, out); });
   };
-  EXPECT_THAT(complaint_of("tums", folder_ / "x"), HasSubstr("unknown format 'tums'; did you mean 'tum'?"));
+  EXPECT_THAT(complaint_of("tums", folder_ / "x"), HasSubstr("unknown export format 'tums' (did you mean 'tum'?)"));
   EXPECT_THAT(complaint_of("tum", folder_ / "x"), HasSubstr("has no truth"));
   EXPECT_THAT(complaint_of("csv", folder_ / "real.h5"), HasSubstr("cannot be written"));
   sim::Sensors no_lidar = recording_.sensors;

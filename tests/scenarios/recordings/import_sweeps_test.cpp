@@ -223,24 +223,24 @@ TEST_F(ImportSweeps, HostileInputIsOneClearLine) {
   EXPECT_THAT(complaint_of(), HasSubstr("times.txt:3: the time stamp 1000000000 ns must be larger than the "
                                         "previous time stamp, 1100000000 ns"));
   put("times.txt", "1.0\n1.1x\n");
-  EXPECT_THAT(complaint_of(), HasSubstr("times.txt:2: '1.1x' is not a time"));
+  EXPECT_THAT(complaint_of(), HasSubstr("times.txt:2: the time stamp '1.1x' must be seconds"));
   put("times.txt", "1.0\n1.1\n");
   ASSERT_EQ(complaint_of(), "");
   put("2.ply", sweep("float time", {"0.01", "nan", "0.09"}));
   put("1.ply", sweep("float time", {"0.01", "0.05", "0.09"}));
-  EXPECT_THAT(complaint_of(), HasSubstr("2.ply: point 1: the time is nan"));
+  EXPECT_THAT(complaint_of(), HasSubstr("2.ply: the time of point 1 is nan"));
   put("2.ply", sweep("float time", {"0.01", "0.05", "0.5"}));
   source_.reading.time_unit = "s";
-  EXPECT_THAT(
-      complaint_of(),
-      HasSubstr("2.ply: point 2 is 449999999 ns after the middle of the sweep; this difference must be within"));
+  EXPECT_THAT(complaint_of(),
+              HasSubstr("2.ply: the time of point 2 is 449999999 ns after the middle of the sweep; it must be within"));
   put("2.ply", sweep());
-  EXPECT_THAT(complaint_of(), HasSubstr("2.ply: there is no field 'time', but other sweeps have this field"));
+  EXPECT_THAT(complaint_of(),
+              HasSubstr("2.ply: the points have no field 'time' for their times, but other sweeps have this field"));
   put("2.ply", sweep("float ring", {"1", "2.5", "3"}));
   put("1.ply", sweep());
-  EXPECT_THAT(complaint_of(), HasSubstr("2.ply: point 1: ring is 2.5"));
+  EXPECT_THAT(complaint_of(), HasSubstr("2.ply: the ring of point 1 is 2.5"));
   put("2.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nend_header\n1 2\n");
-  EXPECT_THAT(complaint_of(), HasSubstr("2.ply: there is no field 'z' (existing fields: x y)"));
+  EXPECT_THAT(complaint_of(), HasSubstr("2.ply: the points have no field 'z' (existing fields: x y)"));
   put("2.ply", sweep("float x", {"nan", "nan", "nan"}));
   put("rear_1.ply", sweep());
   EXPECT_THAT(complaint_of(), HasSubstr("files of several lidars, '' and 'rear'"));
@@ -279,7 +279,7 @@ TEST_F(ImportSweeps, TimesOverAPartOfASweepAreReadWithACaution) {
   for (const char* name : {"1.ply", "2.ply"}) put(name, sweep("uint time_stamp", ns));
   EXPECT_EQ(import().point_times, sim::PointTimes::measured);
   EXPECT_THAT(imported_.notes,
-              testing::Contains("point times: field 'time_stamp', in ns after the sweep's time stamp"));
+              testing::Contains("the point times come from field 'time_stamp', in ns after the sweep's time stamp"));
   EXPECT_THAT(imported_.notes, testing::Contains(HasSubstr("caution: the point times span less than 2 %")));
 }
 
@@ -287,9 +287,8 @@ TEST_F(ImportSweeps, UnknownFieldsAreNamedWithTheOption) {
   put("times.txt", "1.0\n1.1\n");
   for (const char* name : {"1.ply", "2.ply"}) put(name, sweep("float firing", {"0.01", "0.05", "0.09"}));
   import();
-  EXPECT_THAT(imported_.notes,
-              testing::Contains("the points have no time stamps, so sweeps cannot be deskewed; if one of "
-                                "these fields contains the times, set '--time-field': firing"));
+  EXPECT_THAT(imported_.notes, testing::Contains("the points have no time stamps, so sweeps cannot be deskewed (set "
+                                                 "'--time-field' to a field with times): firing"));
 }
 
 TEST_F(ImportSweeps, AUnitThatTheNumbersContradictIsRefusedWithBoth) {
@@ -298,7 +297,8 @@ TEST_F(ImportSweeps, AUnitThatTheNumbersContradictIsRefusedWithBoth) {
   for (int k = 0; k < 120; ++k) us.push_back(std::to_string(10000 + 500 * k));
   for (const char* name : {"1.ply", "2.ply"}) put(name, sweep("float time", us));
   import();
-  EXPECT_THAT(imported_.notes, testing::Contains("point times: field 'time', in us after the sweep's time stamp"));
+  EXPECT_THAT(imported_.notes,
+              testing::Contains("the point times come from field 'time', in us after the sweep's time stamp"));
   source_.reading.time_unit = "ns";
   EXPECT_THAT(
       complaint_of(),

@@ -59,7 +59,7 @@ TEST_F(ImportCsv, ReadsTheColumnsOfTheLayout) {
   EXPECT_EQ(imu.gyro_rad_s[1], Eigen::Vector3d(0.25, -1e-3, 3.0));
   EXPECT_EQ(imu.accel_m_s2[2], Eigen::Vector3d(9.5, 0.0, -0.5));
   EXPECT_THAT(imu.clip_flags, ElementsAre(0, 0, 0));
-  EXPECT_THAT(imported.info.attribution, HasSubstr("run_1_xsens.csv, first time stamp 1632000000990000000 ns"));
+  EXPECT_THAT(imported.info.attribution, HasSubstr("run_1_xsens.csv (first time stamp: 1632000000990000000 ns)"));
   write_recording(folder_ / "a.h5", imported.info, imported.sensors, nullptr);
   EXPECT_EQ(read_sensors(folder_ / "a.h5").imus[0].time_ns, imu.time_ns);
 }
@@ -123,7 +123,7 @@ TEST_F(ImportCsv, FindsColumnsByNameAndReadsStampsToTheNanosecond) {
   EXPECT_THAT(imu.time_ns, ElementsAre(0, 231600000 - 223639727));
   EXPECT_EQ(imu.gyro_rad_s[1], Eigen::Vector3d(0.1, 0.2, 0.4));
   EXPECT_EQ(imu.accel_m_s2[0], 9.80665 * Eigen::Vector3d(-0.5, 0.0, 1.0));
-  EXPECT_THAT(imported.info.attribution, HasSubstr("first time stamp 1617333602223639727 ns"));
+  EXPECT_THAT(imported.info.attribution, HasSubstr("first time stamp: 1617333602223639727 ns"));
 }
 
 TEST_F(ImportCsv, AnotherUnitOrAMissingColumnIsSaid) {
@@ -139,7 +139,7 @@ TEST_F(ImportCsv, AnotherUnitOrAMissingColumnIsSaid) {
   EXPECT_THAT(complaint_of(twice + rows), HasSubstr("csv:1: two columns have the name header/stamp"));
   for (const char* stamp : {"", "x", "1.5e", "12345678901.5"})
     EXPECT_THAT(complaint_of(kNamed + "1.5,0.1,0.2,0.3,7," + stamp + ",-0.5,0,9\n"),
-                HasSubstr("csv:2: column 5 must be a time"));
+                HasSubstr("csv:2: column 5 must contain a time"));
 }
 
 TEST_F(ImportCsv, ReadsTheLogOfASphere) {
@@ -266,20 +266,21 @@ TEST_F(ImportCsv, BadInputHasFileAndLine) {
   const std::string good = kHeader + line("1,0") + line("1,10000000");
   EXPECT_EQ(complaint_of(good), "");
   EXPECT_THAT(complaint_of(""), HasSubstr("is empty"));
-  EXPECT_THAT(complaint_of(kHeader), HasSubstr("has 0 samples"));
-  EXPECT_THAT(complaint_of(kHeader + line("1,0")), HasSubstr("has 1 samples"));
+  EXPECT_THAT(complaint_of(kHeader), HasSubstr("has 0 IMU samples"));
+  EXPECT_THAT(complaint_of(kHeader + line("1,0")), HasSubstr("has 1 IMU samples"));
   EXPECT_THAT(complaint_of(good + line("1,10000000")), HasSubstr("csv:4: the time stamp (first time stamp + "));
   EXPECT_THAT(complaint_of(good + line("1,5000000")), HasSubstr("csv:4: the time stamp (first time stamp + "));
   EXPECT_THAT(complaint_of(good + line("1,20000000", "nan")), HasSubstr("csv:4: column 8 is not finite"));
-  EXPECT_THAT(complaint_of(good + line("1,20000000", "")), HasSubstr("csv:4: column 8 must be a number; it is ''"));
+  EXPECT_THAT(complaint_of(good + line("1,20000000", "")),
+              HasSubstr("csv:4: column 8 must contain a number, but contains ''"));
   EXPECT_THAT(complaint_of(good + line("1,20000000", "0.5x")),
-              HasSubstr("csv:4: column 8 must be a number; it is '0.5x'"));
-  EXPECT_THAT(complaint_of(good + line("1.5,0")), HasSubstr("csv:4: column 0 must be a whole number"));
+              HasSubstr("csv:4: column 8 must contain a number, but contains '0.5x'"));
+  EXPECT_THAT(complaint_of(good + line("1.5,0")), HasSubstr("csv:4: column 0 must contain a whole number"));
   EXPECT_THAT(complaint_of(good + line("1,1000000000")),
-              HasSubstr("csv:4: column 1 must be a whole number from 0 to 999999999; it is '1000000000'"));
+              HasSubstr("csv:4: column 1 must contain a whole number from 0 to 999999999, but contains '1000000000'"));
   EXPECT_THAT(complaint_of(good + line("1,20000000", "1e7")),
-              HasSubstr("csv:4: a reading has the magnitude 1e+07 rad/s or m/s^2; it must be at most 1e+06"));
-  EXPECT_THAT(complaint_of(good + line("1e30,0")), HasSubstr("csv:4: column 0 must be a whole number"));
+              HasSubstr("csv:4: an IMU reading has the magnitude 1e+07 rad/s or m/s^2; it must be at most 1e+06"));
+  EXPECT_THAT(complaint_of(good + line("1e30,0")), HasSubstr("csv:4: column 0 must contain a whole number"));
   EXPECT_EQ(complaint_of(good + "\n \r\n"), "") << "nothing follows";
   EXPECT_EQ(complaint_of(good + "\n" + line("1,20000000")), "") << "an empty line is no sample";
   EXPECT_THAT(complaint_of(good + line("1,20000000").substr(0, 60) + "\n"), HasSubstr("csv:4: this line has"));
@@ -296,13 +297,14 @@ TEST_F(ImportCsv, BytesThatAreNoLinesOfTextAreCalledSo) {
   const std::string good = kHeader + line("1,0") + line("1,10000000");
   std::string wide = "\xFF\xFE";
   for (const char c : good) wide += {c, '\0'};
-  EXPECT_THAT(complaint_of(wide), HasSubstr("csv: the text is in UTF-16; it must be in UTF-8"));
+  EXPECT_THAT(complaint_of(wide), HasSubstr("csv: the text of the file is in UTF-16; it must be in UTF-8"));
   std::string spoiled = good;
   spoiled[good.size() - 40] = '\0';
   EXPECT_THAT(complaint_of(spoiled), HasSubstr("csv:3: the file contains a zero byte"));
   std::string returns = good;
   std::replace(returns.begin(), returns.end(), '\n', '\r');
-  EXPECT_THAT(complaint_of(returns), HasSubstr("csv: the lines end in a carriage return; they must end in a"));
+  EXPECT_THAT(complaint_of(returns),
+              HasSubstr("csv: the lines of the file end in a carriage return; they must end in a"));
 }
 
 // opening a pipe for reading would wait for a writer

@@ -47,11 +47,13 @@ TEST(LeftOut, FewFaultsAreNotedAndManyAreRefused) {
   left_out.add("a wrong time stamp", "a.csv:3: does not increase");
   left_out.guard([] { throw BadInput("a.csv:9: is not finite"); });
   EXPECT_EQ(left_out.note(38),
-            "caution: 2 of 40 readings are left out: 1 with a wrong time stamp (first: a.csv:3: does not increase); 1 "
+            "caution: the import leaves out 2 of 40 readings: 1 with a wrong time stamp (first: a.csv:3: does not "
+            "increase); 1 "
             "with faulty data (first: a.csv:9: is not finite)");
   EXPECT_NO_THROW(left_out.require_few(38));
-  EXPECT_EQ(fixture::complaint([&] { left_out.require_few(37); }),
-            "a.csv:3: does not increase (2 of 39 readings are faulty; the import leaves out at most 5 %)");
+  EXPECT_EQ(
+      fixture::complaint([&] { left_out.require_few(37); }),
+      "a.csv:3: does not increase (2 of 39 readings are faulty; the import leaves out at most 5 % of a sensor's data)");
   LeftOut one("clouds");
   one.add("faulty data", "cut");
   EXPECT_NO_THROW(one.require_few(4));
@@ -139,14 +141,16 @@ TEST_P(OddBag, OneWrongStampCostsOneReading) {
     change_imu_ = [shift_ms](int k, ros::Imu& imu) {
       if (k == 60) imu.header = header_of(kFirstStamp_ns + (600 + shift_ms) * kMilli_ns, "imu");
     };
-    expect_one_left_out(149, 15, "/imu: caution: 1 of 150 readings is left out: 1 with a wrong time stamp (first: ");
+    expect_one_left_out(149, 15,
+                        "/imu: caution: the import leaves out 1 of 150 readings: 1 with a wrong time stamp (first: ");
   }
   EXPECT_THAT(read().notes, Contains(HasSubstr("message 60 of /imu: the time stamp is out of order: the header's "
                                                "increases by 4.01 s")));
   change_imu_ = [](int k, ros::Imu& imu) {
     if (k == 0) imu.header = header_of(0, "imu");
   };
-  expect_one_left_out(149, 15, "message 0 of /imu: the time stamp is far from the other time stamps");
+  expect_one_left_out(
+      149, 15, "message 0 of /imu: the time stamp of this message is far from the time stamps of all other messages");
 }
 
 TEST_P(OddBag, OneUnusableReadingCostsOneReading) {
@@ -154,7 +158,7 @@ TEST_P(OddBag, OneUnusableReadingCostsOneReading) {
     change_imu_ = [&](int k, ros::Imu& imu) {
       if (k == 60) imu.angular_velocity[1] = value;
     };
-    expect_one_left_out(149, 15, "/imu: caution: 1 of 150 readings is left out: 1 with faulty data (first: ");
+    expect_one_left_out(149, 15, "/imu: caution: the import leaves out 1 of 150 readings: 1 with faulty data (first: ");
   }
 }
 
@@ -162,9 +166,11 @@ TEST_P(OddBag, ManyFaultyReadingsAreRefused) {
   change_imu_ = [&](int k, ros::Imu& imu) {
     if (k % 10 == 5) imu.angular_velocity[1] = std::nan("");
   };
-  EXPECT_THAT(complaint(),
-              HasSubstr("message 5 of /imu: a reading is not finite (15 of 150 readings are faulty; the import "
-                        "leaves out at most 5 %)"));
+  EXPECT_THAT(
+      complaint(),
+      HasSubstr(
+          "message 5 of /imu: an IMU reading has a value that is not finite (15 of 150 readings are faulty; the import "
+          "leaves out at most 5 % of a sensor's data)"));
 }
 
 TEST_P(OddBag, ReadingsOfExactlyZeroAreMissing) {
@@ -174,7 +180,7 @@ TEST_P(OddBag, ReadingsOfExactlyZeroAreMissing) {
     };
     const int lost = (kReadings + every - 2) / every;
     expect_one_left_out(static_cast<std::size_t>(kReadings - lost), 15,
-                        "/imu: caution: " + std::to_string(lost) + " of 150 readings are left out");
+                        "/imu: caution: the import leaves out " + std::to_string(lost) + " of 150 readings:");
   }
   change_imu_ = [](int, ros::Imu& imu) { imu.angular_velocity = imu.linear_acceleration = {0.0, 0.0, 0.0}; };
   EXPECT_THAT(complaint(), HasSubstr("all values of all readings are exactly 0"));
@@ -205,7 +211,7 @@ TEST_P(OddBag, OneFaultyCloudCostsOneCloud) {
       if (k == 5) change(cloud);
     };
   };
-  const std::string note = "/points: caution: 1 of 15 clouds is left out: 1 with ";
+  const std::string note = "/points: caution: the import leaves out 1 of 15 clouds: 1 with ";
   change_cloud_ = at_5([](ros::PointCloud2& cloud) { cloud.data.resize(cloud.data.size() / 2); });
   expect_one_left_out(150, 14, note + "faulty data (first: ");
   change_cloud_ = at_5([](ros::PointCloud2& cloud) { cloud.header = header_of(kFirstStamp_ns, "lidar"); });
@@ -217,7 +223,7 @@ TEST_P(OddBag, OneFaultyCloudCostsOneCloud) {
   expect_one_left_out(150, 14, note + "faulty data (first: ");
   change_cloud_ = nullptr;
   for (std::size_t p = 5 * kPoints; p < 6 * kPoints; ++p) recording_.sensors.lidars[0].position_L_m[p] *= 1e4f;
-  expect_one_left_out(150, 14, note + "most points farther than twice the lidar's range (first: ");
+  expect_one_left_out(150, 14, note + "points beyond the lidar's range (first: ");
 }
 
 TEST_P(OddBag, ManyFaultyCloudsAreRefused) {
@@ -233,9 +239,10 @@ TEST_P(OddBag, OneWildPointTimeCostsOnePoint) {
   const Imported imported = read();
   EXPECT_EQ(imported.sensors.lidars.at(0).sweep_start_ns.size(), 15u);
   EXPECT_EQ(imported.sensors.lidars.at(0).offset_ns.size(), static_cast<std::size_t>(15 * kPoints - 1));
-  EXPECT_THAT(imported.notes,
-              Contains(AllOf(HasSubstr("/points: caution: 1 point is left out because of times outside their sweep"),
-                             HasSubstr("message 5 of /points: point 3 is"))));
+  EXPECT_THAT(
+      imported.notes,
+      Contains(AllOf(HasSubstr("/points: caution: the import leaves out 1 point with times outside their sweep"),
+                     HasSubstr("message 5 of /points: the time of point 3 is"))));
   for (std::size_t p = 5 * kPoints; p < 5 * kPoints + 20; ++p) offsets[p] = 4'200'000'000u;
   expect_one_left_out(150, 14, "1 with faulty data (first: ");
 }
@@ -276,10 +283,8 @@ TEST_P(OddBag, CloudsWithPointTimesAreThePrimaryLidar) {
   ASSERT_EQ(imported.sensors.lidars.size(), 2u);
   EXPECT_EQ(imported.sensors.lidars[0].name, "points");
   EXPECT_EQ(imported.sensors.lidars[1].name, "camera");
-  EXPECT_THAT(
-      imported.notes,
-      Contains("/points: mapping uses the lidar of this topic, because the points of the topic have time stamps "
-               "(set --lidar-topic to choose another topic)"));
+  EXPECT_THAT(imported.notes, Contains("/points: mapping methods use the lidar of this topic, because its points have "
+                                       "times (set --lidar-topic to choose another topic)"));
   BagReading chosen;
   chosen.lidar_topics = {"/camera", "/points"};
   EXPECT_EQ(read(chosen).sensors.lidars.at(0).name, "camera");
@@ -300,9 +305,8 @@ TEST_P(OddBag, PartsAreReadTogetherByTime) {
   EXPECT_EQ(imported.sensors.imus.at(0).time_ns.size(), 150u);
   EXPECT_EQ(imported.sensors.lidars.at(0).sweep_start_ns.size(), 15u);
   EXPECT_EQ(imported.info.origin_ns, kFirstStamp_ns);
-  EXPECT_THAT(imported.notes,
-              Contains(AnyOf(HasSubstr("the import reads these bags as parts of one recording: a.bag z.bag"),
-                             HasSubstr("metadata.yaml does not list these files"))));
+  EXPECT_THAT(imported.notes, Contains(AnyOf(HasSubstr("as parts of one recording: a.bag z.bag"),
+                                             HasSubstr("metadata.yaml does not list"))));
   if (std::string(GetParam().name) == "Ros2") {
     EXPECT_THAT(imported.notes, Contains(HasSubstr("parts_1.db3")));
     EXPECT_THAT(imported.notes, Contains(HasSubstr("the import reads the files in the order of time")));
@@ -334,8 +338,8 @@ TEST_F(OddTable, OneFaultyLineCostsOneReading) {
     const Imported imported = import_imu_csv(folder_ / "a.csv", {});
     EXPECT_EQ(imported.sensors.imus.at(0).time_ns.size(), 99u) << odd;
     EXPECT_EQ(imported.sensors.imus.at(0).period_ns, 10 * kMilli_ns) << odd;
-    EXPECT_THAT(imported.notes,
-                Contains(AllOf(HasSubstr("caution: 1 of 100 readings is left out: 1 with"), HasSubstr("a.csv:62"))))
+    EXPECT_THAT(imported.notes, Contains(AllOf(HasSubstr("caution: the import leaves out 1 of 100 readings: 1 with"),
+                                               HasSubstr("a.csv:62"))))
         << odd;
   }
 }
@@ -356,7 +360,7 @@ TEST_F(OddTable, OneFaultyFileCostsOneSweep) {
   fixture::put(folder_ / "4.PLY", head + "1 2 3\n1 2 4\n");
   const Imported imported = import_sweeps(source);
   EXPECT_EQ(imported.sensors.lidars.at(0).sweep_start_ns.size(), 9u);
-  EXPECT_THAT(imported.notes, Contains(AllOf(HasSubstr("caution: 1 of 10 clouds is left out"),
+  EXPECT_THAT(imported.notes, Contains(AllOf(HasSubstr("the import leaves out 1 of 10 clouds"),
                                              HasSubstr("times.txt:8: the time stamp 100000000 ns must be larger"))));
 }
 

@@ -117,7 +117,7 @@ std::string with_gyro(const Eigen::Matrix3d& matrix, GyroUnit unit = GyroUnit::r
 
 TEST(LidarRotation, WhatAgreesSaysSo) {
   EXPECT_THAT(with_gyro(Eigen::Matrix3d::Identity()),
-              AllOf(HasSubstr("over 60 pairs of sweeps"), HasSubstr("units, signs and axes agree")));
+              AllOf(HasSubstr("over 60 sweep pairs"), HasSubstr("units, signs and axes agree")));
 }
 
 TEST(LidarRotation, DegreesAreRefusedWithTheOptionThatTakesThem) {

@@ -100,10 +100,12 @@ TEST_P(Livox, TwoClocksAreSaid) {
 TEST_P(Livox, ACountThatIsNoneIsRefused) {
   ros::LivoxCustomMsg first = message(1690000000'000000000), second = message(1690000000'100000000);
   second.point_num = 4000000000u;
-  EXPECT_THAT(fixture::complaint([&] {
-                written({first, second});
-              }),
-              HasSubstr("message 1 of /livox/lidar: the cloud states 4000000000 points but contains 10"));
+  EXPECT_THAT(
+      fixture::complaint([&] {
+        written({first, second});
+      }),
+      HasSubstr(
+          "message 1 of /livox/lidar: the header of the cloud states 4000000000 points, but the message contains 10"));
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, Livox, testing::Values(fixture::kRos1, fixture::kRos2, fixture::kMcap),
@@ -132,7 +134,7 @@ TEST(LivoxMessage, MoreLinesThanAByteHasAreRefused) {
   writing.sweeps = livox_sweep_layout();
   const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "tumble_livox_lines.bag";
   EXPECT_THAT(fixture::complaint([&] { export_ros1_bag(recording.sensors, writing, path); }),
-              HasSubstr("a point of 'lidar' has ring 256; a CustomMsg stores lines 0 to 255 only"));
+              HasSubstr("a point of lidar 'lidar' has ring 256; a Livox CustomMsg can only store rings 0 to 255"));
   EXPECT_FALSE(std::filesystem::exists(path));
 }
 
@@ -145,7 +147,7 @@ TEST(LivoxMessage, NumbersThatAreNoneAreRefused) {
     writing.sweeps = livox_sweep_layout();
     const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "tumble_livox_finite.bag";
     EXPECT_THAT(fixture::complaint([&] { export_ros1_bag(recording.sensors, writing, path); }),
-                HasSubstr("point 7 of 'lidar' is not finite"));
+                HasSubstr("point 7 of lidar 'lidar' is not finite"));
     EXPECT_FALSE(std::filesystem::exists(path));
   }
 }
@@ -159,8 +161,9 @@ TEST(LivoxMessage, PointsWithoutTimesAreRefused) {
     BagWriting writing;
     writing.sweeps = livox_sweep_layout();
     const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "tumble_livox_times.bag";
-    EXPECT_THAT(fixture::complaint([&] { export_ros1_bag(recording.sensors, writing, path); }),
-                HasSubstr("the points of 'lidar' have no time stamps, but a CustomMsg needs measured time stamps"));
+    EXPECT_THAT(
+        fixture::complaint([&] { export_ros1_bag(recording.sensors, writing, path); }),
+        HasSubstr("the points of lidar 'lidar' have no time stamps, but a Livox CustomMsg needs measured time stamps"));
     EXPECT_FALSE(std::filesystem::exists(path));
   }
 }

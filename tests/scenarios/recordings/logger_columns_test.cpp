@@ -88,7 +88,7 @@ TEST_F(LoggerTable, SemicolonsTabulatorsAndOtherColumnsAreRead) {
     const Imported imported = import(separated(by));
     expect_the_readings(imported);
     EXPECT_THAT(imported.notes, Contains("ignored columns: mag_x, temp"));
-    EXPECT_THAT(imported.notes, Not(Contains(HasSubstr("because of the time step"))));
+    EXPECT_THAT(imported.notes, Not(Contains(HasSubstr("this unit gives a plausible time step"))));
   }
 }
 
@@ -98,15 +98,16 @@ TEST_F(LoggerTable, TheUnitOfTimesIsTakenFromTheirSteps) {
     expect_the_readings(imported);
     return imported.notes;
   };
-  EXPECT_THAT(notes_of(kSeconds), Contains("the import reads times in s, because of the time step"));
+  EXPECT_THAT(notes_of(kSeconds),
+              Contains("the import reads time stamps in s, because this unit gives a plausible time step"));
   EXPECT_THAT(notes_of({"1700000000000", "1700000000005", "1700000000010"}),
-              Contains(HasSubstr("the import reads times in ms,")));
-  EXPECT_THAT(notes_of({"0", "5000", "10000"}), Contains(HasSubstr("the import reads times in us,")));
+              Contains(HasSubstr("the import reads time stamps in ms,")));
+  EXPECT_THAT(notes_of({"0", "5000", "10000"}), Contains(HasSubstr("the import reads time stamps in us,")));
   EXPECT_THAT(notes_of({"1700000000000000000", "1700000000005000000", "1700000000010000000"}),
-              Contains(HasSubstr("the import reads times in ns,")));
+              Contains(HasSubstr("the import reads time stamps in ns,")));
   // Python prints sums of steps in this form
   EXPECT_THAT(notes_of({"0.005", "0.010000000000000002", "0.014999999999999999"}),
-              Contains(HasSubstr("the import reads times in s,")));
+              Contains(HasSubstr("the import reads time stamps in s,")));
   // the step may be half a second or half a millisecond
   EXPECT_THAT(complaint_of(table("time,gx,gy,gz,ax,ay,az", {"0", "0.5", "1"}, kRow)),
               AllOf(HasSubstr("log.csv: the time step is 0.5"), HasSubstr("Add the unit to the column name")));
@@ -122,7 +123,7 @@ TEST_F(LoggerTable, OneCutLineCostsOneReading) {
     SCOPED_TRACE(text.substr(text.size() - 40));
     const Imported imported = import(text);
     EXPECT_EQ(imported.sensors.imus.at(0).time_ns.size(), kept);
-    EXPECT_THAT(imported.notes, Contains(HasSubstr("caution: 1 of 50 readings is left out")));
+    EXPECT_THAT(imported.notes, Contains(HasSubstr("caution: the import leaves out 1 of 50 readings")));
   };
   one_lost(whole.substr(0, whole.size() - 5), 49);
   one_lost(whole.substr(0, whole.size() - 1), 49);
@@ -165,7 +166,7 @@ TEST_F(LoggerTable, StatedUnitsAreBelieved) {
   EXPECT_THAT(complaint_of(table("t,gx,gy,gz,ax [m/s^2],ay [m/s^2],az [g]", kSeconds, kRow)),
               HasSubstr("the axes of the accel have different units"));
   EXPECT_THAT(complaint_of(table("t,gx,gy,gz,ax [N],ay [N],az [N]", kSeconds, kRow)),
-              HasSubstr("log.csv:1: column 'ax [N]' has an unknown unit"));
+              HasSubstr("log.csv:1: the unit in the name of column 'ax [N]' is unknown"));
 }
 
 // decimal commas in a table separated by commas: the first lines reveal that before their times do
@@ -180,16 +181,16 @@ TEST_F(LoggerTable, WhatIsMissingOrThereTwiceIsSaid) {
               HasSubstr("log.csv:1: missing columns: accel_z"));
   EXPECT_THAT(complaint_of(table("n,gx,gy,gz,ax,ay,az", kSeconds, kRow)), HasSubstr("missing columns: time"));
   EXPECT_THAT(complaint_of(table("t,gx,gy,gz,ax,ay,az,acc_x", kSeconds, kRow + ",1")),
-              HasSubstr("two columns belong to the accel's axis x: 'ax' and 'acc_x'"));
+              HasSubstr("two columns contain the accel's axis x: 'ax' and 'acc_x'"));
   EXPECT_THAT(complaint_of(table("t,time,gx,gy,gz,ax,ay,az", {"1,1", "2,2"}, kRow)),
-              HasSubstr("two columns are time stamps, 't' and 'time'"));
+              HasSubstr("two columns contain time stamps, 't' and 'time'"));
   EXPECT_THAT(complaint_of(table("t,a,b", kSeconds, ",1,2")), HasSubstr("contains no known column name"));
 }
 
 TEST_F(LoggerTable, TimesThatAreNoneHaveTheirPlace) {
   for (const char* time : {"", "x", "1e", "e3", ".", "--1", "99999999999999999999", "1e300", "1.2.3"}) {
     EXPECT_THAT(complaint_of(table("time_s,gx,gy,gz,ax,ay,az", {"0", time}, kRow)),
-                AllOf(HasSubstr("log.csv:3: column 0"), HasSubstr("must be a time")))
+                AllOf(HasSubstr("log.csv:3: column 0"), HasSubstr("must contain a time")))
         << time;
   }
   EXPECT_THAT(complaint_of(table("time_s,gx,gy,gz,ax,ay,az", {"0", "0.1", "0.05"}, kRow)),
@@ -260,7 +261,7 @@ TEST_F(LoggerTable, TheUserNamesColumns) {
   const std::string two = table(
       "time,gyro1_x,gyro1_y,gyro1_z,accel1_x,accel1_y,accel1_z,gyro2_x,gyro2_y,gyro2_z,accel2_x,accel2_y,accel2_z",
       kSeconds, ",1,1,1,0,0,9.8" + kRow);
-  EXPECT_THAT(complaint_of(two), AllOf(HasSubstr("log.csv:1: the gyro has columns of several IMUs, '1' and '2'"),
+  EXPECT_THAT(complaint_of(two), AllOf(HasSubstr("log.csv:1: the gyro columns belong to several IMUs, '1' and '2'"),
                                        HasSubstr("--columns time=NAME")));
   expect_the_readings(import_columns(two, "time=time,gyro=gyro2_x,gyro2_y,gyro2_z,accel=accel2_x,accel2_y,accel2_z"));
   // units in the names count, also the unit of the time
@@ -278,7 +279,7 @@ TEST_F(LoggerTable, TheUserNamesColumns) {
               HasSubstr("log.csv:1: --columns: the table has no column 'z'"));
   EXPECT_THAT(refused("time=a,b,gyro=c,d,accel=f,g,h"), HasSubstr("--columns: gyro has 2 columns; it must have 3"));
   EXPECT_THAT(refused("gyro=c,d,e,accel=f,g,h"), HasSubstr("--columns: time has 0 columns"));
-  EXPECT_THAT(refused("a,b"), HasSubstr("--columns: 'a' must begin with time=, gyro= or accel="));
+  EXPECT_THAT(refused("a,b"), HasSubstr("the entry 'a' of --columns must begin with time=, gyro= or accel="));
 }
 
 // tables that bagpy and `rostopic echo -p` make from a bag have the record's time first

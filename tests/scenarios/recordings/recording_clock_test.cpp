@@ -85,8 +85,8 @@ TEST(RecordingClock, AReferenceFromZeroFitsAnExport) {
   attach_poses(imported, poses, Eigen::Isometry3d::Identity(), "poses");
   ASSERT_TRUE(imported.reference.has_value());
   EXPECT_EQ(imported.reference->p_WB_m.at(1).x(), 1.0);
-  EXPECT_THAT(imported.notes, testing::Contains(testing::HasSubstr("the stamps of the reference count from zero; "
-                                                                   "1000000000 s are added to these times")));
+  EXPECT_THAT(imported.notes, testing::Contains(testing::HasSubstr("the time stamps of the reference count from 0 s; "
+                                                                   "the import shifts them by 1000000000 s")));
 }
 
 }  // namespace

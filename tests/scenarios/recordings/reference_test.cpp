@@ -67,7 +67,7 @@ TEST(ReferenceTruth, EndsWithTheSensorsAndMustMeetThem) {
   };
   EXPECT_THAT(complaint(steady(2000000000, 50000000, 3)), HasSubstr("check that both use the same clock"));
   EXPECT_THAT(complaint(steady(-2000000000, 50000000, 3)), HasSubstr("check that both use the same clock"));
-  EXPECT_THAT(complaint({}), HasSubstr("has no poses"));
+  EXPECT_THAT(complaint({}), HasSubstr("contains no pose"));
   EXPECT_THAT(fixture::complaint(
                   [] { reference_truth(steady(0, 50000000000000, 3), std::numeric_limits<std::int64_t>::max()); }),
               HasSubstr("at most one day"));
@@ -121,8 +121,8 @@ TEST_F(Reference, BadLinesAreNamed) {
               HasSubstr("a.txt:4: the time stamp 1200000000 ns must be larger than"));
   EXPECT_THAT(complaint(good + "1.6 nan 0 0 0 0 0 1\n"), HasSubstr("a.txt:4: the pose is not finite"));
   EXPECT_THAT(complaint(good + "1.6 0 -1e308 0 0 0 0 1\n"),
-              HasSubstr("a.txt:4: the position is 1e+308 m from the origin; it must be within 1e+09 m"));
-  EXPECT_THAT(complaint(good + "1.6 0 0 0 0 0 0 2\n"), HasSubstr("a.txt:4: the quaternion's norm is 2.0"));
+              HasSubstr("a.txt:4: the position of this pose is 1e+308 m from the origin; it must be within 1e+09 m"));
+  EXPECT_THAT(complaint(good + "1.6 0 0 0 0 0 0 2\n"), HasSubstr("a.txt:4: the norm of this pose's quaternion is 2.0"));
   EXPECT_THAT(complaint(good + "1.6 0 0 0 0 0 0\n"), HasSubstr("a.txt:4: the row has 7 columns; it must have 8"));
   fixture::put(folder_ / "a.txt", good + "1.6 nan nan nan nan nan nan nan\n1.7 0 0 0 0 0 0 1\n");
   EXPECT_EQ(read_tum_poses(folder_ / "a.txt", false).size(), 3u) << "an optical system may lose sight of its markers";

@@ -178,7 +178,7 @@ TEST_F(ReplaceFile, AFileOfAFolderThatIsReadIsNotWrittenOver) {
     const std::vector<std::filesystem::path> inputs = {"", folder_ / "none", folder_ / input};
     for (const char* output : {"in/a", "link/a", "in/deep/b", "in/deep/../a", "to_a"}) {
       EXPECT_THAT(fixture::complaint([&] { require_not_an_input(folder_ / output, inputs); }),
-                  HasSubstr("is one of the files of the input"))
+                  HasSubstr("is one of the files in the input folder"))
           << output;
     }
     EXPECT_NO_THROW(require_not_an_input(folder_ / "inside", inputs)) << "a name that begins alike";

@@ -79,7 +79,7 @@ TEST_F(WrongFile, AbsentForeignOrFolder) {
   };
   EXPECT_EQ(complaint_of(folder_ / "none.h5"), (folder_ / "none.h5").string() + ": no such file");
   EXPECT_THAT(complaint_of(folder_),
-              HasSubstr(": this path is a folder; it must be a recording (FILE.h5); 'tumble import "));
+              HasSubstr(": the path is a folder, but must be a recording (FILE.h5); 'tumble import "));
   fixture::put(folder_ / "text.h5", "scenario: hill\n");
   EXPECT_THAT(complaint_of(folder_ / "text.h5"),
               HasSubstr("text.h5: the file is truncated, damaged or not an HDF5 file"));
@@ -93,19 +93,22 @@ TEST_F(WrongFile, WhatImportConvertsIsNamed) {
     fixture::put(folder_ / name, bytes);
     return fixture::complaint([&] { read_sensors(folder_ / name); });
   };
-  const std::string way = "; it must be a recording (FILE.h5); 'tumble import " + (folder_ / "a").string();
+  const std::string way = ", but must be a recording (FILE.h5); 'tumble import " + (folder_ / "a").string();
   EXPECT_THAT(complaint_of("a.bag", "#ROSBAG V2.0\n"), HasSubstr("is a ROS 1 bag" + way + ".bag -o FILE.h5'"));
   EXPECT_THAT(complaint_of("a.mcap", "\x89MCAP0\r\n"), HasSubstr("is an MCAP file" + way));
   EXPECT_THAT(complaint_of("a.h5", "#ROSBAG V2.0\n"), HasSubstr("is a ROS 1 bag")) << "whatever its name";
-  EXPECT_THAT(complaint_of("a.db3", "SQLite format 3\0"), HasSubstr("is a ROS 2 bag or a database" + way));
+  EXPECT_THAT(complaint_of("a.db3", "SQLite format 3\0"), HasSubstr("is a ROS 2 bag (SQLite)" + way));
   EXPECT_THAT(complaint_of("a.csv", "time,wx\n"), HasSubstr("is a table" + way));
 }
 
 TEST_F(WrongFile, AnotherVersion) {
   put_attribute("/", "format_version", H5T_NATIVE_INT64, std::int64_t{2});
-  EXPECT_EQ(info_complaint(), path_.string() + ": /format_version: the version is 2; this build reads version 1");
-  EXPECT_THAT(fixture::complaint([&] { read_sensors(path_); }), HasSubstr("this build reads version 1"));
-  EXPECT_THAT(fixture::complaint([&] { read_truth(path_); }), HasSubstr("this build reads version 1"));
+  EXPECT_EQ(
+      info_complaint(),
+      path_.string() +
+          ": /format_version: the version of the recording format is 2; this build of tumble reads only version 1");
+  EXPECT_THAT(fixture::complaint([&] { read_sensors(path_); }), HasSubstr("this build of tumble reads only version 1"));
+  EXPECT_THAT(fixture::complaint([&] { read_truth(path_); }), HasSubstr("this build of tumble reads only version 1"));
 }
 
 TEST_F(WrongFile, MissingDataset) {
@@ -152,12 +155,12 @@ TEST_F(WrongFile, UnsignedTimes) {
 
 TEST_F(WrongFile, ADatasetThatWasNeverWrittenIsNotZeros) {
   replace("sensors/imus/0/gyro_I_rad_s", H5T_NATIVE_DOUBLE, {70, 3});
-  EXPECT_THAT(sensors_complaint(), HasSubstr("states 70 rows, but the file is shorter"));
+  EXPECT_THAT(sensors_complaint(), HasSubstr("states 70 rows, which is more than the file contains"));
 }
 
 TEST_F(WrongFile, AHugeClaimAsksForNoMemory) {
   replace("sensors/lidars/0/range_m", H5T_NATIVE_FLOAT, {hsize_t{1} << 60});
-  EXPECT_THAT(sensors_complaint(), HasSubstr("but the file is shorter"));
+  EXPECT_THAT(sensors_complaint(), HasSubstr("which is more than the file contains"));
 }
 
 TEST_F(WrongFile, DifferingLengths) {
@@ -176,7 +179,7 @@ TEST_F(WrongFile, FallingSweepFirst) {
 TEST_F(WrongFile, ContactsOfDifferentLength) {
   const std::array<double, 2> force = {1.0, 2.0};
   replace("truth/contacts/normal_force_n", H5T_NATIVE_DOUBLE, {2}, force.data());
-  EXPECT_THAT(truth_complaint(), HasSubstr("truth/contacts: the datasets must have the same length"));
+  EXPECT_THAT(truth_complaint(), HasSubstr("truth/contacts: all datasets of the contacts must have the same length"));
 }
 
 TEST_F(WrongFile, ChangedReadingsDoNotFitTheDigest) {
@@ -198,7 +201,7 @@ TEST_F(WrongFile, AttributesOfTheWrongKind) {
 
 TEST_F(WrongFile, NegativeSeed) {
   put_attribute("/", "seed", H5T_NATIVE_INT64, std::int64_t{-1});
-  EXPECT_THAT(info_complaint(), HasSubstr("/seed: the attribute must be at least 0"));
+  EXPECT_THAT(info_complaint(), HasSubstr("/seed: the HDF5 attribute is negative, but must be at least 0"));
 }
 
 TEST_F(WrongFile, TextOfVariableLengthIsRead) {
