@@ -19,8 +19,8 @@ struct AuxiliaryRecording {
 
 /// Interpolates the readings of additional IMUs at the time stamps of the primary IMU. Each IMU is appended with its
 /// estimated sensing directions to `model.auxiliary_imus`, and its readings to `out`. Recordings beyond the first
-/// kAuxiliaryImusMax are ignored. Returns `ok`, or the first error of align() for a single IMU. Cost: O(N), plus the
-/// search of ClippingFinder.
+/// kAuxiliaryImusMax are ignored. Returns `ok`, or the first error of align() for a single IMU. Cost: O(N), plus
+/// ClippingFinder::find().
 Status align(std::span<const AuxiliaryRecording> recordings, std::span<const ImuSample> primary, double gap_max_s,
              RateModelParams& model, std::vector<std::vector<AuxiliaryReading>>& out);
 
