@@ -19,12 +19,12 @@ struct Clipping {
   bool operator==(const Clipping&) const = default;
 };
 
-/// Parameters of a plateau: a run of consecutive readings that are closer together than sensor noise allows.
 struct RailPlateauParams {
   int samples = 4;  ///< minimum number of readings of a plateau
   /// largest spread of the readings of a plateau, relative to the saturation limit
   double plateau_spread_ratio = 2e-5;
-  /// A gyro plateau below this rate needs twice as many readings, and a jump at its start or end.
+  /// A gyro plateau (run of equal readings) below this rate needs twice as many readings, and a jump at its start or
+  /// end.
   double low_gyro_plateau_rad_s = 1.0;
   double gyro_plateau_min_rad_s = 0.02;  ///< minimum rate of a gyro plateau
   double accel_plateau_min_m_s2 = 15.0;  ///< minimum force of an accelerometer plateau; above gravity
@@ -97,8 +97,9 @@ struct RailDetectorParams {
 /// of a device may differ from the stated range in its data sheet.
 ///
 /// A plateau is a run of readings of one sign that are closer together than sensor noise allows. RailDetector uses the
-/// stated range until a plateau is found or a reading exceeds the stated range. The clip flags of the device also
-/// count. RailDetector assumes constant saturation limits that are equal for both signs of an axis.
+/// stated range until a plateau is found or a reading exceeds the stated range. Readings that the device flags as
+/// clipped also count as clipped. RailDetector assumes constant saturation limits that are equal for both signs of an
+/// axis.
 class RailDetector {
  public:
   using Params = RailDetectorParams;
@@ -145,7 +146,6 @@ class RailDetector {
 
  private:
   std::optional<double> stated(int c) const;
-  /// Returns true if the current run of readings is a plateau that started or ended with the given jump.
   bool plateau(int c, const Channel& channel, double jump) const;
   Params params_;
 };

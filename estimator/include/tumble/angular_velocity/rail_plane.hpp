@@ -12,9 +12,9 @@
 namespace tumble {
 
 /// RailPlane describes the saturation of one sensing element of a gyro as two parallel planes in the space of output
-/// readings: row . reading = offset -+ limit. The planes are tilted if the device clips first and then compensates
-/// scale and misalignment. The device also subtracts the element's bias, which shifts both planes by the offset. For an
-/// accelerometer, the unit is m/s^2 instead of rad/s.
+/// readings: row . reading = offset -+ limit. The two saturation planes are tilted if the device clips first and then
+/// compensates scale and misalignment. The device also subtracts the bias of the sensing element, which shifts both
+/// planes. For an accelerometer, the unit is m/s^2 instead of rad/s.
 struct RailPlane {
   /// sensing direction of the element: 1 along its own axis j, and a cross-axis sensitivity along each other axis
   Eigen::Vector3d row = Eigen::Vector3d::Zero();
@@ -52,7 +52,6 @@ struct RailPlanes {
 };
 
 /// SensingDirections contains the directions along which the sensing elements of a sensor measure, one row per element.
-/// An unsaturated sensing element measures the component of the rate (or force) along its row.
 struct SensingDirections {
   Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();
   Eigen::Vector3d slope_sigma = Eigen::Vector3d::Zero();  ///< standard deviation of both cross-axis sensitivities

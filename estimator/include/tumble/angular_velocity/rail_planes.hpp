@@ -16,9 +16,8 @@ namespace tumble {
 /// Finds the tilted saturation planes of a gyro or accelerometer in a whole recording, without clip flags and without
 /// the stated range of the sensor.
 ///
-/// A saturation plane is nearly axis-aligned, limits the readings, and has many readings just below the plane.
-/// RailPlaneFinder compares saturation with a rounded maximum of the motion and with a constant rate, by their
-/// likelihoods. The equations are in docs/maths/rails.md.
+/// A saturation plane is nearly axis-aligned, limits the readings, and has many readings just below the plane. The
+/// equations are in docs/maths/rails.md.
 ///
 /// RailPlaneFinder assumes constant saturation limits, with one limit per sensing element and sign. RailPlaneFinder
 /// assumes that the three sensing elements of a sensor are of one type, with similar saturation limits. RailPlaneFinder
@@ -50,7 +49,7 @@ class RailPlaneFinder {
     double log_odds_min = 1.0;      ///< minimum log odds for accepting a plane
     double log_odds_keep = -3.0;    ///< minimum log odds for keeping an accepted plane
     /// Saturation planes found in an earlier run of the same device. RailPlaneFinder uses known planes from the start
-    /// of a run until readings contradict the planes. A new plane near a known plane has a higher prior probability.
+    /// of a run until readings contradict the planes.
     RailPlanes known = {};
 
     template <class Self, class Visitor>

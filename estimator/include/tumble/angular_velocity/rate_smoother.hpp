@@ -25,12 +25,10 @@ struct RateSmootherParams {
   RateModelParams model = {};
   RailDetector::Params rails = {};
   double recovered_sigma_rad_s = 0.5;  ///< clipped rates with a smaller standard deviation count as recovered
-  /// Largest accepted Mahalanobis distance of the estimated rig constants from their prior
-  /// (RateReport::calibration_mahalanobis). If the distance is larger, RateSmoother repeats the estimation with the rig
-  /// constants fixed at the prior.
+  /// Maximum Mahalanobis distance of the estimated rig constants from their prior; beyond, RateSmoother fixes the rig
+  /// constants at the prior.
   double calibration_mahalanobis_max = 1.5;
-  /// Sensor errors that an earlier run estimated (RateReport::sensor_errors). The sensor errors are used only if
-  /// `error_rounds_max` is above 1.
+  /// Sensor errors of an earlier run (RateReport::sensor_errors), used only if `error_rounds_max` is above 1.
   std::optional<KnownSensorErrors> calibrated_errors = std::nullopt;
   double gap_max_s = 1.0;  ///< a longer time between two samples is a gap; see estimate()
 
@@ -61,8 +59,8 @@ struct RateReport {
   int restarts = 0;              ///< number of restarts with other initial values after a solution without flight
   double last_step_rad_s = 0.0;  ///< largest change of a rate in the last iteration
   RigCalibration calibration;    ///< estimated calibration; can initialise the next run
-  /// Mahalanobis distance of the estimated rig constants from their prior, in standard deviations. A distance far above
-  /// 1 indicates a wrong prior, or a run without flight that RateSmoother classified as flight.
+  /// Mahalanobis distance of the estimated rig constants from their prior, in standard deviations. A Mahalanobis
+  /// distance far above 1 indicates a wrong prior, or a run without flight that RateSmoother classified as flight.
   double calibration_mahalanobis = 0.0;
   bool calibration_at_prior = false;          ///< the rig constants were fixed at their prior
   std::array<std::optional<double>, 6> rail;  ///< saturation limits: gyro [rad/s], accelerometer [m/s^2]; empty: none
@@ -113,7 +111,8 @@ class RateSmoother {
   explicit RateSmoother(const Params& params);
 
   /// Returns `ok`, `empty`, `too_few` (less than two samples), `non_finite`, `time_order` or `diverged`. On error, the
-  /// outputs are unchanged. A gap in the samples separates the rates, but not the calibration.
+  /// outputs are unchanged. The rates before and after a gap in the samples are independent, with one common
+  /// calibration.
   Status estimate(std::span<const ImuSample> samples, std::vector<RateState>& out, RateReport& report) const {
     return estimate(samples, {}, out, report);
   }

@@ -25,13 +25,11 @@ namespace tumble {
 
 /// Estimates angular velocity through gyro saturation, sample by sample, with a fixed lag. RateStream uses the
 /// measurement models of RateSmoother over a sliding window of fixed length, with one Gauss-Newton step per sample or
-/// per 5 ms. Samples that leave the window become a Gaussian prior on the next sample and on the rig constants. The
-/// equations are in docs/maths/rate_stream.md.
+/// per 5 ms. The equations are in docs/maths/rate_stream.md.
 ///
-/// RateStream detects saturation limits from the readings. A clipped sample counts as a measurement only if the sample
-/// left the window before its saturation limit was detected. With the calibration of an earlier run, the rate error is
-/// 1.1 times the error of RateSmoother. Without an earlier calibration, the rate error is 1.6 times the error of
-/// RateSmoother. The limitations of RateSmoother also apply to RateStream.
+/// RateStream detects saturation limits from the readings, and classifies the samples in the window again after each
+/// detection. The rate error is 1.1 times the error of RateSmoother with the calibration of an earlier run, and 1.6
+/// times without. The limitations of RateSmoother also apply to RateStream.
 ///
 /// Cost: O(window) per step. RateStream allocates memory only in start().
 class RateStream {
@@ -50,8 +48,8 @@ class RateStream {
   Status push(const ImuSample& sample, State& state, std::optional<RateState>& out) const {
     return push(sample, {}, state, out);
   }
-  /// The readings of additional IMUs refer to the time of the sample. `auxiliary_imus` must be empty or contain one
-  /// reading per entry of RateModelParams::auxiliary_imus; otherwise push() returns `too_few`.
+  /// `auxiliary_imus` must be empty or contain one reading, at the time of the sample, per entry of
+  /// RateModelParams::auxiliary_imus; otherwise push() returns `too_few`.
   Status push(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus, State& state,
               std::optional<RateState>& out) const;
 

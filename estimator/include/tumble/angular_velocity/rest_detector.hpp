@@ -15,9 +15,9 @@ namespace tumble {
 /// and force are constant up to noise.
 ///
 /// RestDetector first averages the readings over `reading_s`, so that the parameters do not depend on the sample rate.
-/// White noise of density n [unit/sqrt(Hz)] has the standard deviation n / sqrt(reading_s) after averaging. Set each
-/// spread parameter to at least five standard deviations of the averaged noise. A steady rotation about the vertical
-/// slower than `rate_max_rad_s` also counts as rest.
+/// White noise of density n [unit/sqrt(Hz)] has the standard deviation n / sqrt(reading_s) after averaging. Set
+/// `rate_spread_rad_s` and `force_spread_m_s2` to at least five standard deviations of the averaged noise. A steady
+/// rotation about the vertical slower than `rate_max_rad_s` also counts as rest.
 class RestDetector {
  public:
   struct Params {

@@ -32,8 +32,8 @@ class Saave {
     /// Lever arm from the centre of mass to the IMU in IMU axes [m]. The lever arm has no default and must be accurate
     /// to about a millimetre.
     Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
-    /// Readings strictly above this rate count as clipped. The saturation point has no default. Choose a saturation
-    /// point slightly below the largest reading of the device.
+    /// Readings strictly above this rate count as clipped; no default. Choose a saturation point slightly below the
+    /// largest reading of the device.
     double saturation_point_rad_s = 0.0;
     /// variance of an unclipped reading [(rad/s)^2]; default: (0.03 deg/s/sqrt(Hz) * sqrt(100 Hz))^2
     double variance_measured_rad2_s2 = 2.741e-5;

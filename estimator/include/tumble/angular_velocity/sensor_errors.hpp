@@ -84,7 +84,8 @@ struct SensorErrorPriors {
 SensorErrors::Vector prior_sigmas(const SensorErrorPriors& sizes, double share);
 
 /// Log-likelihood of a run's readings as a quadratic function of the sensor errors, expanded at `linearisation_point`.
-/// `information` is the second derivative of the cost, and `gradient` is its negative first derivative.
+/// `information` is the second derivative of the cost (negative log-likelihood), and `gradient` is its negative first
+/// derivative.
 struct SensorErrorEvidence {
   SensorErrors linearisation_point;
   SensorErrors::Matrix information = SensorErrors::Matrix::Zero();

@@ -31,7 +31,8 @@ struct ClippedElements {
   Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();
   std::span<const ClipSigns> signs;  ///< one entry per sample; empty: no clipping
   /// Covariance of each rate that was recovered from saturation [rad^2/s^2], in sensor axes; zero for a measured rate.
-  /// An empty span marks all rates as measured. A sample with a recovered rate must not have clipped sensing elements.
+  /// An empty `recovered_covariance_rad2_s2` marks all rates as measured. A sample with a recovered rate must not have
+  /// clipped sensing elements.
   std::span<const Eigen::Matrix3d> recovered_covariance_rad2_s2 = {};
 };
 
@@ -58,13 +59,13 @@ class HandHeldSmoother {
     int iterations = 0;
     bool converged = false;
     double cost = 0.0;
-    /// Largest mean acceleration of the hand over a quarter of a second, divided by `hand_sigma_m_s2`. A ratio above 2
-    /// indicates that the body was thrown or handled roughly.
+    /// Largest mean acceleration of the hand over a quarter of a second, divided by `hand_sigma_m_s2`; above 2, the
+    /// body was probably thrown or handled roughly.
     double hand_acceleration_ratio = 0.0;
     /// During long saturation, the number of full revolutions can be ambiguous. `revolutions_tested` counts the
     /// saturated intervals in which HandHeldSmoother compared several numbers of revolutions. `revolutions_corrected`
-    /// counts the intervals in which another number of revolutions fitted better. `revolutions_ambiguous` counts the
-    /// intervals in which another number of revolutions has odds of at least 1 to 1000.
+    /// counts the saturated intervals in which another number of revolutions fitted better. `revolutions_ambiguous`
+    /// counts the saturated intervals in which another number of revolutions has odds of at least 1 to 1000.
     int revolutions_tested = 0, revolutions_corrected = 0, revolutions_ambiguous = 0;
     /// Number of revolution tests in which the solver failed; the previous solution is kept.
     int revolutions_failed = 0;

@@ -13,15 +13,14 @@
 namespace tumble {
 
 /// Estimates attitude and angular velocity of hand-held motion sample by sample, with a fixed lag. HandHeldStream
-/// applies the model of HandHeldSmoother to a sliding window of time steps (nodes). Nodes that leave the window become
-/// a Gaussian prior on the next node, the biases and the lever arm.
+/// applies the model of HandHeldSmoother to a sliding window of time steps (nodes).
 ///
 /// HandHeldStream allocates memory only in start(). A run that continues from a copy of the State gives bit-identical
 /// results.
 ///
 /// Unlike HandHeldSmoother, HandHeldStream does not test other numbers of full revolutions during saturation. The rate
-/// covariance includes the error of one additional revolution: carried.md (C42), (C43). A newly detected saturation
-/// limit changes only the readings in the window.
+/// covariance includes the error of one additional revolution: carried.md (C42), (C43). After the detection of a
+/// saturation limit, HandHeldStream classifies only the readings in the window again.
 ///
 /// Cost: O(window) per node while a sample in the window is clipped, and a fifth of this cost otherwise.
 class HandHeldStream {
@@ -66,7 +65,7 @@ class HandHeldStream {
     hand_held::Constants constants;
     hand_held::System::BorderMatrix constants_covariance = hand_held::System::BorderMatrix::Zero();
     // Gaussian prior on the oldest node and on the constants (biases, lever arm), from all data that have left the
-    // window. The Gaussian prior is linearised at `prior_node` and `prior_constants`.
+    // window.
     hand_held::System::Block prior;
     hand_held::System::Corner prior_corner;
     hand_held::Node prior_node;
@@ -90,7 +89,7 @@ class HandHeldStream {
 
   /// The returned state has all memory that push() needs.
   State start() const;
-  /// Resets `state` without allocating memory, except the counters.
+  /// Resets `state`, except its counters, without allocating memory.
   void restart(State& state) const;
 
   /// Computes the rate `out` of the sample that is `lag_s` old; `out` is empty while the window fills or if `wanted` is

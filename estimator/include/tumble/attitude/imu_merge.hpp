@@ -89,8 +89,8 @@ class ImuMerge {
   explicit ImuMerge(const Params& params);
 
   /// Returns the ratio of measured to expected force differences between IMUs. The expected force differences follow
-  /// from the rotation and the positions of the IMUs. The ratio is 1 for correct IMUs and -1 for accelerometers with
-  /// inverted sign; empty before enough rotation.
+  /// from the rotation and the positions of the IMUs. The force ratio is 1 for correct IMUs, -1 for accelerometers with
+  /// inverted sign, and empty before enough rotation.
   static std::optional<double> lever_arm_agreement(const State& state);
 
   /// Returns `out_of_range` with the duration [s] if all IMUs are frozen. While all IMUs are frozen, step() merges

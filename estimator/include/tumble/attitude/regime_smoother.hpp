@@ -14,8 +14,8 @@ namespace tumble {
 
 /// Estimates the angular velocity of a body in flight, in contact or hand-held, over a whole recording. RateSmoother
 /// estimates the rates for flight and contact. Where the body was probably hand-held while the gyro clipped,
-/// HandHeldSmoother estimates the rates for hand-held motion. RegimeSmoother combines the two estimates by the
-/// probability of hand-held motion (RegimeEvidence), which is constant during each saturated interval.
+/// HandHeldSmoother estimates the rates for hand-held motion. RegimeSmoother combines the rates of both smoothers by
+/// the probability of hand-held motion (RegimeEvidence), which is constant during each saturated interval.
 class RegimeSmoother {
  public:
   struct Params {

@@ -15,7 +15,8 @@ namespace tumble {
 /// Estimates the angular velocity of a body in flight, in contact or hand-held, sample by sample, with a fixed lag.
 /// RateStream estimates the rates for flight and contact, and detects the saturation limits. Where the body is probably
 /// hand-held while the gyro clips, HandHeldStream estimates the rates for hand-held motion. RegimeStream combines the
-/// two estimates by the probability of hand-held motion. An unclipped sample always has the rate of RateStream.
+/// rates of RateStream and HandHeldStream by the probability of hand-held motion. An unclipped sample always has the
+/// rate of RateStream.
 ///
 /// HandHeldStream runs only while the probability of hand-held motion is at least `hand_held_probability_min`.
 class RegimeStream {
@@ -55,7 +56,7 @@ class RegimeStream {
     std::size_t rig_resets = 0;        ///< last value of RateStream's counter of calibration resets
     double resets = 0.0;  ///< number of calibration resets of RateStream, decaying with the time constant `rate.lag_s`
     bool hand_held_running = false;  ///< true if HandHeldStream is running
-    /// probabilities of the last `segment_gap_max_s` that may become the minimum; the oldest entry is the minimum
+    /// probabilities of hand-held motion in the last `segment_gap_max_s`; the oldest entry is the smallest
     std::vector<ReportedProbability> near;
     TimeNs reported_ns = 0;            ///< time of the last reported sample
     std::optional<TimeNs> clipped_ns;  ///< last reported clipped sample

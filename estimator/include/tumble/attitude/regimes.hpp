@@ -22,8 +22,8 @@ struct RegimeProbabilities {
 ///
 /// The residual force is the specific force minus the effect of rotation at the lever arm. The residual force is zero
 /// in free flight. In hand-held motion, the residual force is gravity plus a bounded acceleration in any direction. In
-/// contact, the residual force can have any magnitude. A Markov chain connects the samples. Readings within `memory_s`
-/// count as one independent observation.
+/// contact, the residual force can have any magnitude. A Markov chain models the transitions between flight, contact
+/// and hand-held motion. Readings within `memory_s` count as one independent observation.
 ///
 /// RegimeEvidence does not use the attitude. RegimeEvidence does not model ropes, buoyancy, and aerodynamic forces
 /// above `flight_force_sigma_m_s2`.

@@ -60,8 +60,7 @@ struct TumbleAttitudeParams {
 /// Estimates attitude from gyro and accelerometer, assuming that the velocity of the body is bounded, and zero at rest.
 ///
 /// TumbleAttitude integrates the gyro. Weak pseudo-measurements of zero velocity and zero displacement correct tilt and
-/// gyro bias every `node_s`. At rest, TumbleAttitude measures the gyro bias and keeps the attitude constant. A large
-/// velocity or displacement that the tilt variance cannot explain counts as real motion for `motion_tau_s`. The
+/// gyro bias every `node_s`. At rest, TumbleAttitude measures the gyro bias and keeps the attitude constant. The
 /// equations are in docs/maths/attitude.md.
 ///
 /// For a rolling sphere (`radius_m` above 0), the rolling constraint gives the velocity of the centre. During slip,

@@ -44,8 +44,7 @@ struct HealthFinding {
   /// the fault is over; health() of a live run reports only current faults
   bool ended = false;
 
-  /// Returns how far the value is beyond its bound: 0 for a value at the bound, towards 1 for a value far beyond the
-  /// bound. The result is not a probability.
+  /// Returns a margin between 0 (value at its bound) and 1 (value far beyond its bound), which is not a probability.
   double confidence() const;
   Status status() const { return {ErrorCode::out_of_range, quantity, value, bound}; }
   /// Returns true if the fault makes the estimate unusable.

@@ -53,8 +53,8 @@ void apply_calibration(const SweepCalibration& calibration, double later_s, std:
 void compute_lever_arm_vectors(const SweepTrajectory& trajectory, std::span<const SweepPoint> points,
                                std::vector<Eigen::Vector3f>& levers_W_m);
 
-/// Transforms the points of a sweep to IMU axes at the time `target_s` after the start of the trajectory. The result
-/// equals the points that a stationary sensor would measure at `target_s`.
+/// Transforms the points of a sweep to IMU axes at the time `target_s` after the start of the trajectory. The deskewed
+/// points equal the points that a stationary sensor would measure at `target_s`.
 void deskew(const SweepTrajectory& trajectory, std::span<const SweepPoint> points, double target_s,
             std::vector<Eigen::Vector3f>& positions_I_m);
 

@@ -25,8 +25,8 @@ namespace tumble {
 /// distances, and then inserted into the map. The equations are in docs/maths/mapping.md.
 ///
 /// The z axis of the world frame points upwards, along the specific force at rest. The earliest sweep with
-/// `matches_min` points starts the map. The first IMU sample defines origin and yaw of the world if the map starts
-/// within half a second after this sample. If the map starts later, its first sweep defines origin and yaw.
+/// `matches_min` points starts the map. The first IMU sample defines origin and yaw of the world, or the first sweep if
+/// the map starts more than half a second later.
 ///
 /// Pass IMU samples in time order, and each sweep after the IMU samples that cover the sweep. LidarInertialOdometry
 /// starts no threads, uses no files and prints nothing.
@@ -35,8 +35,8 @@ namespace tumble {
 /// smoother refines the last `window_sweeps` sweeps. To get a consistent map, process the recording a second time,
 /// starting from the result of calibration().
 ///
-/// After a tracking failure (several consecutive sweeps rejected), inertial prediction continues. Each sweep is then
-/// also registered from several starting poses around the prediction, until tracking is restored. LidarInertialOdometry
+/// After a tracking failure (several consecutive sweeps rejected), inertial prediction continues. Until tracking is
+/// restored, each sweep is also registered from several starting poses around the predicted pose. LidarInertialOdometry
 /// does not model loop closure, moving objects, or IMU biases other than the gyro bias at the start.
 class LidarInertialOdometry {
  public:
@@ -51,8 +51,8 @@ class LidarInertialOdometry {
   LidarInertialOdometry(const LidarInertialOdometry&);
   LidarInertialOdometry& operator=(const LidarInertialOdometry&);
 
-  /// Sets position and heading of the IMU at the start of the map; the default is the origin. The tilt comes from the
-  /// specific force at rest. Covariances are relative to the start pose. Call set_start_pose() before the first sweep.
+  /// Sets position and heading (not the tilt) of the IMU at the start of the map; the default is the origin. Reported
+  /// covariances are relative to the start pose. Call set_start_pose() before the first sweep.
   void set_start_pose(const Eigen::Isometry3d& T_WI);
   const std::optional<Eigen::Isometry3d>& start() const;
 
@@ -62,8 +62,8 @@ class LidarInertialOdometry {
     double sigma_rad = 0.0;                                        ///< standard deviation of the corrected tilt
   };
   /// Returns the tilt at the start, computed from the direction of gravity in the map, for a second run over the same
-  /// data. The result is empty after a start at rest, or if the motion does not determine gravity more accurately than
-  /// the start.
+  /// data. start_tilt() is empty after a start at rest, or if the motion determines gravity less accurately than the
+  /// start.
   std::optional<StartTilt> start_tilt() const;
   /// Call set_start_tilt() before the first sweep.
   void set_start_tilt(const StartTilt& tilt);
@@ -84,8 +84,7 @@ class LidarInertialOdometry {
   const PriorMap* prior_map() const;
 
   /// `rate` is the estimated angular velocity of the sample. Returns `non_finite`, `time_order`, or `out_of_range` if
-  /// `rate` has another time stamp; on error, the state is unchanged. A gap before the sample increases the uncertainty
-  /// of the predicted motion.
+  /// `rate` has another time stamp; on error, the state is unchanged.
   Status add_imu(const ImuSample& sample, const RateState& rate);
 
   /// Sets the velocity that an odometer measured at the start of the next sweep, in IMU axes, with one standard
@@ -94,11 +93,11 @@ class LidarInertialOdometry {
   /// On error, the state is unchanged.
   Status add_velocity(const Eigen::Vector3d& v_WI_I_m_s, double sigma_m_s);
   /// Sets an odometer's reading between the end of the last sweep and the end of the next sweep, with a margin of 20
-  /// ms. The reading is fused with the inertial prediction, weighted by their covariances. A new odometer reading
-  /// replaces an earlier reading and the velocity of add_velocity().
+  /// ms. The odometer reading is fused with the inertial prediction, weighted by their covariances. A new odometer
+  /// reading replaces an earlier reading and the velocity of add_velocity().
   Status add_reading(const OdometerReading& reading);
-  /// Excludes the accelerometer from the prediction of the next sweep, as in a gap; the gyro is still used.
-  /// exclude_accelerometer() replaces earlier odometer readings for the next sweep.
+  /// Excludes the accelerometer, but not the gyro, from the prediction of the next sweep, and drops earlier odometer
+  /// readings for this sweep.
   void exclude_accelerometer();
 
   /// Registers a sweep of points fired in [start_ns, end_ns]. Consecutive sweeps must not overlap. A point with NaN
@@ -122,8 +121,7 @@ class LidarInertialOdometry {
   SweepCalibration calibration() const;
   SweepCalibration::Covariance calibration_covariance() const;
   /// Returns the calibration's prior covariance for the next registration, with which a second run over the recording
-  /// should start. The prior covariance is larger than calibration_covariance(), because correlated points have reduced
-  /// weights.
+  /// should start.
   SweepCalibration::Covariance calibration_weighting_covariance() const;
 
   /// Returns `out_of_range` while the standard deviation of gravity's direction exceeds 0.02 rad, for example after a

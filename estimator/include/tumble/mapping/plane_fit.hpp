@@ -26,8 +26,7 @@ struct PlaneBounds {
   /// neighbours are collinear if l1 < collinear_ratio_max * l2, for example on one ring of a lidar at rest
   double collinear_ratio_max = 0.03;
   double rough_share = 0.1;  ///< neighbours are not a plane if l0 > rough_share * l1
-  /// Minimum number of neighbours that are not on the most frequent scan line. With fewer, the fit could be the plane
-  /// of a lidar ring.
+  /// minimum number of neighbours off the most frequent scan line; excludes planes of a single lidar ring
   int off_line_neighbours_min = 2;
 
   template <class Self, class Visitor>

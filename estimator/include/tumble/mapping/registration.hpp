@@ -104,7 +104,7 @@ class Registration {
   Weight compute_weight(const SweepPoint& point, const Match& match, double distance_m, double kernel_m) const;
 
   Params params_;
-  // Results do not depend on the contents of the buffers.
+  // buffers, which do not influence results
   std::vector<Eigen::Vector3f> lever_arm_vectors_, positions_;
   std::vector<SweepPoint> moved_;
   std::vector<Match> matches_;

@@ -20,7 +20,7 @@ struct RegistrationExpertParams {
   double cluster_m = 1.0;        ///< edge of a cube whose points have correlated errors
   double match_ratio_min = 0.1;  ///< minimum ratio of matches to points
   /// Minimum number of matches for accepting a registration that agrees with the prior but violates `matches_min` or
-  /// `match_ratio_min`. The large default disables this exception.
+  /// `match_ratio_min`; disabled by default.
   std::size_t agreeing_matches_needed = 1'000'000'000;
   /// minimum fraction of matches within three standard deviations
   double inlier_ratio_min = 0.6;

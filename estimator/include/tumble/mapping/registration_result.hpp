@@ -32,8 +32,8 @@ struct RegistrationResult {
   double correction_rad = 0.0;
   int iterations = 0;
   /// Ascending eigenvalues and eigenvectors (columns) of the pose's information from the lidar, without the prior. The
-  /// attitude is scaled to metres by the root-mean-square lever arm. The information is scaled so that its translation
-  /// part has trace 1.
+  /// attitude is scaled to metres by the root-mean-square lever arm. The information matrix of the pose is scaled so
+  /// that its translation part has trace 1.
   Eigen::Matrix<double, 6, 1> eigenvalues = Eigen::Matrix<double, 6, 1>::Zero();
   Eigen::Matrix<double, 6, 6> directions = Eigen::Matrix<double, 6, 6>::Identity();
   /// Standard deviation of the pose in its least constrained direction, without the inertial prediction.

@@ -27,14 +27,14 @@ struct SweepReport {
   Eigen::Matrix3d velocity_covariance_I_m2_s2 = Eigen::Matrix3d::Zero();
   std::vector<PoseState> trajectory;  ///< IMU poses within the sweep, corrected by the registration
   /// Final poses of the oldest sweep that the fixed-lag smoother refines; empty until `window_sweeps` sweeps have
-  /// arrived. With the default of two sweeps, the oldest sweep is the previous sweep.
+  /// arrived. With the default `window_sweeps` of 2, the oldest sweep is the previous sweep.
   std::vector<PoseState> smoothed;
   double inlier_ratio = 0.0;      ///< fraction of the registered points that are inliers
   double eigenvalue_ratio = 0.0;  ///< smallest divided by largest eigenvalue of the scaled normal matrix
   /// standard deviation of the pose in the least constrained direction, from this sweep's points alone; 0: not aligned
   double least_constrained_sigma_m = 0.0;
   /// Normalised innovation: correction of pose and velocity in standard deviations of the inertial prediction, divided
-  /// by sqrt(9). The mean is at most 1 if the covariances are correct. The value 0 means that the sweep was not
+  /// by sqrt(9). The mean innovation is at most 1 if the covariances are correct; 0 means that the sweep was not
   /// aligned.
   double innovation = 0.0;
   /// Standard deviation of the position relative to the map around the robot. The covariance of `pose` also includes

@@ -51,8 +51,7 @@ struct MotionState {
 /// within a sample and the earth's rotation.
 ///
 /// The saturation deficit (true rate minus clipped reading) corrects the clipped gyro axes. The saturation deficit is a
-/// linear interpolation between kKnots support points, equally spaced over the segment. The correction of a sample is
-/// proportional to the standard deviation of its rate, relative to the largest one in the segment. The equations are in
+/// linear interpolation between kKnots support points, equally spaced over the segment. The equations are in
 /// docs/maths/mapping.md.
 class SweepTrajectory {
  public:
@@ -120,8 +119,7 @@ class SweepTrajectory {
   };
   Transition transition(double t_s) const;
 
-  /// Relative correction of each axis by the saturation deficit in the first or last interval; 0 if the axis is not
-  /// clipped.
+  /// factor of the saturation deficit on each axis in the first or last interval; 0: axis not clipped
   Eigen::Vector3d deficit_factor_at_start() const { return intervals_.front().deficit_factor.cwiseAbs(); }
   Eigen::Vector3d deficit_factor_at_end() const { return intervals_.back().deficit_factor.cwiseAbs(); }
 

@@ -22,7 +22,7 @@ namespace tumble {
 /// Kalman filter. The equations are in docs/maths/rolling.md.
 ///
 /// While the sphere is at rest, the reported position is constant, unless another hypothesis becomes the most probable
-/// one. Other corrections of the position are applied when motion resumes.
+/// one. Corrections of the position at rest are applied when motion resumes.
 ///
 /// In a gap of up to gap_max_s between samples, the rate is interpolated, the force is unknown, and the covariance
 /// grows. While the gyro is saturated, the rolling constraint is not used, and the covariance of the position grows.
@@ -93,14 +93,14 @@ class RollingFilter {
     return step(sample, state, [](const State&) {});
   }
 
-  /// Calls `closed(state)` after each completed node; a sample that ends a gap completes several nodes.
+  /// Calls `closed(state)` after each completed node (time step of `node_s`).
   template <typename Closed>
   Status step(const ImuSample& sample, State& state, Closed closed) const {
     return step_with(sample, state,
                      Listener{&closed, [](void* to, const State& at) { (*static_cast<Closed*>(to))(at); }});
   }
 
-  /// The covariance contains only the position block; all other entries are zero.
+  /// The covariance of the returned estimate contains only the position block.
   static RollingEstimate estimate(const State& state);
 
   /// Returns the constants of sensors and sphere at the last node.

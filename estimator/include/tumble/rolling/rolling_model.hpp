@@ -62,8 +62,7 @@ struct RollingCalibration {
   Eigen::Matrix<double, kSize, kSize> covariance = Eigen::Matrix<double, kSize, kSize>::Zero();
 };
 
-/// Integrals since the last node, for attitude R, specific force f and rate w. The integrands are R, R f, R (x) f^T, R
-/// (x) w^T, R (w x f), w, f and |w|^2.
+/// Integrals of attitude, specific force, rate and their products since the last measurement update (node).
 struct RollingIntegrals {
   Eigen::Matrix3d rotation_integral_s = Eigen::Matrix3d::Zero();
   Eigen::Matrix3d rotation_integral_used_force_s =

@@ -54,7 +54,7 @@ struct RollingParams {
   double gyro_range_rad_s = 1e3;
   double accel_range_m_s2 = 1e5;
   /// Calibration from an earlier run, which replaces the prior of the sensor errors, the lever arm and the radius. The
-  /// prior variances of the biases are added, because biases change at every switch-on.
+  /// prior variances of the biases are added to the calibrated variances, because biases change at every switch-on.
   std::shared_ptr<const RollingCalibration> calibration = {};
   double speed_max_m_s = 2.5;  ///< maximum speed of the sphere; grip at a higher speed is rejected
 

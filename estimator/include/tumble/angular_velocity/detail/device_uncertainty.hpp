@@ -8,8 +8,7 @@
 namespace tumble {
 
 /// Computes the uncertainty of a device's sensor errors from the readings of the run so far, at lower cost than
-/// fit_sensor_errors(): rate_stream.md (R102), (R103). The prior is a mixture of two cases: the device matches its data
-/// sheet, or is uncalibrated (SensorErrorPriors).
+/// fit_sensor_errors(): rate_stream.md (R102), (R103).
 class DeviceUncertainty {
  public:
   /// weight of one sample; below 1, because flight model errors are correlated between samples
@@ -26,7 +25,7 @@ class DeviceUncertainty {
     SensorErrors::Matrix system, corrected_covariance;
   };
 
-  /// `uncalibrated` is the prior probability of an uncalibrated device.
+  /// `uncalibrated` is the prior probability that the device does not match its data sheet.
   DeviceUncertainty(const SensorErrorPriors& sizes, double uncalibrated);
 
   /// Computes `posterior` from `evidence`, the information of the readings about the sensor errors. If the information

@@ -15,9 +15,6 @@ namespace tumble {
 /// Detects wrong signs of the accelerometer (three axes inverted, or one axis) from free flight. Checks at rest cannot
 /// detect inverted axes, because mirrored gravity has the correct magnitude and rotation.
 ///
-/// In free flight, the rotation alone causes the force at the lever arm. FlightSignCheck compares the measured force
-/// with the force of free flight, for the true accelerometer and for each alternative with inverted axes.
-///
 /// For a body that may be hand-held, FlightSignCheck reports only three inverted axes, because a swinging hand can
 /// imitate a flight. FlightSignCheck needs a spinning flight with at most one clipped gyro axis, and an IMU off the
 /// centre of mass. A lever arm with the wrong sign looks like an inverted accelerometer.
@@ -25,7 +22,7 @@ class FlightSignCheck {
  public:
   static constexpr double kMemory_s = 60.0;
 
-  /// true accelerometer; accelerometer with all axes, or axis x, y or z, inverted
+  /// inverted axes: none, all, x, y, z
   static constexpr std::size_t kAlternatives = 5;
 
   enum class Body { may_be_hand_held, thrown };

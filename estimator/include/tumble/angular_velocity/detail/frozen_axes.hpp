@@ -16,13 +16,11 @@
 namespace tumble {
 
 /// Detects single axes of an IMU that have stopped updating, sample by sample. An axis is frozen if one reading repeats
-/// bit for bit for 0.5 s, and for ten times the longest earlier repetition. Meanwhile, another axis of the same sensor
-/// must change from sample to sample. FrozenAxes cannot detect a frozen axis whose readings never changed, or often
-/// repeat at rest due to coarse quantisation.
+/// bit for bit for 0.5 s, and for ten times the longest earlier repetition, while another axis of the sensor changes.
+/// FrozenAxes cannot detect a frozen axis whose readings never changed, or often repeat at rest due to coarse
+/// quantisation.
 ///
-/// A saturated axis may repeat one reading and does not count as frozen. A reading counts as saturated if the device
-/// flags the reading, or if the reading exceeds 0.9 of the stated range. The largest reading of an axis so far counts
-/// as saturated above 0.5 of the stated range.
+/// A saturated axis may repeat one reading and does not count as frozen.
 class FrozenAxes {
  public:
   struct Params {

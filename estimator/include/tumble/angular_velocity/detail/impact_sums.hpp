@@ -18,10 +18,10 @@ struct ImpactSums {
                        kDelayCount = 2 * kDelayMax + 1;
   using DelayGrid = Eigen::Matrix<double, kDelayCount, 1>;
 
-  /// number of intervals between unsaturated gyro readings; sum and sum of squares of their angular acceleration
+  /// number of intervals between unsaturated gyro readings, and sums of their angular acceleration and its square
   double intervals = 0.0, acceleration_sum = 0.0, acceleration_squared = 0.0;
-  /// for each tested delay: sums of the force, of its square, and of force times angular acceleration; number of
-  /// intervals with an impact, and almost without force
+  /// sums for each tested delay: force, squared force, force times angular acceleration, intervals with and without
+  /// impact
   DelayGrid force = DelayGrid::Zero(), force_squared = DelayGrid::Zero(), product = DelayGrid::Zero(),
             impacts = DelayGrid::Zero(), flying = DelayGrid::Zero();
 

@@ -28,8 +28,7 @@ std::optional<InterpolatedRate> rate_between_readings(std::span<const RateStream
                                                       double period_s);
 
 /// Returns the interpolated rates of a recording, or an empty result if no reading repeats. `hidden` contains one bit
-/// mask of unused axes per sample. The result has no rate next to samples with unused axes, and at the ends of the
-/// recording. Cost: O(N).
+/// mask of unused axes per sample, next to which the rate is empty. Cost: O(N).
 std::vector<std::optional<InterpolatedRate>> rates_between_readings(std::span<const ImuSample> samples,
                                                                     std::span<const std::uint8_t> hidden);
 struct RepeatedReadings;
@@ -38,8 +37,8 @@ std::vector<std::optional<InterpolatedRate>> rates_between_readings(std::span<co
                                                                     std::span<const std::uint8_t> hidden,
                                                                     const std::optional<RepeatedReadings>& repeated);
 
-/// Returns the force at the time of each sample, for an accelerometer that updates more slowly than the log. The force
-/// is linear between readings. The result is empty if no reading repeats. Cost: O(N).
+/// Returns the force at the time of each sample, for an accelerometer that updates more slowly than the log. The result
+/// is empty if no reading repeats. Cost: O(N).
 std::vector<Eigen::Vector3d> forces_between_readings(std::span<const ImuSample> samples);
 
 }  // namespace tumble

@@ -14,11 +14,10 @@ struct CalibratedRig {
   RigCalibration calibration;
   std::array<std::optional<double>, 6> rail;  ///< limits of gyro [rad/s], accelerometer [m/s^2]; empty: not observed
   /// Intersections of the gyro's saturation planes with the axis of each sensing element, for the negative and the
-  /// positive sign; empty if not observed. RigConstants::elements contains the cross-axis sensitivities of the planes.
+  /// positive sign; empty if not observed.
   using Planes = std::array<std::array<std::optional<double>, 2>, 3>;
   Planes gyro_planes_rad_s = {};
-  /// Intersections of the accelerometer's saturation planes with the axis of each sensing element.
-  /// `accelerometer_elements` contains the cross-axis sensitivities of the accelerometer planes.
+  /// intersections of the accelerometer's saturation planes with the axes, and their cross-axis sensitivities
   Planes accelerometer_planes_m_s2 = {};
   Eigen::Matrix<double, 6, 1> accelerometer_elements = Eigen::Matrix<double, 6, 1>::Zero();
   /// empty if not estimated
@@ -27,8 +26,7 @@ struct CalibratedRig {
   bool only_rails = false;
 
   RailPlanes planes(Triad triad = Triad::gyro) const;
-  /// Stores the intersections of all certain saturation planes. Uncertain planes are discarded, because a few partly
-  /// clipped readings can suggest a wrong plane.
+  /// Stores only certain saturation planes, because a few partly clipped readings can suggest a wrong plane.
   void keep(const RailPlanes& planes, Triad triad = Triad::gyro);
 };
 
@@ -39,9 +37,8 @@ CalibratedRig learnt(const RateReport& report);
 /// if no saturation plane is certain.
 std::optional<CalibratedRig> calibration_with_rails(const CalibratedRig& before, const SaturationLevels& rails);
 
-/// Applies a calibration to the next run. The lowest saturation limit of a sensor becomes the sensor's range. The
-/// covariance of the constants is multiplied by `trust`, because a rig may be reassembled between runs. Throws
-/// std::invalid_argument if `trust` is below 1.
+/// Applies a calibration to the next run. The covariance of the constants is multiplied by `trust`, because a rig may
+/// be reassembled between runs. Throws std::invalid_argument if `trust` is below 1.
 void start_from(const CalibratedRig& rig, double trust, RateSmoother::Params& params);
 
 /// Sets the priors of the next run from a saved calibration. Lever arm and inertia get four times their saved

@@ -25,7 +25,7 @@ struct RateFactor {
 RateFactor gyro_factor(const RateKnot& knot, const RigConstants& rig, const Eigen::Vector3d& reading_rad_s);
 
 /// Residual of the gyro per sensing element while an element clips: the component of (rate + bias - reading) along the
-/// sensing direction [rad/s]. The residual of a clipped sensing element is its saturation deficit.
+/// sensing direction [rad/s].
 RateFactor element_factor(const RateKnot& knot, const RigConstants& rig, const Eigen::Vector3d& reading_rad_s);
 
 /// Residual of the accelerometer in free flight [m/s^2]: tangential plus centripetal force at the lever arm, plus bias,
@@ -42,8 +42,7 @@ RateFactor delayed_flight_factor(const RateKnot& knot, const RigConstants& rig, 
 RateFactor delayed_flight_jacobian_calibration(const RateKnot& knot, const RigConstants& rig,
                                                const Eigen::Vector3d& reading_m_s2, double delay_s);
 
-/// Returns the second time derivative of the specific force at the lever arm in free flight [m/s^4]. Averaging changes
-/// a reading by half of this derivative, times the variance of the time within the averaging window.
+/// Returns the second time derivative of the specific force at the lever arm in free flight [m/s^4].
 Eigen::Vector3d flight_curvature(const RateKnot& knot, const RigConstants& rig);
 
 /// Residual of Euler's equation without torque, with the inertia scaled to trace 3 [rad/s^2].

@@ -21,10 +21,10 @@ class RateModel {
   /// `period_s` is the nominal time between samples, which determines the noise per sample.
   RateModel(const RateModelParams& params, double period_s);
 
-  /// Computes the weight of a sample between contact (0) and free flight (1) at the current estimate. `rig_covariance`
-  /// prevents that calibration errors are mistaken for contact. `threshold_factor` >= 1 multiplies the contact
-  /// threshold while the rates are still inaccurate. `jump` is the smaller result of jump() between the sample and its
-  /// two neighbours.
+  /// Computes the weight of a sample between contact (0) and free flight (1) at the current estimate. `rig_covariance`,
+  /// the covariance of the calibration, prevents that calibration errors are mistaken for contact. `threshold_factor`
+  /// >= 1 multiplies the contact threshold while the rates are still inaccurate. `jump` is the smaller result of jump()
+  /// between the sample and its two neighbours.
   void compute_flight_weight(const RateObservation& observation, const RigConstants& rig,
                              const RigConstants::Matrix& rig_covariance, double threshold_factor, double jump,
                              RateEstimate& estimate) const;
@@ -34,7 +34,7 @@ class RateModel {
   double jump(const RateKnot& from, const RateKnot& to, double dt_s) const;
 
   /// Moves the unmeasured rates of a sample in contact to the minimum of the contact force, if this minimum is far
-  /// below the current force. Local solver steps do not find a flight of a single sample between two impacts.
+  /// below the current contact force.
   void search_flight(const RateObservation& observation, const RigConstants& rig, RateEstimate& estimate) const;
 
   void start_bounds(const RateObservation& observation, const RigConstants& rig, RateEstimate& estimate) const;
@@ -51,8 +51,7 @@ class RateModel {
                   arrow::Block& block, arrow::Corner& corner, const RigConstants::Matrix* rig_spread = nullptr) const;
 
   /// Adds the derivatives of a sample's gradient with respect to the sensor errors, and the sample's information about
-  /// these errors. Clipped elements and samples in contact contribute no information about SensorErrors. `rig_spread`
-  /// states whether add_sample() received a covariance.
+  /// these errors. Clipped elements and samples in contact contribute no information about SensorErrors.
   void add_errors(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
                   arrow::ErrorMatrix& block, arrow::BorderErrors& border, SensorErrorEvidence& evidence,
                   bool rig_spread = false) const;
@@ -85,17 +84,15 @@ class RateModel {
     RateFactor factor;
     Eigen::Vector3d information;  ///< information (inverse variance) of each axis or element
   };
-  /// Converts the flight residual to element directions if an accelerometer element clips. Returns additional variances
-  /// due to uncertain sensing directions and the saturation deficit of the force.
+  /// Converts the flight residual to element directions if an accelerometer element clips. Returns variances from
+  /// uncertain sensing directions and from the saturation deficit of the force.
   static Eigen::Vector3d read_accel_elements(const RateObservation& observation, RateFactor& flight);
   ForceFactor force_factor(const RateObservation& observation, const RateEstimate& estimate,
                            const RigConstants& rig) const;
-  /// The reading of the gyro may be older than the sample, by the age of the reading.
   RateKnot knot_at_reading(const RateObservation& observation, const RateEstimate& estimate) const;
   Eigen::Vector3d corrected_rate(const RateObservation& observation, const RateEstimate& estimate) const;
   RateFactor flight(const RateObservation& observation, const RateKnot& knot, const RigConstants& rig,
                     Eigen::Vector3d* jacobian_delay = nullptr) const;
-  /// Computes only derivatives with respect to the calibration, in less than half of the time of flight().
   RateFactor flight_jacobian_calibration(const RateObservation& observation, const RateKnot& knot,
                                          const RigConstants& rig) const;
   double gyro_information(const RateObservation& observation, const RateEstimate& estimate, int axis) const;

@@ -10,8 +10,7 @@ namespace tumble {
 struct RateReadingParams {
   /// relative scale and misalignment error of the accelerometer
   double accel_scale_error = 1e-3;
-  /// Uncertainty of a reading's time due to the gyro's bandwidth and clock. For example, a first-order low-pass filter
-  /// at 415 Hz delays by 0.38 ms.
+  /// Uncertainty of a reading's time due to the gyro's bandwidth and clock.
   double gyro_time_sigma_s = 2.5e-4;
   double rail_sigma_rad_s = 0.05;  ///< standard deviation of the lower bound from a clipped reading
 
@@ -54,13 +53,11 @@ struct RateContactParams {
   double gain_rad_m = 4.0;
   /// factor on the standard deviation of rates during impacts, whose errors are not Gaussian
   double sigma_factor = 1.3;
-  /// Largest angular acceleration perpendicular to a contact force, per unit of specific force. The ratio equals mass
-  /// times the distance of the contact point, divided by a third of the trace of the inertia.
+  /// Largest angular acceleration perpendicular to a contact force, per unit of specific force.
   double lever_rad_m = 5.0;
   /// Ratio of the angular accelerations about a contact force and perpendicular to the contact force.
   double twist_ratio = 0.3;
-  /// Standard deviation of the unknown contact force, relative to the force. A prior that is uniform in the logarithm
-  /// of the force corresponds to 0.58. The value 0 disables the prior.
+  /// standard deviation of the unknown contact force, relative to the force; 0: no assumption
   double force_share = 1.0;
 
   template <class Self, class Visitor>

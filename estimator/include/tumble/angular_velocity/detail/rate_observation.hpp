@@ -34,8 +34,7 @@ struct RateObservation {
   std::array<AuxiliaryReading, kAuxiliaryImusMax> auxiliary_imus =
       {};  ///< readings in the order of RateModelParams::auxiliary_imus
 
-  /// Returns true if a gyro element clips or is unusable. A clipped element corrupts all axes, so the gyro is then used
-  /// element by element.
+  /// Returns true if a gyro element clips or is unusable, so that the gyro must be used element by element.
   bool is_element_clipped() const { return (clipping.gyro | clipping.unusable_gyro) != 0; }
 
   /// Returns the axes whose readings have a larger standard deviation than the gyro's noise.
@@ -54,7 +53,7 @@ struct RateObservation {
   }
 };
 
-/// A missing neighbour of the sample `now` is null.
+/// `before` and `after` are null if absent.
 void mark_subsample_saturation(const RailDetector& rails, const RailDetector::State& state, double noise_rad_s,
                                const ImuSample* before, RateObservation& now, const ImuSample* after);
 
@@ -64,7 +63,6 @@ struct RateEstimate {
   /// force that contact causes at the centre of mass, per mass
   Eigen::Vector3d contact_force_m_s2 = Eigen::Vector3d::Zero();
   /// Gaussian factors that approximate the lower bounds of clipped elements, stored as precision and precision * mean.
-  /// Each Gaussian factor acts on the saturation deficit of one gyro element along its sensing direction.
   Eigen::Vector3d bound_precision = Eigen::Vector3d::Zero();
   Eigen::Vector3d bound_shift = Eigen::Vector3d::Zero();
   bool soft_bounds = false;  ///< false: lower bounds are hard, and act only if violated

@@ -12,8 +12,7 @@ struct RateDescentParams {
   double tolerance_rad_s = 2e-3;          ///< converged if every rate changes by less than this
   double step_max_rad_s = 10.0;           ///< largest change of a rate in one iteration
   double initial_threshold_factor = 8.0;  ///< factor on the contact threshold; halved in each iteration
-  /// Number of additional iterations that make the covariance of samples in contact consistent. The additional
-  /// iterations use truncated distributions instead of hard lower bounds.
+  /// number of additional iterations with truncated distributions, which make covariances in contact consistent
   int bound_iterations = 3;
   double bound_damping = 0.5;  ///< weight of a new bound in each additional iteration
 
@@ -41,8 +40,7 @@ struct RateSmootherExpertParams {
   RailPlaneFinder::Params accel_planes = RailPlaneFinder::Params::for_accelerometer();
   RestDetector::Params rests = {};
   RateDescentParams descent = {};
-  /// Maximum number of optimisations, each with readings corrected by the sensor errors of the previous one. The value
-  /// 1 disables the correction of sensor errors.
+  /// maximum number of optimisations with corrected readings; 1: no correction of sensor errors
   int error_rounds_max = 3;
 
   template <class Self, class Visitor>

@@ -14,7 +14,7 @@ namespace tumble {
 
 struct RateStreamParams {
   /// The priors of accelerometer bias (2 mg) and inertia are narrower than in RateModelParams, because RateStream
-  /// reports rates early. The prior inertia fits a body between a cube and moments of 3 : 2 : 2.
+  /// reports rates early.
   RateModelParams model = {.accel_bias_sigma_m_s2 = 0.02, .inertia_sigma = 0.15};
   RailDetector::Params rails = {};
   double period_s = 0.01;                    ///< nominal time between samples

@@ -87,7 +87,7 @@ struct RateStreamState {
   // Gaussian prior on oldest sample and calibration, from all earlier samples
   arrow::Block prior;
   arrow::Corner prior_corner;
-  /// Vector of one element on the heap, because threads with a small stack use RateStream.
+  /// one element on the heap, for threads with a small stack
   std::vector<RateStreamDevice> device = std::vector<RateStreamDevice>(1);
   std::array<Eigen::Vector3d, 2> extremes{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
   MinSaturationLevels min_levels;  ///< lower bounds from the readings so far

@@ -18,7 +18,7 @@ struct RepeatedReading {
 
   bool is_slower_than_log() const { return period_samples > 1.0; }
   /// Returns the time from the middle of the reading's averaging window to the middle of the sample's averaging window,
-  /// in samples. The averaging window of a reading is the update period that ends when the sensor takes the reading.
+  /// in samples.
   double delay_samples() const { return is_slower_than_log() ? age_samples + 0.5 * (period_samples - 1.0) : 0.0; }
   /// Extrapolates with the slope of the last change.
   Eigen::Vector3d change_since_reading() const;

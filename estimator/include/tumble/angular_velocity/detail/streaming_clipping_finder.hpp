@@ -12,10 +12,8 @@
 
 namespace tumble {
 
-/// Detects saturation limits and saturation planes from all readings so far; causal form of ClippingFinder. For gyro
-/// and accelerometer, up to `readings_max` distinct readings are stored, with priority for the latest and the largest
-/// readings. Saturation is detected some samples after its first occurrence, so callers must classify earlier samples
-/// again.
+/// Detects saturation limits and saturation planes from all readings so far; causal form of ClippingFinder. Saturation
+/// is detected some samples after its first occurrence, so callers must classify earlier samples again.
 class StreamingClippingFinder {
  public:
   struct Params {

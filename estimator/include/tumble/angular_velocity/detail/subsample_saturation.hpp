@@ -7,8 +7,7 @@
 
 namespace tumble {
 
-/// Saturation deficit of a reading whose averaging window is saturated during a part of its length. Such a reading is
-/// below the saturation limit, and slightly smaller than the true mean rate.
+/// Saturation deficit of a reading whose averaging window is saturated during a part of its length.
 struct SubsampleSaturation {
   bool saturated = false;
   double expected_deficit_rad_s = 0.0;  ///< expected |truth| - |reading|
@@ -17,7 +16,7 @@ struct SubsampleSaturation {
 
 /// Estimates the saturation deficit of a partly saturated reading from its unsaturated neighbour, for a rate with
 /// constant slope: rails.md (R70). `neighbour_rad_s` is the smaller of the neighbours' readings, with a sign for which
-/// the saturation limit is positive. `sigma_rad_s` covers a change of slope within the two averaging windows.
+/// the saturation limit is positive.
 SubsampleSaturation subsample_saturation(double reading_rad_s, double neighbour_rad_s, double rail_rad_s,
                                          double noise_rad_s);
 

@@ -9,8 +9,7 @@
 namespace tumble {
 
 /// Estimates the errors of several accelerometers on one rigid body from the differences between their readings. For
-/// each accelerometer, a Kalman filter estimates bias, scale and misalignment M, and position error. The measurement is
-/// the difference of each accelerometer's force from the mean force, averaged over kSpan_s. Errors that all
+/// each accelerometer, a Kalman filter estimates bias, scale and misalignment M, and position error. Errors that all
 /// accelerometers share are not observable, and their estimates remain close to zero.
 class ForceErrors {
  public:

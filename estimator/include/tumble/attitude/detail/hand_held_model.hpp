@@ -38,8 +38,7 @@ struct Constants {
   void move(const System::BorderVector& step);
 };
 
-/// Sums over the readings of one sensing element near a node, with times relative to the node. The sums make the cost
-/// of a solver step independent of the sample rate of the IMU.
+/// Sums over the readings of one sensing element near a node, with times relative to the node.
 struct ElementSums {
   double count = 0.0, time_sum_s = 0.0, time_squared_sum_s2 = 0.0, reading_sum = 0.0,
          reading_time_sum = 0.0;                           ///< count and sums of unsaturated readings
@@ -86,9 +85,8 @@ double add_force(const NodeReadings& readings, const Eigen::Vector3d& g_W_m_s2, 
 
 double add_rest(const ReadingNoise& noise, const Node& node, System::Block& block);
 
-/// Motion model between two nodes that are `step_s` apart. The angular jerk is white noise. The acceleration of the
-/// held point is a first-order process. Velocity and position of the held point return to zero, each with a separate
-/// time constant.
+/// Motion model between two nodes that are `step_s` apart. The angular jerk is white noise. Acceleration, velocity and
+/// position of the held point return to zero, each with a separate time constant.
 class Motion {
  public:
   struct Params {
@@ -118,8 +116,7 @@ class Motion {
   double phi_variance_;
 };
 
-/// Returns the rotation vector between two nodes, for a rate that is a cubic polynomial in time. The coning term is the
-/// fourth-order term of the Magnus expansion.
+/// Returns the rotation vector between two nodes, for a rate that is a cubic polynomial in time.
 Eigen::Vector3d turned(const Node& from, const Node& to, double step_s);
 
 }  // namespace hand_held

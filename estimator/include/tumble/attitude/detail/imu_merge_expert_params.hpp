@@ -5,7 +5,7 @@
 
 namespace tumble {
 
-/// ImuMerge excludes an IMU whose reading differs more from the readings of all other IMUs.
+/// Maximum differences of one IMU from the others, beyond which ImuMerge excludes the IMU.
 struct ImuOutlierParams {
   double rate_rad_s = 0.15;  ///< maximum difference from the median
   double rate_share = 0.03;  ///< additional difference, as a fraction of the rate

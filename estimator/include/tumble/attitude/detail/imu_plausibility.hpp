@@ -12,8 +12,8 @@ namespace tumble {
 
 /// Detects a gyro whose scale or sign contradicts gravity, and frozen sensors.
 ///
-/// A force with the constant magnitude of gravity is probably gravity. ImuPlausibility compares the rotation of such
-/// forces with the rotation that the unsaturated gyro measures: imu_merge.md (I20).
+/// ImuPlausibility compares the rotation of measured gravity with the rotation that the gyro measures: imu_merge.md
+/// (I20).
 ///
 /// A sensor is frozen if one reading repeats bit for bit for at least a second, and ten times longer than any earlier
 /// repetition. A gyro with constant readings is frozen only if the forces exclude rest. An accelerometer that always

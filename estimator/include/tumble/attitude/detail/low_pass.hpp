@@ -39,8 +39,7 @@ struct LowPass {
   bool operator==(const LowPass&) const = default;
 };
 
-/// Returns tan(pi f_c dt) of the corner frequency f_c. The bound of the argument lets a sample period much longer than
-/// tau pass the input unfiltered.
+/// Returns tan(pi * corner frequency * dt), bounded for sample periods much longer than tau.
 inline double low_pass_prewarp(double tau_s, double dt_s) {
   return std::tan(std::min(dt_s / (std::numbers::sqrt2 * tau_s), 1.5));
 }

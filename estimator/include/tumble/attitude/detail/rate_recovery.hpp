@@ -13,8 +13,7 @@ namespace tumble {
 
 /// Estimates the rate of a body beyond the range of its gyros from force differences between accelerometers. An
 /// extended Kalman filter estimates rate, angular acceleration, the specific force at the mean position of the IMUs,
-/// and the error of each lever arm. Readings that are flagged as clipped or beyond the range are lower bounds. The
-/// filter runs while a gyro is clipped or above kActiveRangeRatio times its range.
+/// and the error of each lever arm. Readings that are flagged as clipped or beyond the range are lower bounds.
 ///
 /// RateRecovery neglects scale errors, and calibrates the lever arms relative to the gyro's scale. IMUs at one position
 /// provide no information about the rate.
@@ -22,8 +21,7 @@ class RateRecovery {
  public:
   static constexpr int kUnits = 4;
   static constexpr int kStates = 9 + 3 * kUnits;
-  /// Noise parameters hold for a reading of the duration kReading_s. Readings of a shorter duration d have noise that
-  /// is larger by the factor sqrt(kReading_s / d), so a higher sample rate adds no information.
+  /// duration of a reading for which ReadingNoise holds; shorter readings have more noise
   static constexpr double kReading_s = 4e-3;
   static constexpr double kActiveRangeRatio = 0.5;  ///< fraction of the gyro's range above which the filter runs
   using Vector = Eigen::Matrix<double, kStates, 1>;
@@ -45,8 +43,7 @@ class RateRecovery {
     double force_walk_m_s2_sqrts = 25.0;            ///< random walk of the common force; bound (0, 1e6]
     double recovered_sigma_rad_s = 1.0;  ///< rates with a larger standard deviation remain clipped; bound (0, 1e3]
     ReadingNoise noise;
-    /// A clipped sensing element corrupts all axes of its sensor, because the device mixes the elements. RateRecovery
-    /// then uses the unsaturated elements along their sensing directions.
+    /// sensing directions, along which the unsaturated elements of a clipped sensor are used
     std::array<SensingDirections, kUnits> gyro_elements{}, accel_elements{};
   };
   struct State {

@@ -46,8 +46,8 @@ struct AttitudeRollingParams {
 
 struct AttitudeGapParams {
   double duration_min_s = 0.05;  ///< a longer time between two samples is a gap
-  /// Random walks of the rate and velocity of tumbling bodies during a gap. On simulated hills, stairs and cliffs, the
-  /// true random walks are 3.0 to 11.4 rad/s and 2.4 to 4.1 m/s per sqrt(s) (docs/figures.md).
+  /// Random walks of the rate and velocity of tumbling bodies during a gap. In simulated falls on hills, stairs and
+  /// cliffs, the true random walks are 3.0 to 11.4 rad/s and 2.4 to 4.1 m/s per sqrt(s) (docs/figures.md).
   double rate_walk_rad_s_sqrts = 7.0, velocity_walk_m_s_sqrts = 3.3;
   /// Standard deviations of the tilt, per axis. Coarse alignment starts above `lost_tilt_rad`, where the linearised
   /// filter is invalid, and ends below `aligned_tilt_rad`.

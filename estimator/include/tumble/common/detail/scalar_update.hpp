@@ -6,10 +6,9 @@
 
 namespace tumble {
 
-// Measurement updates of a Kalman filter (Kalman, J. Basic Eng. 82, 1960). All functions return the correction of the
-// state of N numbers, and update its covariance P (N x N, positive semidefinite). The cost is O(N^2) per measured
-// number, without allocation for fixed N. The noise variance must be positive. The functions do not use Joseph's form,
-// which an ill-conditioned P would need.
+// Measurement updates of a Kalman filter (Kalman, Journal of Basic Engineering 82, 1960). All functions return the
+// correction of the state of N numbers, and update its covariance P (N x N, positive semidefinite). The cost is O(N^2)
+// per measured number, without allocation for fixed N.
 
 /// `row` (N numbers) is the derivative of the measurement with respect to the state, and `innovation` is the
 /// measurement minus its prediction.
@@ -35,8 +34,7 @@ Eigen::Matrix<double, N, 1> component_update(Eigen::Index index, double innovati
   return column * (innovation / s);
 }
 
-/// `H` (M x N) is the derivative of the measured numbers with respect to the state. `noise` (M x M) is the noise
-/// covariance.
+/// `H` (M x N) is the derivative of the measured numbers with respect to the state.
 template <int M, int N>
 Eigen::Matrix<double, N, 1> vector_update(const Eigen::Matrix<double, M, N>& H,
                                           const Eigen::Matrix<double, M, 1>& innovation,

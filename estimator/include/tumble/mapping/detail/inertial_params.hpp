@@ -9,8 +9,7 @@
 namespace tumble {
 
 /// Standard deviations of the errors of inertial integration over kSpan_s, in addition to the uncertainty in RateState.
-/// Choose larger standard deviations if unsure. Smaller standard deviations constrain the pose more strongly in a world
-/// with few features.
+/// Smaller standard deviations constrain the pose more strongly in a world with few features.
 struct InertialNoiseParams {
   static constexpr double kSpan_s = 0.1;  ///< time between two sweeps of most lidars
   double sigma_m = 0.003;
@@ -52,7 +51,7 @@ struct InertialNoiseParams {
   }
 };
 
-/// Readings at or above `accel_m_s2` or with a device flag are saturated.
+/// Accelerometer readings at or above `accel_m_s2`, or flagged by the device, are saturated.
 ///
 /// If `estimate_deficit` is true, the registration estimates the saturation deficit of the rate on clipped axes, at
 /// SweepTrajectory::kKnots support points per sweep. The prior standard deviation of the saturation deficit is the
@@ -65,7 +64,7 @@ struct SaturatedImuParams {
   double deficit_sigma_min_rad_s = 1.0;
   double deficit_time_s = 0.3;
   double deficit_carry_max = 3.0;  ///< maximum growth factor of the saturation deficit at a sweep boundary
-  /// standard deviation of the difference between adjacent support points, relative to the deficit's
+  /// standard deviation of the deficit's change between adjacent support points, relative to the deficit's own
   double knot_sigma_ratio = 0.05;
 
   template <class Self, class Visitor>

@@ -13,9 +13,6 @@ namespace tumble {
 /// "Localisation check"). Tracking has failed if the standard deviation of the position exceeded the matching distance.
 /// Tracking has also failed if the poses of two or more sweeps contradict their predicted poses. Localisation does not
 /// detect a map of wrong scale (see SweepScale), or errors of clocks or mounting that the calibration explains.
-///
-/// verdict() is permanent. current_verdict() is `ok` again when the position is certain, and sweeps that contradict
-/// their predicted poses are older than kMemory_s.
 class Localisation {
  public:
   static constexpr double kMemory_s = 30.0;
@@ -28,7 +25,8 @@ class Localisation {
 
   /// Returns `out_of_range` with the violated limit if tracking has ever failed.
   Status verdict() const;
-  /// Returns `out_of_range` with the violated limit if tracking currently fails.
+  /// Returns `out_of_range` with the violated limit if the position is uncertain, or if sweeps have contradicted their
+  /// predicted poses within kMemory_s.
   Status current_verdict() const;
   /// Returns the time of the first sweep of the current tracking failure.
   std::optional<TimeNs> lost_since_ns() const { return lost_since_ns_ ? lost_since_ns_ : previous_contradicted_ns_; }

@@ -10,10 +10,9 @@
 
 namespace tumble {
 
-/// Odometer readings describe the motion of the robot within a sweep, measured by wheels, legs, a camera or a radar. An
-/// odometer reading is fused with the inertial prediction, weighted by their covariances. Times of odometer readings
-/// are in the IMU's clock. The errors of an odometer reading are assumed independent of all other errors. Wheel slip
-/// beyond the stated uncertainty corrupts the estimate.
+/// Odometer readings describe the motion of the robot within a sweep, measured by wheels, legs, a camera or a radar.
+/// Times of odometer readings are in the IMU's clock. The errors of an odometer reading are assumed independent of all
+/// other errors. Wheel slip beyond the stated uncertainty corrupts the estimate.
 
 struct VelocityReading {
   TimeNs time_ns = 0;

@@ -12,7 +12,7 @@ struct MatchingParams {
   double distance_m = 1.0;                ///< maximum distance of matched map points
   std::size_t matches_min = 100;          ///< minimum number of matches; sweeps with fewer are rejected
   std::size_t agreeing_matches_min = 30;  ///< minimum number of matches if the result agrees with the prior
-  /// maximum number of iterations; RegistrationStagesParams limits the iterations with all points
+  /// see RegistrationStagesParams
   int iterations_max = 30;
   double correction_max_m = 15.0;   ///< a larger correction of the prior is rejected
   double correction_max_rad = 1.1;  ///< a larger correction of the prior is rejected
@@ -95,7 +95,7 @@ struct RegistrationStagesParams {
 
 struct TrackingParams {
   /// A sweep with too few matches still extends the map, as `degenerate`, up to these standard deviations of its
-  /// inertial prediction. A lidar at rest scans only rings, which give no planes until the lidar rotates.
+  /// inertial prediction.
   double extend_sigma_max_m = 0.1;
   double extend_sigma_max_rad = 0.1;
   /// maximum number of consecutive unregistered sweeps; further sweeps are `degenerate`

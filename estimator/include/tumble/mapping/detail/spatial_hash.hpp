@@ -32,7 +32,7 @@ class SpatialHash {
   /// Inserts a key if the key is new, and returns the stored value. Cost: amortised O(1).
   std::uint32_t insert(std::uint64_t key, std::uint32_t value);
 
-  /// Returns true if the key was new. Cost: amortised O(1).
+  /// Returns true if the key was new.
   bool add(std::uint64_t key);
 
   /// Removes all keys and keeps the memory.
@@ -46,8 +46,7 @@ class SpatialHash {
   static constexpr std::uint64_t kFree = ~std::uint64_t{0};
 
   std::size_t slot_of(std::uint64_t key) const {
-    // One cache line contains the eight cubes of a 2 x 2 x 2 block, because successive queries are usually close
-    // together.
+    // The eight cubes of a 2 x 2 x 2 block share a cache line, because successive queries are usually close together.
     constexpr std::uint64_t kInside = 1 | (std::uint64_t{1} << 21) | (std::uint64_t{1} << 42);
     const std::uint64_t block = key & ~kInside;
     const std::uint64_t hash = (block ^ (block >> 29)) * 0x9e3779b97f4a7c15u;

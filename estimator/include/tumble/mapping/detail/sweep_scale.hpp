@@ -23,7 +23,6 @@ struct SweepScale {
 
   /// Returns true if the scale differs from 1 by more than 2 % and by more than five standard deviations.
   bool is_inconsistent() const;
-  /// Returns `out_of_range` with the scale and the violated limit if is_inconsistent().
   Status verdict() const;
 };
 
@@ -36,7 +35,6 @@ SweepScale find_sweep_scale(std::span<const ImuSample> samples, std::span<const 
                             double gravity_m_s2);
 
 /// Estimates the scale of the lidar's ranges live, from at most 1000 velocity changes of the last minute.
-/// find_sweep_scale() is more accurate, because it uses all poses of each sweep.
 class SweepScaleEstimator {
  public:
   /// change of velocity from one time span to the next

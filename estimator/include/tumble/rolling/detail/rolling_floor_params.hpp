@@ -16,7 +16,7 @@ struct RollingContactParams {
   double slope_walk_sqrts = 0.02;
   /// velocity error of an impact relative to its velocity change, from uncertain timing and direction
   double impact_sigma_ratio = 0.06;
-  /// mean velocity change per node by impacts on the floor that the model does not explain
+  /// mean velocity change between two measurement updates by impacts that the rolling model does not explain
   double unexplained_impact_m_s = 0.03;
   double rest_velocity_sigma_m_s = 2e-3;
   double rest_rate_sigma_rad_s = 3e-3;  ///< standard deviation of a node's mean rate at rest

@@ -3,7 +3,6 @@
 
 #include "tumble/common/parameters.hpp"
 
-/// A prior standard deviation of 0 marks an exactly known quantity.
 namespace tumble {
 
 /// A prior standard deviation of 0 marks an exact quantity.
