@@ -13,15 +13,15 @@
 
 namespace tumble {
 
-/// AuxiliaryAccelerometer contains the readings of a second accelerometer on the same rigid body as the primary IMU.
-/// The readings are in the axes and at the time stamps of the primary IMU.
+/// Readings of a second accelerometer on the rigid body of the primary IMU, in the axes and at the time stamps of the
+/// primary IMU.
 struct AuxiliaryAccelerometer {
   Eigen::Vector3d p_I_m = Eigen::Vector3d::Zero();   ///< position relative to the primary IMU, in its axes
   std::vector<Eigen::Vector3d> specific_force_m_s2;  ///< one reading per sample of the primary IMU; NaN: no reading
 };
 
-/// AuxiliaryImu describes the mounting and accuracy of an additional IMU C on the body of the primary IMU. The biases
-/// and mounting errors of an additional IMU are not estimated, but increase the standard deviations of its readings.
+/// Mounting and accuracy of an additional IMU C on the body of the primary IMU. The biases and mounting errors of an
+/// additional IMU are not estimated, but increase the standard deviations of its readings.
 struct AuxiliaryImu {
   Eigen::Isometry3d T_IC = Eigen::Isometry3d::Identity();  ///< pose of C in the axes of the primary IMU
   double gyro_noise_density = 5.236e-4;                    ///< [rad/s/sqrt(Hz)]; allowed: [1e-9, 1]
@@ -34,8 +34,8 @@ struct AuxiliaryImu {
   SensingDirections gyro_elements = {}, accel_elements = {};  ///< sensing directions; needed if an element clips
 };
 
-/// AuxiliaryReading is the reading of an additional IMU at the time of a sample of the primary IMU. Rate and force are
-/// in the axes of the additional IMU; NaN marks an axis without a valid reading. While a sensing element clips,
+/// Reading of an additional IMU, interpolated at the time of a sample of the primary IMU. Rate and force are in the
+/// axes of the additional IMU; NaN marks an axis without a valid reading. While a sensing element clips,
 /// AuxiliaryReading contains components along the unsaturated sensing elements instead.
 struct AuxiliaryReading {
   Eigen::Vector3d rate_rad_s, force_m_s2;
@@ -45,10 +45,10 @@ struct AuxiliaryReading {
   bool measures_all_rates() const { return rate_rad_s.allFinite(); }
 };
 
-/// Interpolates the readings of an additional IMU at the time stamps of the primary IMU. Cost: O(N). The interpolation
-/// is linear between readings at most `gap_max_s` apart, and excludes clipped readings. `clippings` contains one entry
-/// of ClippingFinder per sample. Returns `ok`, an error of check_samples() other than `gap`, or `too_few` if
-/// `clippings` has fewer entries than `samples`. On error, `out` is unchanged.
+/// Interpolates the unclipped readings of an additional IMU at the time stamps of the primary IMU. The interpolation is
+/// linear between readings at most `gap_max_s` apart. `clippings` contains one entry of ClippingFinder per sample.
+/// Returns `ok`, an error of check_samples() other than `gap`, or `too_few` if `clippings` has fewer entries than
+/// `samples`. On error, `out` is unchanged. Cost: O(N).
 Status align(const AuxiliaryImu& auxiliary_imu, std::span<const ImuSample> samples, std::span<const Clipping> clippings,
              std::span<const ImuSample> primary, double gap_max_s, std::vector<AuxiliaryReading>& out);
 

@@ -20,9 +20,8 @@ struct SaturationLevels {
   bool gyro_clips_after_compensation = false;   ///< the gyro clips after misalignment compensation, axis by axis
   bool accel_clips_after_compensation = false;  ///< the accelerometer clips after misalignment compensation
 
-  /// Returns the saturation planes that classify readings as clipped. If a device clips its output after misalignment
-  /// compensation, equal readings identify clipped samples exactly. If the device clips after compensation, planes are
-  /// returned only for sensing elements without a known saturation limit.
+  /// Returns the saturation planes that classify readings as clipped. If the device clips after misalignment
+  /// compensation, planes are returned only for sensing elements without a known saturation limit.
   RailPlanes planes_in_use(Triad triad = Triad::gyro) const;
   /// `unknown_sigma` is the standard deviation of a cross-axis sensitivity that no saturation plane determines.
   SensingDirections rows(Triad triad, double unknown_sigma) const;
@@ -39,23 +38,23 @@ ElementReading element_reading(const ImuSample& sample, const Clipping& clipping
 
 std::uint8_t clip_flags(const Clipping& clipping);
 
-/// ConfirmedSaturation contains the saturation limits that a frozen sensor cannot imitate. Frozen sensors cause equal
-/// readings, but no saturation planes, so limits from equal readings are excluded.
+/// ConfirmedSaturation contains the saturation limits that a frozen sensor cannot imitate. Limits from equal readings
+/// are excluded, because a frozen sensor also causes equal readings.
 struct ConfirmedSaturation {
   RailPlanes gyro, accel;                                 ///< saturation planes used to classify readings
   double gyro_range_rad_s = 0.0, accel_range_m_s2 = 0.0;  ///< range from the data sheet; 0: unknown
   std::uint8_t flags(const ImuSample& sample, const Clipping& judged) const;
 };
 
-/// Finds the clipped readings of a recording. ClippingFinder combines the device's clip flags, saturation limits from
-/// equal readings (RailDetector) and tilted saturation planes (RailPlaneFinder).
+/// Finds the clipped readings of a recording from the device's clip flags, from equal readings (RailDetector) and from
+/// tilted saturation planes (RailPlaneFinder).
 class ClippingFinder {
  public:
   struct Params {
     RailDetector::Params axis_aligned_rails = {};
     RailPlaneFinder::Params planes = {};  ///< if no range is stated here, the range of `axis_aligned_rails` applies
     RailPlaneFinder::Params accel_planes = RailPlaneFinder::Params::for_accelerometer();
-    /// If `tilted` is false, ClippingFinder uses only clip flags and equal readings, like the published methods.
+    /// If `tilted` is false, ClippingFinder uses only clip flags and equal readings.
     bool tilted = true;
 
     template <class Self, class Visitor>
@@ -66,8 +65,8 @@ class ClippingFinder {
       visit(p.tilted,
             switch_field(
                 "tilted",
-                "1: also search for tilted saturation limits; 0: search only for upright saturation limits and use the "
-                "device's clip flags"));
+                "1: also detect tilted saturation limits; 0: use only upright saturation limits and the device's clip "
+                "flags"));
     }
   };
   struct Found {
@@ -78,7 +77,7 @@ class ClippingFinder {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit ClippingFinder(const Params& params);
 
-  /// The samples must be finite and in time order. Cost: O(N), plus the search of RailPlaneFinder.
+  /// The samples must be finite and in time order. Cost: O(N), plus RailPlaneFinder::find().
   Found find(std::span<const ImuSample> samples) const;
 
   const RailDetector& axis_aligned_rails() const { return axis_aligned_rails_; }

@@ -19,19 +19,16 @@ struct Clipping {
   bool operator==(const Clipping&) const = default;
 };
 
-/// RailPlateauParams defines a plateau: a run of consecutive readings that are closer together than sensor noise
-/// allows.
 struct RailPlateauParams {
   int samples = 4;  ///< minimum number of readings of a plateau
-  /// Largest spread of the readings of a plateau, relative to the saturation limit. Unsaturated readings have a larger
-  /// spread because of sensor noise.
+  /// largest spread of the readings of a plateau, relative to the saturation limit
   double plateau_spread_ratio = 2e-5;
-  /// A gyro plateau below `low_gyro_plateau_rad_s` needs twice as many readings, and a jump at its start or end.
+  /// A gyro plateau (run of equal readings) below this rate needs twice as many readings, and a jump at its start or
+  /// end.
   double low_gyro_plateau_rad_s = 1.0;
   double gyro_plateau_min_rad_s = 0.02;  ///< minimum rate of a gyro plateau
   double accel_plateau_min_m_s2 = 15.0;  ///< minimum force of an accelerometer plateau; above gravity
-  /// Minimum jump of the readings at the start or end of a low plateau, in steps of the sensor's resolution. The
-  /// resolution is the smallest observed change between two readings.
+  /// Minimum jump of the readings at the start or end of a low plateau, in steps of the sensor's resolution.
   double jump_min_digits = 8.0;
 
   template <class Self, class Visitor>
@@ -39,8 +36,9 @@ struct RailPlateauParams {
     visit(p.samples, {"plateau_samples", "1", 2, 1000, "number of equal readings in a row that form a plateau"});
     visit(p.plateau_spread_ratio, {"plateau_spread_share", "1", 0.0, 0.01,
                                    "maximum spread of the readings of a plateau, as a share of the plateau's level"});
-    visit(p.low_gyro_plateau_rad_s, {"plateau_gyro_low_rad_s", "rad/s", 1e-6, 1000.0,
-                                     "a gyro plateau below this rate needs twice as many readings and a jump"});
+    visit(p.low_gyro_plateau_rad_s,
+          {"plateau_gyro_low_rad_s", "rad/s", 1e-6, 1000.0,
+           "a gyro plateau below this rate needs twice as many readings, and a jump at its start or end"});
     visit(p.gyro_plateau_min_rad_s, {"plateau_gyro_min_rad_s", "rad/s", 1e-6, 1000.0,
                                      "a gyro plateau below this rate does not count as a saturation limit"});
     visit(p.accel_plateau_min_m_s2,
@@ -66,9 +64,9 @@ struct RailDetectorParams {
   /// data sheet or the user.
   std::optional<double> stated_gyro_rad_s = std::nullopt;
   std::optional<double> stated_accel_m_s2 = std::nullopt;
-  /// A reading starts clipping above (1 - clip_enter_ratio) * saturation limit.
+  /// readings above (1 - clip_enter_ratio) * saturation limit are clipped
   double clip_enter_ratio = 0.003;
-  /// A reading ends clipping below (1 - clip_leave_ratio) * saturation limit.
+  /// neighbours of clipped readings above (1 - clip_leave_ratio) * saturation limit are clipped
   double clip_leave_ratio = 0.02;
   double range_contradiction_ratio = 0.02;  ///< minimum relative difference that contradicts the stated range
 
@@ -95,16 +93,13 @@ struct RailDetectorParams {
   }
 };
 
-/// Detects the saturation limit of each gyro and accelerometer axis from the readings of the axis. The saturation
-/// limits of two devices of one type may differ from each other and from the data sheet. For example, one gyro with a
-/// stated range of 450 deg/s saturated at 600 deg/s.
+/// Detects the saturation limit of each gyro and accelerometer axis from the readings of the axis. The saturation limit
+/// of a device may differ from the stated range in its data sheet.
 ///
-/// A plateau is a run of readings of one sign that are closer together than sensor noise allows. The readings of a
-/// plateau have the largest magnitude so far on their axis. A plateau at a low rate must be longer, and must start or
-/// end with a jump of many resolution steps. RailDetector uses the stated range until a plateau is found or a reading
-/// exceeds the range. RailDetector always uses the clip flags of the device. The classification has hysteresis, so that
-/// slightly lower readings at the edge of a plateau also count as clipped. RailDetector assumes constant saturation
-/// limits that are equal for both signs of an axis.
+/// A plateau is a run of readings of one sign that are closer together than sensor noise allows. RailDetector uses the
+/// stated range until a plateau is found or a reading exceeds the stated range. Readings that the device flags as
+/// clipped also count as clipped. RailDetector assumes constant saturation limits that are equal for both signs of an
+/// axis.
 class RailDetector {
  public:
   using Params = RailDetectorParams;
@@ -133,18 +128,16 @@ class RailDetector {
   State start() const;
   /// The sample must be finite. Cost: O(1).
   void observe(const ImuSample& sample, State& state) const;
-  /// The sample must be finite. Cost: O(1). `state` also stores the hysteresis of the classification.
+  /// The sample must be finite. Cost: O(1).
   Clipping classify(const ImuSample& sample, State& state) const;
-  /// Classifies all samples of a recording with the saturation limits of the whole recording. Cost: O(N). The samples
-  /// at both edges of a plateau of saturated readings count as clipped.
+  /// Classifies all samples of a recording with the saturation limits of the whole recording. Cost: O(N).
   void classify_all(std::span<const ImuSample> samples, State& state, std::span<Clipping> out) const;
 
-  /// Adds the axes on the rising edge of a plateau to `clipping`. An axis is on the rising edge if `sample` is near the
-  /// saturation limit and `next` is clipped. The falling edge of a plateau has the same threshold.
+  /// Adds the axes to `clipping` that are near the saturation limit in `sample` and clipped in the next sample `next`.
   void add_rising_edge(const ImuSample& sample, const ImuSample& next, const Clipping& of_next, const State& state,
                        Clipping& clipping) const;
 
-  /// The saturation limit of channel c (0-5) comes from a plateau of the channel, the largest plateau on another axis,
+  /// Returns the saturation limit of channel c (0-5): from a plateau of channel c, the largest plateau on another axis,
   /// or the stated range. A limit from another axis or from the stated range applies only while all readings of channel
   /// c are below the limit.
   std::optional<double> rail(const State& state, int c) const;
@@ -153,7 +146,6 @@ class RailDetector {
 
  private:
   std::optional<double> stated(int c) const;
-  /// Returns true if the current run of readings is a plateau that started or ended with the given jump.
   bool plateau(int c, const Channel& channel, double jump) const;
   Params params_;
 };

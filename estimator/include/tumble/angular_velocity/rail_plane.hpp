@@ -11,18 +11,16 @@
 
 namespace tumble {
 
-/// RailPlane describes the saturation of one sensing element of a gyro as two parallel planes in the space of
-/// compensated readings. The compensated readings y saturate at the planes row . y = b - r and row . y = b + r. The
-/// sensing element measures the component of the rate along `row` and clips at the saturation limit r. The device clips
-/// first and then compensates scale and misalignment, which tilts the two planes by a few percent. The device also
-/// subtracts the element's bias, so the saturation limits of the two signs differ by 2 b. For an accelerometer, the
-/// unit is m/s^2 instead of rad/s.
+/// RailPlane describes the saturation of one sensing element of a gyro as two parallel planes in the space of output
+/// readings: row . reading = offset -+ limit. The two saturation planes are tilted if the device clips first and then
+/// compensates scale and misalignment. The device also subtracts the bias of the sensing element, which shifts both
+/// planes. For an accelerometer, the unit is m/s^2 instead of rad/s.
 struct RailPlane {
-  /// Sensing direction m_j: 1 along axis j of the element, and the cross-axis sensitivities along the other two axes.
+  /// sensing direction of the element: 1 along its own axis j, and a cross-axis sensitivity along each other axis
   Eigen::Vector3d row = Eigen::Vector3d::Zero();
-  double distance_rad_s = 0.0;  ///< saturation limit r
-  double offset_rad_s = 0.0;    ///< offset b; close to 0 if saturation of only one sign was observed
-  /// Covariance of four quantities: the sensitivity to axis (j+1) % 3, the sensitivity to axis (j+2) % 3, r and b.
+  double distance_rad_s = 0.0;  ///< saturation limit
+  double offset_rad_s = 0.0;    ///< close to 0 if saturation of only one sign was observed
+  /// covariance of the sensitivity to axis (j+1) % 3, the sensitivity to axis (j+2) % 3, limit, and offset
   Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
   std::array<int, 2> samples{};   ///< number of samples on the negative and on the positive plane
   std::array<int, 2> segments{};  ///< number of runs of consecutive samples on each plane
@@ -31,13 +29,13 @@ struct RailPlane {
   double log_odds = 0.0;          ///< natural log odds of saturation against unsaturated motion
 
   bool seen(int sign) const { return samples[sign > 0 ? 1 : 0] > 0; }
-  /// Returns how far a reading is below the saturation plane of sign `sign` (-1 or 1) [rad/s]. The result is negative
-  /// if the reading is beyond the plane.
+  /// Returns how far a reading is below the saturation plane of the given sign (-1 or 1) [rad/s]. The result is
+  /// negative if the reading is beyond the plane.
   double margin_rad_s(const Eigen::Vector3d& reading_rad_s, int sign) const {
     return distance_rad_s - sign * (row.dot(reading_rad_s) - offset_rad_s);
   }
-  /// Returns true if a reading is at or beyond the plane with the sign `sign`. Returns false if no saturation with this
-  /// sign was observed.
+  /// Returns true if a reading is at or beyond the plane of the given sign. Returns false if no saturation of this sign
+  /// was observed.
   bool holds(const Eigen::Vector3d& reading_rad_s, int sign) const {
     return seen(sign) && margin_rad_s(reading_rad_s, sign) <= tolerance_rad_s;
   }
@@ -46,16 +44,14 @@ struct RailPlane {
   bool operator==(const RailPlane&) const = default;
 };
 
-/// An entry is empty if no saturation of the sensing element was observed.
+/// One plane per sensing element; empty if no saturation of the element was observed.
 struct RailPlanes {
   std::array<std::optional<RailPlane>, 3> element;
   bool any() const { return element[0] || element[1] || element[2]; }
   bool operator==(const RailPlanes&) const = default;
 };
 
-/// SensingDirections contains the directions along which sensing elements measure, estimated from saturation planes. An
-/// unsaturated sensing element measures the component of the rate along its sensing direction. A clipped sensing
-/// element gives a lower bound of the component along its sensing direction.
+/// SensingDirections contains the directions along which the sensing elements of a sensor measure, one row per element.
 struct SensingDirections {
   Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();
   Eigen::Vector3d slope_sigma = Eigen::Vector3d::Zero();  ///< standard deviation of both cross-axis sensitivities

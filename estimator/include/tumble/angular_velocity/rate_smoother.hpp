@@ -25,12 +25,10 @@ struct RateSmootherParams {
   RateModelParams model = {};
   RailDetector::Params rails = {};
   double recovered_sigma_rad_s = 0.5;  ///< clipped rates with a smaller standard deviation count as recovered
-  /// Largest accepted Mahalanobis distance of the estimated rig constants from their prior
-  /// (RateReport::calibration_mahalanobis). If the distance exceeds the maximum, RateSmoother estimates the run again
-  /// with the rig constants fixed at the prior.
+  /// Maximum Mahalanobis distance of the estimated rig constants from their prior; beyond, RateSmoother fixes the rig
+  /// constants at the prior.
   double calibration_mahalanobis_max = 1.5;
-  /// Sensor errors that an earlier run estimated (RateReport::sensor_errors). RateSmoother uses the earlier sensor
-  /// errors only if the estimation of sensor errors is enabled.
+  /// Sensor errors of an earlier run (RateReport::sensor_errors), used only if `error_rounds_max` is above 1.
   std::optional<KnownSensorErrors> calibrated_errors = std::nullopt;
   double gap_max_s = 1.0;  ///< a longer time between two samples is a gap; see estimate()
 
@@ -47,10 +45,10 @@ struct RateSmootherParams {
                                     FieldRank::basic});
     visit(p.calibration_mahalanobis_max, {"calibration_mahalanobis_max", "1", 0.1, 1e6,
                                           "maximum Mahalanobis distance between the estimated rig constants and their "
-                                          "prior; a larger distance is reported as an error",
+                                          "prior; a larger distance fixes the constants at the prior",
                                           FieldRank::basic});
     visit(p.gap_max_s, {"gap_max_s", "s", 1e-6, 3600.0,
-                        "maximum time between two samples of one part; no rate is estimated across a longer gap"});
+                        "maximum time between two samples; the rates before and after a longer gap are independent"});
     visit.group("", p.expert);
   }
 };
@@ -61,8 +59,8 @@ struct RateReport {
   int restarts = 0;              ///< number of restarts with other initial values after a solution without flight
   double last_step_rad_s = 0.0;  ///< largest change of a rate in the last iteration
   RigCalibration calibration;    ///< estimated calibration; can initialise the next run
-  /// Mahalanobis distance of the estimated rig constants from their prior, in standard deviations. A distance far above
-  /// 1 indicates a wrong prior, or a run without flight that RateSmoother classified as flight.
+  /// Mahalanobis distance of the estimated rig constants from their prior, in standard deviations. A Mahalanobis
+  /// distance far above 1 indicates a wrong prior, or a run without flight that RateSmoother classified as flight.
   double calibration_mahalanobis = 0.0;
   bool calibration_at_prior = false;          ///< the rig constants were fixed at their prior
   std::array<std::optional<double>, 6> rail;  ///< saturation limits: gyro [rad/s], accelerometer [m/s^2]; empty: none
@@ -71,8 +69,7 @@ struct RateReport {
   RailPlanes accel_planes;                    ///< saturation planes of the accelerometer's sensing elements, in m/s^2
   KnownSensorErrors sensor_errors;
   double data_sheet_probability = 1.0, synchronous_probability = 1.0;  ///< see SensorErrorFit
-  /// Standard deviation of a delay common to gyro and accelerometer [s]. The value is zero if the device agrees with
-  /// its data sheet.
+  /// Standard deviation of a delay common to gyro and accelerometer [s]; 0 if the device agrees with its data sheet.
   double common_delay_sigma_s = 0.0;
   double gyro_update_s = 0.0, accel_update_s = 0.0;  ///< update interval of repeated readings; 0: no repeated readings
   int error_rounds = 0;                              ///< number of optimisations with corrected readings
@@ -81,7 +78,7 @@ struct RateReport {
   std::size_t samples = 0, clipped = 0, recovered_flight = 0, recovered_contact = 0, bounded_only = 0;
   std::size_t missing_readings = 0;  ///< samples in which a gyro axis overflowed (flipped sign)
   double flight_share = 0.0;         ///< fraction of samples classified as free flight
-  /// Gyro axes that may be saturated at a limit that was not found: one byte per sample, bit j for axis j.
+  /// Gyro axes that may be saturated at an unknown limit: one byte per sample, bit j for axis j.
   std::vector<std::uint8_t> suspect_axes;
 };
 
@@ -89,35 +86,23 @@ struct RateReport {
 /// recording.
 ///
 /// RateSmoother estimates the rate and angular acceleration of each sample, and the rig constants of the run
-/// (RigConstants). A Gauss-Newton solver minimises the residuals of several measurements and constraints. Unclipped
-/// gyro readings measure the rate, and clipped readings give a lower bound on the rate, for any number of axes. In
-/// flight, the accelerometer measures only the effect of rotation at the lever arm, and Euler's equation holds without
-/// torque. During contact, the force equation and Euler's equation have lower weights. Between samples, the angular
-/// jerk is white noise, whose density increases with the contact force. An impact therefore decouples the rates before
-/// the impact from the rates after the impact. At rest (RestDetector), the rate is zero, so the gyro measures its bias.
+/// (RigConstants). Unclipped gyro readings measure the rate, and clipped readings give a lower bound on the rate, for
+/// any number of axes. In flight, the specific force and Euler's equation determine the rate. During contact, the force
+/// and Euler's equation have lower weights. Between samples, the angular jerk is white noise, whose density increases
+/// with the contact force. The equations are in docs/maths/rate_smoother.md.
 ///
-/// The normal equations have an arrow matrix, so an iteration costs O(N), including the covariance. The initial values
-/// come from the published method (Saave), extended by the lower bounds of clipped readings.
+/// A Gauss-Newton solver starts from the rates of a published method (Saave). An iteration costs O(N), including the
+/// covariance.
 ///
-/// A force through one point has no torque about the direction of the force, so Euler's equation about this direction
-/// also holds during contact. RateSmoother does not estimate the contact point, because several bars of a cage touch
-/// the ground within 10 ms. The equations of RateSmoother are in docs/maths/rate_smoother.md.
+/// RateSmoother also estimates the constant errors of gyro and accelerometer (SensorErrors), and repeats the
+/// optimisation with corrected readings. The covariances of rates and rig constants include the remaining uncertainty
+/// of the sensor errors.
 ///
-/// RateSmoother also estimates SensorErrors: scale, misalignment, g-sensitivity, and the accelerometer's delay and
-/// window. The optimisation is repeated with readings corrected by the estimated sensor errors. The function
-/// fit_sensor_errors() chooses the prior magnitude of the sensor errors that fits the readings. The covariances of
-/// rates and rig constants include the remaining uncertainty of the sensor errors, as consider parameters (Schmidt,
-/// 1966). If gyro and accelerometer are not synchronous, RateSmoother assumes that the later of the two sensors is
-/// delayed.
+/// While a sensing element clips, RateSmoother processes the gyro element by element, because the device mixes the
+/// clipped element into all output axes.
 ///
-/// The sensing elements of a gyro clip along their own axes, which are not quite orthogonal. The device's misalignment
-/// compensation mixes the clipped values into all output axes (RailPlaneFinder). While a sensing element clips,
-/// RateSmoother therefore processes the gyro element by element. RateSmoother estimates the sensing directions as
-/// constants of the run, from saturation planes and from flight. If the device clips its output after misalignment
-/// compensation, RateSmoother processes the gyro axis by axis.
-///
-/// RateSmoother does not model a persistent contact point, or a delay common to gyro and accelerometer. The estimated
-/// rates refer to the time of the gyro's readings, which are means over the sample's window.
+/// The estimated rates refer to the time of the gyro's readings, which are means over the sample's window. RateSmoother
+/// does not model a persistent contact point, or a delay common to gyro and accelerometer.
 class RateSmoother {
  public:
   using Params = RateSmootherParams;
@@ -125,15 +110,15 @@ class RateSmoother {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit RateSmoother(const Params& params);
 
-  /// On error, the outputs are unchanged. The errors are `empty`, `too_few` (less than two samples), `non_finite`,
-  /// `time_order` or `diverged`. The calibration is kept across a gap in the samples, but the rate after a gap is
-  /// independent of the rate before.
+  /// Returns `ok`, `empty`, `too_few` (less than two samples), `non_finite`, `time_order` or `diverged`. On error, the
+  /// outputs are unchanged. The rates before and after a gap in the samples are independent, with one common
+  /// calibration.
   Status estimate(std::span<const ImuSample> samples, std::vector<RateState>& out, RateReport& report) const {
     return estimate(samples, {}, out, report);
   }
   /// Estimates the rates with additional IMUs on the body. `auxiliary_imus` contains one list of readings per entry of
-  /// RateModelParams::auxiliary_imus. The function align() computes the list of readings of an additional IMU, with one
-  /// reading per sample. Returns `too_few` if the number of lists or of readings is wrong.
+  /// RateModelParams::auxiliary_imus, computed by align(). Returns `too_few` if the number of lists or of readings is
+  /// wrong.
   Status estimate(std::span<const ImuSample> samples, std::span<const std::vector<AuxiliaryReading>> auxiliary_imus,
                   std::vector<RateState>& out, RateReport& report) const;
 

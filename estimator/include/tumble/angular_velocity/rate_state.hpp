@@ -17,7 +17,7 @@ enum class RateSource : std::uint8_t {
 
 const char* to_string(RateSource source);
 
-/// RateState is the angular velocity of an IMU relative to the world, in IMU axes, at the time of an IMU sample.
+/// Angular velocity of an IMU relative to the world, in IMU axes, at the time of an IMU sample.
 struct RateState {
   TimeNs time_ns = 0;
   Eigen::Vector3d w_WI_I_rad_s = Eigen::Vector3d::Zero();

@@ -24,22 +24,14 @@
 namespace tumble {
 
 /// Estimates angular velocity through gyro saturation, sample by sample, with a fixed lag. RateStream uses the
-/// measurement models of RateSmoother over a sliding window of fixed length. RateStream makes one Gauss-Newton step per
-/// sample, or one step every 5 ms if samples are closer together. When a sample leaves the window, RateStream
-/// marginalises the sample into a Gaussian prior on the next sample and on the rig constants.
+/// measurement models of RateSmoother over a sliding window of fixed length, with one Gauss-Newton step per sample or
+/// per 5 ms. The equations are in docs/maths/rate_stream.md.
 ///
-/// push() returns the estimate of a sample that is `lag_s` old. newest() returns a provisional estimate of the newest
-/// sample. A step costs O(window). The cost per second is proportional to the sample rate above 200 Hz, and to the
-/// square of the sample rate below 200 Hz. RateStream allocates no memory after the State is created.
+/// RateStream detects saturation limits from the readings, and classifies the samples in the window again after each
+/// detection. The rate error is 1.1 times the error of RateSmoother with the calibration of an earlier run, and 1.6
+/// times without. The limitations of RateSmoother also apply to RateStream.
 ///
-/// StreamingClippingFinder detects saturation limits and saturation planes from the readings. After the detection of a
-/// new saturation limit, RateStream classifies the samples in the window again. RateStream mistakes a clipped sample
-/// for a measurement only if the sample left the window before the detection of the saturation limit. With the
-/// calibration of an earlier run, the rate error of RateStream is 1.1 times the rate error of RateSmoother, and 99 % of
-/// the errors are within three standard deviations. If RateStream estimates the calibration during the tumble, the rate
-/// error is 1.6 times the error of RateSmoother, or 1.2 times with a lag of 0.5 s. The rate errors during one flight
-/// are correlated. RateStream increases the covariance of calibration and rates until enough flight samples are
-/// processed. The limitations of RateSmoother also apply to RateStream.
+/// Cost: O(window) per step. RateStream allocates memory only in start().
 class RateStream {
  public:
   using Params = RateStreamParams;
@@ -49,34 +41,31 @@ class RateStream {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit RateStream(const Params& params);
 
-  /// Returns the state before the first sample, and allocates all memory that push() needs.
   State start() const;
 
-  /// The output `out` is the estimate of the sample that is `lag_s` old, and is empty while the window fills. On error
+  /// `out` is the estimate of the sample that is `lag_s` old, and is empty while the window fills. On error
   /// (`non_finite`, `time_order`, `gap`), the state is unchanged and `out` is empty.
   Status push(const ImuSample& sample, State& state, std::optional<RateState>& out) const {
     return push(sample, {}, state, out);
   }
-  /// The readings of additional IMUs refer to the time of the sample. `auxiliary_imus` must be empty or contain one
-  /// reading per entry of RateModelParams::auxiliary_imus; otherwise push() returns `too_few`.
+  /// `auxiliary_imus` must be empty or contain one reading, at the time of the sample, per entry of
+  /// RateModelParams::auxiliary_imus; otherwise push() returns `too_few`.
   Status push(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus, State& state,
               std::optional<RateState>& out) const;
 
   /// Returns the provisional estimate of the newest sample, or an empty result before the first sample.
   std::optional<RateState> newest(const State& state) const;
 
-  /// Appends the estimates of the samples in the window to `out`, oldest first. Call flush() at the end of a run.
+  /// Appends the estimates of the samples in the window to `out`, oldest first, for the end of a run.
   void flush(const State& state, std::vector<RateState>& out) const;
 
   /// Reports current faults of the IMU: frozen axes (FrozenAxes), and forces in flight that fit an inverted
-  /// accelerometer (FlightSignCheck). While a gyro axis is frozen, the rate about this axis has the largest rate read
-  /// so far as standard deviation.
+  /// accelerometer (FlightSignCheck).
   SensorHealth health(const State& state) const;
 
   RigCalibration calibration(const State& state) const { return {state.rig, inflated(state)}; }
 
-  /// Returns the sensor errors that RateStream currently corrects, with their covariance. RateStream detects a delayed
-  /// accelerometer from impacts, unless the data sheet excludes a delay (RateStreamDelay).
+  /// Returns the sensor errors that RateStream currently corrects, with their covariance.
   KnownSensorErrors sensor_errors(const State& state) const;
 
  private:

@@ -11,11 +11,12 @@
 
 namespace tumble {
 
-/// Detects when an IMU is stationary. RestDetector detects rest if three conditions hold for a minimum time. The
-/// measured rate is within a plausible gyro bias, the force is large enough to be gravity, and rate and force are
-/// constant up to noise. RestDetector first averages the readings over `reading_s`, so that the parameters do not
-/// depend on the sample rate. White noise of density n [unit/sqrt(Hz)] has the standard deviation n / sqrt(reading_s)
-/// after averaging. Set each spread parameter to at least five standard deviations of the averaged noise. A steady
+/// Detects when an IMU is stationary: the mean rate is within a plausible gyro bias, the force may be gravity, and rate
+/// and force are constant up to noise.
+///
+/// RestDetector first averages the readings over `reading_s`, so that the parameters do not depend on the sample rate.
+/// White noise of density n [unit/sqrt(Hz)] has the standard deviation n / sqrt(reading_s) after averaging. Set
+/// `rate_spread_rad_s` and `force_spread_m_s2` to at least five standard deviations of the averaged noise. A steady
 /// rotation about the vertical slower than `rate_max_rad_s` also counts as rest.
 class RestDetector {
  public:
@@ -45,11 +46,12 @@ class RestDetector {
       visit(p.rest_s, {"rest_s", "s", 0.0, 1e4, "minimum duration of a rest"});
       visit(p.reading_s, {"reading_s", "s", 0.0, 1.0, "duration over which readings are averaged; 0: no averaging"});
       visit(p.memory_s,
-            {"memory_s", "s", 1e-3, 1e6, "time constant of the exponential mean of the readings during a rest"});
+            {"memory_s", "s", 1e-3, 1e6,
+             "time constant of the exponential mean of the readings during a rest, which follows a drifting bias"});
     }
   };
   struct State {
-    // The current run of readings stays close to its mean.
+    // sums of the current run of readings that stay close to their mean
     Eigen::Vector3d rate_sum_rad_s = Eigen::Vector3d::Zero();
     Eigen::Vector3d force_sum_m_s2 = Eigen::Vector3d::Zero();
     double weight = 0.0;              ///< number of readings in the sums; older readings count less
@@ -65,7 +67,6 @@ class RestDetector {
     bool started = false;
     bool operator==(const State&) const = default;
 
-    /// The mean is zero before the first reading.
     Eigen::Vector3d mean_rate_rad_s() const;
     Eigen::Vector3d mean_force_m_s2() const;
   };
@@ -73,8 +74,8 @@ class RestDetector {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit RestDetector(const Params& params);
 
-  /// Processes the next finite sample and returns whether the IMU is at rest up to the last averaged reading.
-  /// `bias_rad_s` is the known gyro bias [rad/s]. Cost: O(1), no allocation.
+  /// Processes a finite sample, and returns true if the IMU is at rest. `bias_rad_s` is the known gyro bias [rad/s].
+  /// Cost: O(1), no allocation.
   bool observe(const ImuSample& sample, State& state,
                const Eigen::Vector3d& bias_rad_s = Eigen::Vector3d::Zero()) const;
 
@@ -82,8 +83,7 @@ class RestDetector {
   bool observe_mean(const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& force_m_s2, TimeNs from_ns, TimeNs to_ns,
                     const Eigen::Vector3d& bias_rad_s, State& state) const;
 
-  /// Returns for each sample of a recording whether the IMU is at rest, including the first samples of each rest. Cost:
-  /// O(N).
+  /// Returns for each sample of a recording whether the IMU is at rest. Cost: O(N).
   std::vector<bool> find(std::span<const ImuSample> samples,
                          const Eigen::Vector3d& bias_rad_s = Eigen::Vector3d::Zero()) const;
 

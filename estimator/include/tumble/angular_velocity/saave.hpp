@@ -14,34 +14,30 @@
 
 namespace tumble {
 
-/// Estimates the angular velocity of a tumbling body from the centripetal force while the gyro is clipped.
+/// Estimates the angular velocity of a tumbling body from the centripetal force while the gyro is clipped. Saave
+/// implements a published method (Deschenes et al., "Saturation-Aware Angular Velocity Estimation", ICRA 2024, eqs
+/// 5-7).
 ///
-/// Saave implements a published method in two stages (Deschenes et al., "Saturation-Aware Angular Velocity Estimation",
-/// ICRA 2024, eqs 5-7). The recursive stage processes the samples in order and assumes that the rotation axis of the
-/// last accepted sample is still valid. The vector from the IMU to the rotation axis is l = (t.e)e - t, with the axis
-/// direction e and the lever arm t. In free flight, the component of the specific force along l is |l| |w|^2, where w
-/// is the rate. Saave computes the clipped axis of the rate from the force component along l and the two unclipped
-/// axes. In the smoothing stage, Saave smooths the rates of all samples with a white-noise-on-jerk prior.
+/// The recursive stage recovers at most one clipped axis per sample, the first in the order x, y, z. Further clipped
+/// axes of the sample have the variance of an unclipped reading. The smoothing stage smooths the rates of all samples
+/// with a white-noise-on-jerk prior.
 ///
-/// Saave recovers at most one clipped axis per sample, the first in the order x, y, z. Further clipped axes of the
-/// sample have the variance of an unclipped reading. The published method assumes free flight, an unclipped
-/// accelerometer, no bias, and no angular acceleration across the rotation axis. If the IMU is close to the rotation
-/// axis (small |l|), the estimate has a large error that Saave does not detect. Saave assigns the same variance to all
-/// recovered rates. The smoothed rates of clipped axes may be below the saturation limit.
+/// The published method assumes free flight, an unclipped accelerometer, no bias, and no angular acceleration across
+/// the rotation axis. If the IMU is close to the rotation axis, the estimate has a large error that Saave does not
+/// detect. All recovered rates have the same variance. The smoothed rates of clipped axes may be below the saturation
+/// limit.
 class Saave {
  public:
   struct Params {
-    /// Lever arm t from the centre of mass to the IMU in IMU axes [m], with |t_j| <= 10. The lever arm has no default
-    /// and must be accurate to about a millimetre.
+    /// Lever arm from the centre of mass to the IMU in IMU axes [m]. The lever arm has no default and must be accurate
+    /// to about a millimetre.
     Eigen::Vector3d lever_arm_m = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
-    /// Readings strictly above `saturation_point_rad_s` count as clipped. The saturation point has no default. Choose a
-    /// saturation point slightly below the largest reading of the device, because readings equal to the saturation
-    /// point count as unclipped.
+    /// Readings strictly above this rate count as clipped; no default. Choose a saturation point slightly below the
+    /// largest reading of the device.
     double saturation_point_rad_s = 0.0;
-    /// Variance of an unclipped reading [(rad/s)^2]. The default is (0.03 deg/s/sqrt(Hz) * sqrt(100 Hz))^2.
+    /// variance of an unclipped reading [(rad/s)^2]; default: (0.03 deg/s/sqrt(Hz) * sqrt(100 Hz))^2
     double variance_measured_rad2_s2 = 2.741e-5;
-    /// Variance of a recovered rate [(rad/s)^2]. The published code uses the variance 0.2741, and the paper prints
-    /// 3.648.
+    /// variance of a recovered rate [(rad/s)^2]: 0.2741 in the published code, 3.648 in the paper
     double variance_estimated_rad2_s2 = 0.2741;
     /// variance of a clipped axis whose rate Saave cannot recover [(rad/s)^2]
     double variance_rejected_rad2_s2 = 1e6;
@@ -91,12 +87,12 @@ class Saave {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit Saave(const Params& params);
 
-  /// Processes one sample in the recursive stage. Cost: O(1), no allocation. On error (`non_finite`, `time_order`,
-  /// `gap`), `state` and `out` are unchanged.
+  /// Processes one sample in the recursive stage. On error (`non_finite`, `time_order`, `gap`), `state` and `out` are
+  /// unchanged. Cost: O(1), no allocation.
   Status step(const ImuSample& sample, State& state, Recovered& out) const;
 
-  /// Cost: O(N). Returns `empty` if there are no samples. On error, `out` is unchanged, and the status contains the
-  /// field and value of the first invalid sample.
+  /// Returns `ok`, `empty`, `non_finite`, `time_order` or `gap`. On error, `out` is unchanged, and the status contains
+  /// the field and value of the first invalid sample. Cost: O(N).
   Status estimate(std::span<const ImuSample> samples, std::vector<RateState>& out) const;
 
   const Params& params() const { return params_; }

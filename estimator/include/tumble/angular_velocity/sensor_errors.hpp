@@ -7,8 +7,8 @@
 
 namespace tumble {
 
-/// SensorErrors contains the constant errors of gyro and accelerometer other than bias and noise. The vector of 29
-/// errors follows the order of the members, with matrices row by row.
+/// Constant errors of gyro and accelerometer other than bias and noise. The vector of 29 errors follows the order of
+/// the members, with matrices row by row.
 struct SensorErrors {
   static constexpr int kSize = 29, kAccel = 9, kGSensitivity = 18, kDelay = 27, kFilterTimeVariance = 28;
   using Vector = Eigen::Matrix<double, kSize, 1>;
@@ -17,12 +17,12 @@ struct SensorErrors {
   /// Errors of scale and misalignment. The gyro reads (1 + gyro) rate + g_sensitivity force + bias. The accelerometer
   /// reads (1 + accel) force + bias.
   Eigen::Matrix3d gyro = Eigen::Matrix3d::Zero(), accel = Eigen::Matrix3d::Zero();
-  /// Sensitivity of the gyro to specific force [rad/s per m/s^2].
+  /// sensitivity of the gyro to specific force [rad/s per m/s^2]
   Eigen::Matrix3d g_sensitivity_s_m = Eigen::Matrix3d::Zero();
-  /// Delay of the accelerometer relative to the gyro [s].
+  /// delay of the accelerometer relative to the gyro [s]
   double accel_delay_s = 0.0;
-  /// Variance of the averaging window of an accelerometer reading, minus the variance of the averaging window of a gyro
-  /// reading [s^2]. The variance difference is negative if the gyro averages over a longer time than the accelerometer.
+  /// variance of the time within an accelerometer reading's averaging window, minus the same variance of a gyro reading
+  /// [s^2]
   double accel_filter_time_variance_s2 = 0.0;
 
   Vector vector() const;
@@ -40,23 +40,20 @@ Status check_known(const KnownSensorErrors& earlier_runs);
 /// Throws InvalidParams if a sensor error exceeds 0.2, or if the covariance has a negative eigenvalue.
 void require_known(const KnownSensorErrors& earlier_runs);
 
-/// SensorErrorPriors contains prior standard deviations of sensor errors, for a calibrated and for an uncalibrated
-/// device. The function fit_sensor_errors() estimates which of the two priors fits the readings. If the prior of the
-/// uncalibrated device is not larger, the prior of the calibrated device always applies. Each standard deviation is in
-/// [0, 0.1], in the units of SensorErrors.
+/// Prior standard deviations of sensor errors, for a calibrated and for an uncalibrated device, in the units of
+/// SensorErrors. The function fit_sensor_errors() estimates which of the two priors fits the readings.
 struct SensorErrorPriors {
   /// Standard deviations of scale and misalignment. The defaults of the calibrated device are from the data sheet of
   /// the MTi-300: non-orthogonality 0.05 deg. The defaults of the uncalibrated device are from the MPU-6050: 3 % scale
   /// and 2 % cross-axis error, taken as three standard deviations.
   double gyro = 5e-4, gyro_uncalibrated = 0.01;
   double accel = 5e-4, accel_uncalibrated = 0.01;
-  /// Standard deviations of the g-sensitivity: 0.003 deg/s/g for a calibrated device, and 0.1 deg/s/g for an
-  /// uncalibrated device.
+  /// Standard deviations of the g-sensitivity. The defaults are 0.003 deg/s/g for a calibrated device and 0.1 deg/s/g
+  /// for an uncalibrated device.
   double g_sensitivity_s_m = 5.3e-6, g_sensitivity_uncalibrated_s_m = 1.8e-4;
   /// Standard deviations of the accelerometer's delay relative to the gyro. In a calibrated device, gyro and
-  /// accelerometer have equal filters of about 400 Hz. In an uncalibrated device, gyro and accelerometer have separate
-  /// windows and filters. The prior of accel_filter_time_variance_s2 is proportional to the square of the delay's
-  /// standard deviation.
+  /// accelerometer have equal filters; in an uncalibrated device, separate filters. The prior of
+  /// accel_filter_time_variance_s2 is proportional to the square of the delay's standard deviation.
   double delay_s = 1e-4, delay_uncalibrated_s = 5e-3;
 
   template <class Self, class Visitor>
@@ -82,23 +79,20 @@ struct SensorErrorPriors {
   }
 };
 
-/// Returns the prior standard deviations of all sensor errors, all above 0. `share` is between 0 (calibrated device)
-/// and 1 (uncalibrated device).
+/// Returns the prior standard deviations of all sensor errors. `share` is between 0 (calibrated device) and 1
+/// (uncalibrated device).
 SensorErrors::Vector prior_sigmas(const SensorErrorPriors& sizes, double share);
 
-/// SensorErrorEvidence is the log-likelihood of a run's readings as a quadratic function of the sensor errors. The
-/// log-likelihood is expanded at `linearisation_point`. `information` is the second derivative of the cost. `gradient`
-/// is the negative first derivative of the cost, with all other unknowns at their optimum.
+/// Log-likelihood of a run's readings as a quadratic function of the sensor errors, expanded at `linearisation_point`.
+/// `information` is the second derivative of the cost (negative log-likelihood), and `gradient` is its negative first
+/// derivative.
 struct SensorErrorEvidence {
   SensorErrors linearisation_point;
   SensorErrors::Matrix information = SensorErrors::Matrix::Zero();
   SensorErrors::Vector gradient = SensorErrors::Vector::Zero();
 };
 
-/// Multiplies the information about unobservable sensor errors by `share`; see rate_smoother.md (R39). Free motion of a
-/// body does not determine a scale common to all axes of a sensor, and a common rotation of gyro and accelerometer. For
-/// unobservable errors, residuals of the motion model wrongly appear as information. The wrong information grows with
-/// the number of samples, because smaller motions have smaller residuals.
+/// Multiplies the information about sensor errors that free motion cannot determine by `share`: rate_smoother.md (R39).
 void discount_unobservable(double share, SensorErrorEvidence& evidence);
 
 struct SensorErrorFit {
@@ -107,18 +101,13 @@ struct SensorErrorFit {
   double synchronous_probability = 1.0;  ///< probability that gyro and accelerometer are synchronous
 };
 
-/// Estimates the sensor errors by Bayesian model averaging over prior standard deviations. Each model assumes
-/// calibrated, uncalibrated or intermediate standard deviations for scale and misalignment, for g-sensitivity, and for
-/// delay and averaging. For each model, the function computes the Gaussian posterior of the sensor errors and the
-/// likelihood of the readings. The returned sensor errors are the mean and covariance of the mixture of all models. If
-/// the readings fit the data sheet, unobservable sensor errors therefore keep the small uncertainty of the data sheet.
-/// Cost: O(1), about 30 systems of 29 unknowns. `earlier_runs` is the result of calibration_evidence() for earlier runs
-/// of the device.
+/// Estimates the sensor errors by Bayesian model averaging over calibrated, intermediate and uncalibrated prior
+/// standard deviations. `earlier_runs` is the result of calibration_evidence() for earlier runs of the device. Cost:
+/// O(1), about 30 systems of 29 unknowns.
 SensorErrorFit fit_sensor_errors(const SensorErrorEvidence& evidence, const SensorErrorPriors& sizes,
                                  const SensorErrorEvidence& earlier_runs = {});
 
-/// Converts sensor errors that one run estimated to measurement information for the next run. The prior of an
-/// uncalibrated device is removed from the covariance, because the next run adds the prior again.
+/// Converts the sensor errors that one run estimated to measurement information for the next run, without the prior.
 SensorErrorEvidence calibration_evidence(const KnownSensorErrors& earlier_runs, const SensorErrorPriors& sizes);
 
 }  // namespace tumble

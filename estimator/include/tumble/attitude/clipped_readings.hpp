@@ -20,11 +20,11 @@ struct ClippedReadings {
 
   ClippedElements clipped() const { return {rows, signs}; }
 
-  /// Marks suspect gyro readings as lower bounds. A suspect reading may be saturated at an unknown limit. Bit j of
-  /// `axes[k]` is set if the reading of axis j of sample k is suspect.
+  /// Marks suspect gyro readings, which may be saturated at an unknown limit, as lower bounds of the rate. Bit j of
+  /// `axes[k]` is set if the reading of gyro axis j in sample k is suspect.
   void mark_suspect(std::span<const ImuSample> samples, std::span<const std::uint8_t> axes);
 
-  /// Changes the source of a measured rate to `bounded_only` if its reading may be saturated during a part of its
+  /// Sets the source of a measured rate to `bounded_only` if the gyro reading may be saturated during a part of its
   /// averaging window. `rates` contains one rate per sample.
   void mark_partly_saturated(std::span<RateState> rates) const;
 };

@@ -24,14 +24,16 @@ struct HandMotionParams {
     visit(p.position_tau_s, {"position_tau_s", "s", 1e-3, 1e3, "correlation time of the hand-held point's position"});
     visit(p.position_leak_s, {"position_leak_s", "s", 0.1, 1e4,
                               "time constant with which the estimated position of the hand-held point decays to zero"});
-    visit(p.hand_noise_adaptation, {"hand_noise_adaptation", "1", 0.0, 1.0,
-                                    "share by which the assumed acceleration follows the measured power of the motion; "
-                                    "0: constant assumed acceleration",
-                                    FieldRank::basic});
-    visit(p.hand_window_s,
-          {"hand_window_s", "s", 0.01, 1e3, "time window over which the power of the motion is measured"});
-    visit(p.hand_noise_floor_ratio, {"hand_noise_floor_ratio", "1", 1e-3, 1e3,
-                                     "minimum ratio of the adapted acceleration to the assumed acceleration"});
+    visit(p.hand_noise_adaptation,
+          {"hand_noise_adaptation", "1", 0.0, 1.0,
+           "share by which the assumed acceleration of the hand adapts to the measured acceleration; "
+           "0: constant assumed acceleration",
+           FieldRank::basic});
+    visit(p.hand_window_s, {"hand_window_s", "s", 0.01, 1e3,
+                            "time window over which the mean square acceleration of the hand is measured"});
+    visit(p.hand_noise_floor_ratio,
+          {"hand_noise_floor_ratio", "1", 1e-3, 1e3,
+           "minimum ratio of the adapted to the assumed power spectral density of the hand's acceleration"});
   }
 };
 
@@ -49,7 +51,7 @@ struct HandHeldReadingParams {
   static void fields(Self& p, Visitor& visit) {
     visit(p.deficit_error_ratio,
           {"deficit_error_ratio", "1", 0.0, 1.0,
-           "error that the saturation deficit of one clipped element causes on an unclipped element, per deficit",
+           "error of an unclipped sensing element, as a share of the saturation deficit of a clipped element",
            FieldRank::basic});
     visit(p.rail_sigma_rad_s, {"rail_sigma_rad_s", "rad/s", 1e-4, 1.0, "standard deviation of the saturation limit"});
     visit(p.accel_error_ratio,
@@ -87,7 +89,7 @@ struct HandHeldExpertParams {
   double node_s = 0.01;  ///< time between two nodes (states of the estimator)
   int iterations_max = 15;
   double gap_max_s = 1.0;
-  /// Factor on the assumed angular jerk for the reported covariances, because the true angular jerk is unknown.
+  /// Factor on the assumed angular jerk, with which HandHeldSmoother computes the reported covariances.
   double jerk_inflation = 4.0;
   RestDetector::Params rest = {};
   HandMotionParams hand = {};
@@ -102,8 +104,7 @@ struct HandHeldExpertParams {
           {"gap_max_s", "s", 1e-300, 1e4, "maximum time between two samples; a longer gap ends the run with an error"});
     visit(p.jerk_inflation,
           {"jerk_inflation", "1", 1.0, 100.0,
-           "the covariances are computed with the root density of the angular jerk multiplied by this factor",
-           FieldRank::basic});
+           "factor on the assumed angular jerk in the computation of the reported covariances", FieldRank::basic});
     visit.group("rest_", p.rest);
     visit.group("", p.hand);
     visit.group("", p.readings);

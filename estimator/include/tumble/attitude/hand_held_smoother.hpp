@@ -17,22 +17,21 @@
 
 namespace tumble {
 
-/// One value per sensing element of an IMU: -1 if clipped at the negative limit, 1 if clipped at the positive limit, 0
-/// if unsaturated. kMissing marks a gyro reading that is invalid because of an overflow.
+/// One value per sensing element of an IMU: -1 or 1 if the element is clipped at the negative or positive limit, and 0
+/// if the element is unsaturated. `kMissing` marks a gyro reading that is invalid because of an overflow.
 struct ClipSigns {
   static constexpr std::int8_t kMissing = 2;
   std::array<std::int8_t, 3> gyro{}, accel{};
 };
 ClipSigns clip_signs(const ImuSample& sample, const Clipping& clipping);
 
-/// Gyro element i measures the component of the rate along m_i, which is row i of `rows`. While gyro element i clips,
-/// the component m_i' y of the reading y equals the saturation limit. The magnitude of the true component m_i' (rate +
-/// bias) is then at least the saturation limit.
+/// Row i of `rows` is the sensing direction of gyro element i, in the axes of the gyro. While element i clips, the
+/// component of (rate + bias) along row i is at or beyond the saturation limit.
 struct ClippedElements {
   Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();
   std::span<const ClipSigns> signs;  ///< one entry per sample; empty: no clipping
-  /// Covariance of each rate that was recovered from the equations of flight, in sensor axes. A covariance of zero
-  /// marks a measured rate, and an empty span marks all rates as measured. A sample with a recovered rate must not have
+  /// Covariance of each rate that was recovered from saturation [rad^2/s^2], in sensor axes; zero for a measured rate.
+  /// An empty `recovered_covariance_rad2_s2` marks all rates as measured. A sample with a recovered rate must not have
   /// clipped sensing elements.
   std::span<const Eigen::Matrix3d> recovered_covariance_rad2_s2 = {};
 };
@@ -40,16 +39,16 @@ struct ClippedElements {
 /// Estimates attitude and angular velocity of a hand-held body from one IMU over a recording, also while the gyro is
 /// saturated.
 ///
-/// Hand-held motion is bounded: accelerations are short, and the velocity and displacement of the hand return to zero.
-/// The specific force is therefore the sum of gravity, the centripetal and tangential force at the lever arm, and a
-/// bounded remainder. The rotation of the measured gravity vector in sensor axes determines the rate while the gyro is
-/// saturated. HandHeldSmoother estimates attitude, rate, angular acceleration and hand motion at equal time steps,
-/// called nodes. HandHeldSmoother also estimates the biases and the lever arm of the IMU. The Gauss-Newton solver uses
-/// the arrow structure of the normal equations; the inverse normal matrix gives the covariances. Memory (about 7 kB per
-/// node) and computation are proportional to the duration, and independent of the IMU's sample rate.
+/// HandHeldSmoother assumes that the acceleration of the hand is bounded, and that velocity and displacement of the
+/// hand return to zero. While the gyro is saturated, the rotation of the measured gravity in sensor axes determines the
+/// rate. HandHeldSmoother also estimates the biases and the lever arm from the hand-held point to the IMU. The
+/// equations are in docs/maths/carried.md.
 ///
-/// HandHeldSmoother assumes that the body is not thrown (see `hand_acceleration_ratio`) and has no hard contact.
-/// HandHeldSmoother assumes constant biases, and reports the heading relative to the start.
+/// Computation and memory (about 7 kB per time step `node_s`) are proportional to the duration of the recording, and
+/// independent of the sample rate of the IMU.
+///
+/// HandHeldSmoother assumes constant biases and a body that is neither thrown nor hit (see `hand_acceleration_ratio`).
+/// The heading is relative to the start of the recording.
 class HandHeldSmoother {
  public:
   using Params = HandHeldParams;
@@ -60,18 +59,15 @@ class HandHeldSmoother {
     int iterations = 0;
     bool converged = false;
     double cost = 0.0;
-    /// Largest mean acceleration of the hand over a quarter of a second, divided by the assumed standard deviation. A
-    /// ratio above 2 indicates that the body was thrown (specific force about 0) or handled roughly. The ratio is a
-    /// diagnostic and does not influence the estimate.
+    /// Largest mean acceleration of the hand over a quarter of a second, divided by `hand_sigma_m_s2`; above 2, the
+    /// body was probably thrown or handled roughly.
     double hand_acceleration_ratio = 0.0;
-    /// During long clipping, the number of full revolutions can be ambiguous. `revolutions_tested` is the number of
-    /// clipped segments with a test of other numbers of revolutions. `revolutions_corrected` counts, in each round, the
-    /// segments in which another number of revolutions fitted better. `revolutions_ambiguous` counts segments in which
-    /// another number has odds of at least 1 to 1000. The rate covariance includes the spread of the possible numbers
-    /// of revolutions.
+    /// During long saturation, the number of full revolutions can be ambiguous. `revolutions_tested` counts the
+    /// saturated intervals in which HandHeldSmoother compared several numbers of revolutions. `revolutions_corrected`
+    /// counts the saturated intervals in which another number of revolutions fitted better. `revolutions_ambiguous`
+    /// counts the saturated intervals in which another number of revolutions has odds of at least 1 to 1000.
     int revolutions_tested = 0, revolutions_corrected = 0, revolutions_ambiguous = 0;
-    /// Number of revolution tests in which the solver failed. HandHeldSmoother then restores the previous solution, and
-    /// counts the segment in revolutions_ambiguous.
+    /// Number of revolution tests in which the solver failed; the previous solution is kept.
     int revolutions_failed = 0;
   };
 
@@ -80,9 +76,8 @@ class HandHeldSmoother {
 
   /// `rates` contains the angular velocity of each sample, in sensor axes [rad/s]. `attitudes` contains the rotation
   /// from sensor axes to the world at each sample, with heading 0 at the start. Returns `ok`, `empty`, `non_finite`,
-  /// `time_order`, `gap`, `out_of_range` or `diverged`. On error, the outputs are empty. The error `out_of_range` means
-  /// that the input arrays have different sizes or that a covariance is invalid. The error `diverged` means that the
-  /// normal equations are not positive definite.
+  /// `time_order`, `gap`, `out_of_range` (sizes of the inputs differ, or a covariance is invalid) or `diverged` (the
+  /// normal equations are not positive definite). On error, the outputs are empty.
   Status estimate(std::span<const ImuSample> samples, const ClippedElements& clipped, std::vector<RateState>& rates,
                   std::vector<AttitudeState>& attitudes, Report& report) const;
 

@@ -13,22 +13,16 @@
 namespace tumble {
 
 /// Estimates attitude and angular velocity of hand-held motion sample by sample, with a fixed lag. HandHeldStream
-/// applies the model of HandHeldSmoother to a sliding window of nodes, with one Gauss-Newton step per node.
+/// applies the model of HandHeldSmoother to a sliding window of time steps (nodes).
 ///
-/// The oldest node is marginalised into a Gaussian prior on the next node, the biases and the lever arm. push() returns
-/// each rate when its sample is `lag_s` old. The window `window_s` is longer than the lag, so that each step also
-/// relinearises nodes older than the lag. start() allocates all memory of the stream. A run that continues from a copy
-/// of the State gives bit-identical results.
+/// HandHeldStream allocates memory only in start(). A run that continues from a copy of the State gives bit-identical
+/// results.
 ///
-/// Differences from HandHeldSmoother are the following. While no sample in the window is clipped, the solver runs only
-/// for every fifth node. The initial attitude comes from a single force reading. The assumed density of the hand's
-/// acceleration adapts to the nodes that have left the window, with the time constant `hand_window_s` / 2. Other
-/// numbers of full revolutions in a clipped segment are not tested. The rate covariance includes the error of one
-/// additional revolution (C42, C43 of carried.md). After the detection of a new saturation limit, only the readings in
-/// the window are classified again. The prior from marginalised nodes uses the assumed jerk, but reported covariances
-/// use the increased jerk (`jerk_inflation`).
+/// Unlike HandHeldSmoother, HandHeldStream does not test other numbers of full revolutions during saturation. The rate
+/// covariance includes the error of one additional revolution: carried.md (C42), (C43). After the detection of a
+/// saturation limit, HandHeldStream classifies only the readings in the window again.
 ///
-/// Cost: each new node costs one Gauss-Newton step, O(window).
+/// Cost: O(window) per node while a sample in the window is clipped, and a fifth of this cost otherwise.
 class HandHeldStream {
  public:
   struct Params {
@@ -52,7 +46,7 @@ class HandHeldStream {
   struct Reading {
     ImuSample sample;
     ClipSigns signs;
-    /// relative to the centre of the first sample's averaging window
+    /// times after the centre of the first sample's averaging window
     double centre_s = 0.0, end_s = 0.0;
     std::int64_t node = 0;  ///< node closest to the centre of the averaging window
     bool rest = false;
@@ -70,8 +64,8 @@ class HandHeldStream {
     Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();
     hand_held::Constants constants;
     hand_held::System::BorderMatrix constants_covariance = hand_held::System::BorderMatrix::Zero();
-    // Gaussian prior on the oldest node and on the constants, from all data that have left the window. The Gaussian
-    // prior is linearised at `prior_node` and `prior_constants`.
+    // Gaussian prior on the oldest node and on the constants (biases, lever arm), from all data that have left the
+    // window.
     hand_held::System::Block prior;
     hand_held::System::Corner prior_corner;
     hand_held::Node prior_node;
@@ -84,10 +78,9 @@ class HandHeldStream {
     std::int64_t start_ns = 0;
     std::size_t samples = 0;
     std::size_t failures = 0;  ///< number of steps skipped because the normal equations were not positive definite
-    /// per gyro element, for the current clipped segment up to the last reported sample: duration, and time integral of
-    /// the rate's standard deviation
+    /// duration of the current saturation of each gyro element, and time integral of the rate's standard deviation
     Eigen::Vector3d clipped_duration_s = Eigen::Vector3d::Zero(), clipped_angle_sigma_rad = Eigen::Vector3d::Zero();
-    std::size_t revolutions_ambiguous = 0;       ///< number of segments that may contain an additional revolution
+    std::size_t revolutions_ambiguous = 0;       ///< saturated intervals that may contain an additional revolution
     std::vector<hand_held::System::Block> work;  ///< buffer, not part of the state
   };
 
@@ -96,20 +89,19 @@ class HandHeldStream {
 
   /// The returned state has all memory that push() needs.
   State start() const;
-  /// Resets `state` without allocating memory; the counters keep their values.
+  /// Resets `state`, except its counters, without allocating memory.
   void restart(State& state) const;
 
-  /// Computes the rate `out` of the sample that is `lag_s` old; `out` is empty while the window fills. `known` contains
-  /// the current clip signs of the newest samples, up to `sample`. A sample in the window whose clip signs changed is
-  /// processed again. If `wanted` is false, `out` is always empty, and push() skips most of the computation. `repeated`
-  /// describes repeated readings (sample and hold) of the log. A repeated reading counts once, at the time when the
-  /// sensor took the reading (R95 of rate_stream.md). Returns `ok`, `non_finite`, `time_order`, `gap`, `out_of_range`
-  /// (no signs) or `degenerate` (sensing directions that do not span the axes). On error, `state` is unchanged and
-  /// `out` is empty.
+  /// Computes the rate `out` of the sample that is `lag_s` old; `out` is empty while the window fills or if `wanted` is
+  /// false. `known` contains the current clip signs of the newest samples, up to `sample`. `repeated` states which
+  /// readings of the log repeat an earlier reading (sample and hold); a repeated reading counts once.
+  ///
+  /// Returns `ok`, `non_finite`, `time_order`, `gap`, `out_of_range` (no clip signs) or `degenerate` (linearly
+  /// dependent sensing directions). On error, `state` is unchanged and `out` is empty.
   Status push(const ImuSample& sample, const ClippedElements& known, State& state, std::optional<RateState>& out,
               bool wanted = true, const RepeatDetector::State& repeated = {}) const;
 
-  /// Appends the unreported rates of the samples in the window to `out`, oldest first.
+  /// Appends the rates of the samples in the window that were not yet reported, oldest first.
   void flush(const State& state, std::vector<RateState>& out) const;
 
  private:

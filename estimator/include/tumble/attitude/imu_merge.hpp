@@ -23,7 +23,7 @@ namespace tumble {
 
 struct ImuMergeParams {
   static constexpr int kImus = ImuMergeState::kImus;
-  /// pose of each IMU in the common axes C; only the first `count` entries are used
+  /// pose of each IMU in the common axes C of the rigid body; the first `count` entries are used
   std::array<Eigen::Isometry3d, kImus> T_CI{};
   int count = 1;
   double rate_noise_rad_s = 0.01;  ///< standard deviation of the mean rate over a window
@@ -32,7 +32,7 @@ struct ImuMergeParams {
   double gyro_range_rad_s = 1e3;   ///< readings at or above this rate are saturated
   double accel_range_m_s2 = 1e5;
   double gap_max_s = 1.0;
-  /// sensing directions of each IMU's gyro and accelerometer, as RailPlaneFinder finds them
+  /// sensing directions of each IMU, as found by RailPlaneFinder
   std::array<SensingDirections, kImus> gyro_elements{}, accel_elements{};
 
   using Expert = ImuMergeExpertParams;
@@ -46,10 +46,11 @@ struct ImuMergeParams {
     visit(p.window_s, {"window_s", "s", 0.0, 0.1, "duration over which readings are averaged before merging"});
     visit(p.offset_sigma_s,
           {"offset_sigma_s", "s", 0.0, 0.1, "prior standard deviation of an IMU's time offset; 0: no offset"});
-    visit(p.gyro_range_rad_s,
-          {"gyro_range_rad_s", "rad/s", 1e-12, 1e3, "gyro readings from this value on count as saturated"});
+    visit(p.gyro_range_rad_s, {"gyro_range_rad_s", "rad/s", 1e-12, 1e3,
+                               "measuring range of the gyros; readings at or above this value count as saturated"});
     visit(p.accel_range_m_s2,
-          {"accel_range_m_s2", "m/s^2", 1e-12, 1e5, "accelerometer readings from this value on count as saturated"});
+          {"accel_range_m_s2", "m/s^2", 1e-12, 1e5,
+           "measuring range of the accelerometers; readings at or above this value count as saturated"});
     visit(p.gap_max_s,
           {"gap_max_s", "s", 1e-9, 1e4, "maximum time between two samples; a longer gap ends the run with an error"});
     visit.group("", p.expert);
@@ -58,33 +59,21 @@ struct ImuMergeParams {
 
 /// Merges several IMUs on one rigid body into one IMU, in common axes C, at the mean position of the IMUs.
 ///
-/// On a rigid body, the specific force is linear in position. The mean force of all IMUs is therefore exactly the force
-/// at their mean position, for any angular acceleration. If one IMU disagrees while three or more IMUs agree, the
-/// disagreeing IMU is excluded from the sample. The mean force is corrected for the shift of the mean position that an
-/// exclusion causes. While the body rotates, a Kalman filter estimates each IMU's bias, scale, misalignment and time
-/// offset relative to the mean of all IMUs. ImuMerge corrects significant time offsets; averaging reduces the remaining
-/// gyro errors. In fast rotation, averaging does not reduce accelerometer errors, because large opposite forces cancel
-/// in the mean. ImuMerge therefore estimates and corrects the accelerometer errors.
+/// The merged force is the mean force of the IMUs, corrected for excluded IMUs. While the body rotates, ImuMerge
+/// estimates bias, scale, misalignment and time offset of each gyro relative to the mean of all gyros. ImuMerge
+/// corrects significant time offsets and accelerometer errors. If all gyros are saturated, the force differences
+/// between three or more IMUs determine the rate. The equations are in docs/maths/imu_merge.md.
 ///
-/// IMUs with a saturated accelerometer are excluded from the mean force. A disagreeing IMU that may have been saturated
-/// during a part of the sample is excluded, too. If most IMUs may be saturated, the merged force is flagged as clipped.
-/// If the gyros are saturated, ImuMerge computes the rate from the force differences between three or more IMUs. If the
-/// rate cannot be computed, the merged sample has clip flags. With one or two IMUs, ImuMerge excludes an IMU with a
-/// clipped gyro while the other IMU is unsaturated. If all gyros are saturated, ImuMerge flags every axis of C to which
-/// a clipped axis contributes. A reading counts as clipped if the reading is flagged or beyond the stated range. The
-/// caller must flag readings at lower saturation limits and at tilted planes beforehand (ClippingFinder).
+/// The merged sample has clip flags if saturation prevents a correct rate or force. A reading is saturated if the
+/// device flags the reading, or if the reading exceeds the stated range. The caller must flag readings at lower or
+/// tilted saturation limits beforehand (ClippingFinder).
 ///
-/// The readings are averaged over `window_s`, so bandwidth and tolerances do not depend on the IMUs' sample rate. If
-/// the sample period is at least `window_s`, the readings are not averaged. If an axis was saturated within the window,
-/// the mean of the axis is a lower bound.
+/// ImuMerge excludes an IMU with a saturated accelerometer or with a reading that is not finite. ImuMerge also excludes
+/// an IMU that disagrees with three or more agreeing IMUs, permanently if the disagreement lasts. A frozen IMU, which
+/// repeats one reading during motion, is excluded until its readings have changed for 0.5 s.
 ///
-/// An IMU whose reading is not finite counts as absent. An IMU is frozen if its gyro or accelerometer repeats one
-/// reading while the readings of other IMUs change. An IMU is also frozen if its accelerometer repeats one reading
-/// while the direction of gravity rotates. A frozen IMU is excluded until its readings have changed for 0.5 s. An IMU
-/// that disagrees for long (scale, axes, unit) is excluded permanently, as long as two other IMUs remain. Repeated
-/// readings of a body at rest do not count as frozen.
-///
-/// ImuMerge assumes that all clocks have the same rate, and does not detect an error that all IMUs share.
+/// The readings are averaged over `window_s`, unless the sample period is at least `window_s`. ImuMerge assumes that
+/// all clocks have the same rate, and does not detect an error that all IMUs share.
 class ImuMerge {
  public:
   static constexpr int kImus = ImuMergeState::kImus;
@@ -99,16 +88,16 @@ class ImuMerge {
 
   explicit ImuMerge(const Params& params);
 
-  /// Returns the ratio of measured to expected force differences between IMUs. The expected differences follow from
-  /// rotation and positions. The ratio is 1 if forces and rotation agree, and -1 if the sign of the accelerometers is
-  /// inverted. The result is empty until the body has rotated enough.
+  /// Returns the ratio of measured to expected force differences between IMUs. The expected force differences follow
+  /// from the rotation and the positions of the IMUs. The force ratio is 1 for correct IMUs, -1 for accelerometers with
+  /// inverted sign, and empty before enough rotation.
   static std::optional<double> lever_arm_agreement(const State& state);
 
-  /// Returns `out_of_range` with the duration [s] if all active IMUs are frozen. While all IMUs are frozen, step()
-  /// merges their readings unchanged.
+  /// Returns `out_of_range` with the duration [s] if all IMUs are frozen. While all IMUs are frozen, step() merges
+  /// their readings unchanged.
   static Status verdict(const State& state);
   static void add_finding(const Unit& unit, const std::string& name, SensorHealth& health);
-  /// Adds findings about exchanged or inverted axes of all IMUs (UnitSignCheck), and about a wrong scale
+  /// Adds warnings about exchanged or inverted axes of all IMUs (UnitSignCheck), and about a wrong scale
   /// (lever_arm_agreement()). `gyro_confirmed` states whether another check confirms the scale of the gyros.
   static void add_findings(const std::optional<UnitSignCheck::Detected>& mislabelled_axes,
                            const std::optional<double>& lever_arm_agreement, bool gyro_confirmed, SensorHealth& health);
@@ -116,9 +105,9 @@ class ImuMerge {
   Eigen::Vector3d p_C_m() const { return p_C_m_; }
 
   /// The samples must be simultaneous; the merged sample has the time stamp of the first IMU. `merged` is the mean over
-  /// the averaging window in axes C, or empty while the window is incomplete. Returns `too_few` if `samples` does not
-  /// contain `count` samples, or if none of the samples is finite. On error, the state is unchanged and `merged` is
-  /// empty. Cost: O(count), no allocation.
+  /// `window_s` in axes C, or empty between two averages. Returns `too_few` if `samples` does not contain `count`
+  /// samples, or if none of the samples is finite. On error, the state is unchanged and `merged` is empty. Cost:
+  /// O(count), no allocation.
   Status step(std::span<const ImuSample> samples, State& state, std::optional<ImuSample>& merged) const;
 
  private:
@@ -126,7 +115,7 @@ class ImuMerge {
 
   using UnitMask = std::array<bool, kImus>;
 
-  /// mean readings over a window, with flags of the axes that were saturated in the window
+  /// mean readings over a window; the clip flags cover the whole window
   using Readings = std::array<ImuSample, kImus>;
 
   void accumulate_window(std::span<const ImuSample> samples, double dt_s, State& state) const;

@@ -13,13 +13,9 @@
 namespace tumble {
 
 /// Estimates the angular velocity of a body in flight, in contact or hand-held, over a whole recording. RateSmoother
-/// estimates the rates under the assumption of flight and contact. HandHeldSmoother estimates the rates again where the
-/// body was probably hand-held while the gyro clipped. RegimeSmoother combines the two rate estimates by the
-/// probability of hand-held motion (RegimeEvidence).
-///
-/// All samples of a clipped segment use the smallest probability of hand-held motion within and near the segment,
-/// because a hand may release the body. With additional IMUs, which determine the rate in any kind of motion,
-/// HandHeldSmoother does not run.
+/// estimates the rates for flight and contact. Where the body was probably hand-held while the gyro clipped,
+/// HandHeldSmoother estimates the rates for hand-held motion. RegimeSmoother combines the rates of both smoothers by
+/// the probability of hand-held motion (RegimeEvidence), which is constant during each saturated interval.
 class RegimeSmoother {
  public:
   struct Params {
@@ -35,11 +31,11 @@ class RegimeSmoother {
       visit.group("", p.rate);
       visit.group("evidence_", p.evidence);
       visit.group("carried_", p.hand_held);
-      visit(p.hand_held_probability_min,
-            {"hand_held_probability_min", "1", 0.0, 1.0,
-             "the smoother for hand-held motion runs if the probability of hand-held motion exceeds this value"});
-      visit(p.segment_gap_max_s, {"segment_gap_max_s", "s", 0.0, 10.0,
-                                  "clipped samples that are less than this time apart belong to one segment"});
+      visit(p.hand_held_probability_min, {"hand_held_probability_min", "1", 0.0, 1.0,
+                                          "minimum probability of hand-held motion for which HandHeldSmoother runs"});
+      visit(p.segment_gap_max_s,
+            {"segment_gap_max_s", "s", 0.0, 10.0,
+             "clipped samples that are less than this time apart belong to one saturated interval"});
     }
   };
   struct Report {
@@ -59,13 +55,13 @@ class RegimeSmoother {
   Status estimate(std::span<const ImuSample> samples, std::vector<RateState>& rates, Report& report) const {
     return estimate(samples, {}, rates, report);
   }
-  /// Estimates the rates with additional IMUs on the body, like RateSmoother::estimate(). With additional IMUs,
-  /// HandHeldSmoother does not run and `report.judged` is false.
+  /// Estimates the rates with additional IMUs on the body, like RateSmoother::estimate(). With additional IMUs, the
+  /// rates are those of RateSmoother and `report.judged` is false.
   Status estimate(std::span<const ImuSample> samples, std::span<const std::vector<AuxiliaryReading>> auxiliary_imus,
                   std::vector<RateState>& rates, Report& report) const;
 
-  /// Combines `rates`, the result of RateSmoother, with the rates of HandHeldSmoother, in place. `report.rate` must
-  /// contain the report of RateSmoother.
+  /// Combines the rates of RateSmoother, given in `rates`, with the rates of HandHeldSmoother. The caller must set
+  /// `report.rate` to the report of RateSmoother before calling join().
   void join(std::span<const ImuSample> samples, std::vector<RateState>& rates, Report& report) const;
 
  private:

@@ -12,19 +12,13 @@
 
 namespace tumble {
 
-/// Estimates the angular velocity of a body in flight, in contact or hand-held, sample by sample. RateStream estimates
-/// the rates under the assumption of flight and contact, and detects the saturation limits. HandHeldStream estimates
-/// the rates again where the body is probably hand-held while the gyro clips. RegimeStream combines the two rate
-/// estimates by the probability of hand-held motion.
+/// Estimates the angular velocity of a body in flight, in contact or hand-held, sample by sample, with a fixed lag.
+/// RateStream estimates the rates for flight and contact, and detects the saturation limits. Where the body is probably
+/// hand-held while the gyro clips, HandHeldStream estimates the rates for hand-held motion. RegimeStream combines the
+/// rates of RateStream and HandHeldStream by the probability of hand-held motion. An unclipped sample always has the
+/// rate of RateStream.
 ///
-/// A filter over the reported samples estimates the probabilities of flight, contact and hand-held motion. The weight
-/// of HandHeldStream is the smallest probability of hand-held motion in the clipped segment, as in RegimeSmoother. If
-/// RateStream resets its calibration in most steps within its lag, clipped samples do not change the probabilities.
-/// HandHeldStream pauses while the probability of hand-held motion is below `hand_held_probability_min`, and then
-/// restarts. RegimeStream reports RateStream's rate for each unclipped sample.
-///
-/// The probabilities use the time derivative of the rates, because RateStream's angular accelerations can wrongly
-/// explain gravity.
+/// HandHeldStream runs only while the probability of hand-held motion is at least `hand_held_probability_min`.
 class RegimeStream {
  public:
   struct Params {
@@ -39,11 +33,11 @@ class RegimeStream {
       visit.group("", p.rate);
       visit.group("evidence_", p.evidence);
       visit.group("carried_", p.hand_held);
-      visit(p.hand_held_probability_min,
-            {"hand_held_probability_min", "1", 0.0, 1.0,
-             "the smoother for hand-held motion runs if the probability of hand-held motion exceeds this value"});
-      visit(p.segment_gap_max_s, {"segment_gap_max_s", "s", 0.0, 10.0,
-                                  "clipped samples that are less than this time apart belong to one segment"});
+      visit(p.hand_held_probability_min, {"hand_held_probability_min", "1", 0.0, 1.0,
+                                          "minimum probability of hand-held motion for which HandHeldStream runs"});
+      visit(p.segment_gap_max_s,
+            {"segment_gap_max_s", "s", 0.0, 10.0,
+             "clipped samples that are less than this time apart belong to one saturated interval"});
     }
   };
   struct ReportedProbability {
@@ -62,8 +56,7 @@ class RegimeStream {
     std::size_t rig_resets = 0;        ///< last value of RateStream's counter of calibration resets
     double resets = 0.0;  ///< number of calibration resets of RateStream, decaying with the time constant `rate.lag_s`
     bool hand_held_running = false;  ///< true if HandHeldStream is running
-    /// Samples that may determine the smallest probability of hand-held motion within the last `segment_gap_max_s`. The
-    /// oldest entry has the smallest probability of hand-held motion.
+    /// probabilities of hand-held motion in the last `segment_gap_max_s`; the oldest entry is the smallest
     std::vector<ReportedProbability> near;
     TimeNs reported_ns = 0;            ///< time of the last reported sample
     std::optional<TimeNs> clipped_ns;  ///< last reported clipped sample
@@ -75,14 +68,14 @@ class RegimeStream {
   /// The returned state has all memory that push() needs.
   State start() const;
 
-  /// Processes one sample like RateStream::push(), and combines the rate with the rate of HandHeldStream.
+  /// Processes one sample like RateStream::push(), and combines the rates of RateStream and HandHeldStream.
   Status push(const ImuSample& sample, std::span<const AuxiliaryReading> auxiliary_imus, State& state,
               std::optional<RateState>& out) const;
   Status push(const ImuSample& sample, State& state, std::optional<RateState>& out) const {
     return push(sample, {}, state, out);
   }
 
-  /// Appends the rates of the samples in the window, combined by the current probabilities.
+  /// Appends the rates of the samples in the window that were not yet reported, oldest first.
   void flush(const State& state, std::vector<RateState>& out) const;
 
   const RateStream& rate() const { return rate_; }

@@ -12,26 +12,21 @@
 
 namespace tumble {
 
-/// Probabilities of three kinds of motion at one sample, which sum to 1. Free flight has zero specific force at the
-/// centre of mass, contact has any force, and hand-held motion has a bounded acceleration about gravity.
+/// Probabilities of three kinds of motion at one sample, with the sum 1.
 struct RegimeProbabilities {
   double flight = 0.0, contact = 0.0, hand_held = 0.0;
 };
 
-/// Estimates the kind of motion (flight, contact or hand-held) of each sample of a recording from the specific force.
+/// Estimates the kind of motion (free flight, contact or hand-held) of each sample of a recording from the specific
+/// force.
 ///
-/// The residual force is e = f - a x r - w x (w x r), the specific force without the effect of rotation at the lever
-/// arm. The symbols are the specific force f, the rate w, the angular acceleration a and the lever arm r. In flight,
-/// the residual force is zero; in hand-held motion, gravity plus the acceleration of a hand in any direction. In
-/// contact, the residual force can have any magnitude; the logarithm of the magnitude has a uniform prior. A Markov
-/// chain connects the samples: flight and contact alternate several times per second, but a body is rarely thrown or
-/// caught. The Markov chain prevents that an impact or a quiet moment of rolling counts as hand-held motion. Readings
-/// within `memory_s` are correlated and count as one reading. Readings without rotation do not change the
-/// probabilities.
+/// The residual force is the specific force minus the effect of rotation at the lever arm. The residual force is zero
+/// in free flight. In hand-held motion, the residual force is gravity plus a bounded acceleration in any direction. In
+/// contact, the residual force can have any magnitude. A Markov chain models the transitions between flight, contact
+/// and hand-held motion. Readings within `memory_s` count as one independent observation.
 ///
-/// RegimeEvidence does not use the attitude, so its probabilities are available before HandHeldSmoother runs.
-/// RegimeEvidence assumes that no rope, no buoyancy and no aerodynamic force above `flight_force_sigma_m_s2` acts on
-/// the body.
+/// RegimeEvidence does not use the attitude. RegimeEvidence does not model ropes, buoyancy, and aerodynamic forces
+/// above `flight_force_sigma_m_s2`.
 class RegimeEvidence {
  public:
   struct Params {
@@ -49,13 +44,12 @@ class RegimeEvidence {
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-300, 100.0, "strength of gravity"});
-      visit(
-          p.flight_force_sigma_m_s2,
-          {"flight_force_sigma_m_s2", "m/s^2", 1e-3, 10.0,
-           "standard deviation of the force in flight that the model does not explain, caused by drag and bandwidth"});
+      visit(p.flight_force_sigma_m_s2,
+            {"flight_force_sigma_m_s2", "m/s^2", 1e-3, 10.0,
+             "standard deviation of the force error of the flight model, caused by drag and sensor bandwidth"});
       visit(p.flight_share, {"flight_share", "1", 0.0, 1.0,
-                             "additional standard deviation of the force in flight, as a share of the force that the "
-                             "rotation causes at the lever arm"});
+                             "additional standard deviation of the force in flight, as a share of the centripetal and "
+                             "tangential force at the lever arm"});
       visit(p.hand_sigma_m_s2, {"hand_sigma_m_s2", "m/s^2", 0.1, 100.0, "standard deviation of a hand's acceleration"});
       visit(p.hand_distance_m,
             {"hand_distance_m", "m", 0.0, 1.0, "standard deviation of the distance between hand and IMU"});
@@ -64,8 +58,9 @@ class RegimeEvidence {
              "maximum contact force; the model assumes contact forces between 1 m/s^2 and this value"});
       visit(p.memory_s,
             {"memory_s", "s", 1e-3, 10.0, "time within which readings count as one independent observation"});
-      visit(p.rest_rate_rad_s, {"rest_rate_rad_s", "rad/s", 0.0, 100.0,
-                                "minimum rate for an estimate of the regime (flight, contact or hand-held)"});
+      visit(p.rest_rate_rad_s,
+            {"rest_rate_rad_s", "rad/s", 0.0, 100.0,
+             "readings with a lower rate do not change the probabilities of flight, contact and hand-held motion"});
       visit(p.contacts_hz,
             {"contacts_hz", "Hz", 1e-3, 100.0, "assumed frequency of changes between flight and contact"});
       visit(p.throws_hz,
@@ -76,14 +71,14 @@ class RegimeEvidence {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit RegimeEvidence(const Params& params);
 
-  /// Cost: O(N). `rates` contains the angular velocity of each sample, from a smoother that assumes flight and contact.
-  /// `lever_arm_m` is the vector from the centre of mass to the IMU, in IMU axes. Returns `ok`, `empty` if there are no
-  /// samples, or `out_of_range` if `rates` does not have one element per sample.
+  /// `rates` contains the angular velocity of each sample, estimated for flight and contact. `lever_arm_m` is the
+  /// vector from the centre of mass to the IMU, in IMU axes. Returns `ok`, `empty` if there are no samples, or
+  /// `out_of_range` if `rates` does not have one element per sample. Cost: O(N).
   Status find(std::span<const ImuSample> samples, std::span<const RateState> rates, const Eigen::Vector3d& lever_arm_m,
               const Eigen::Matrix3d& lever_arm_covariance_m2, std::vector<RegimeProbabilities>& out) const;
 
-  /// The probabilities `before` are `dt_s` older than the sample. Cost: O(1). `angular_acceleration_rad_s2` is the time
-  /// derivative of the rate, in IMU axes.
+  /// Returns the probabilities at `sample`, which is `dt_s` later than the probabilities `before`.
+  /// `angular_acceleration_rad_s2` is the time derivative of the rate, in IMU axes. Cost: O(1).
   RegimeProbabilities next(const RegimeProbabilities& before, double dt_s, const ImuSample& sample,
                            const RateState& rate, const Eigen::Vector3d& angular_acceleration_rad_s2,
                            const Eigen::Vector3d& lever_arm_m, const Eigen::Matrix3d& lever_arm_covariance_m2) const;
@@ -94,8 +89,8 @@ class RegimeEvidence {
   Params params_;
 };
 
-/// Combines two estimates of a rate, where `share` is the probability that `second` is correct. The combined rate has
-/// the mean of the more probable estimate and the covariance of the mixture.
+/// Combines two estimates of a rate, where `share` is the probability that `second` is correct. The result has the mean
+/// of the more probable estimate, and a covariance that includes the difference between both estimates.
 RateState mix_rate_states(const RateState& first, const RateState& second, double share);
 
 }  // namespace tumble

@@ -10,9 +10,9 @@
 
 namespace tumble {
 
-/// Integrates the gyro to an attitude, q <- q Exp(w dt), starting with the tilt that the accelerometer measures. The
-/// integration is exact if the rate is constant in body axes during each sample. The attitude of Strapdown drifts,
-/// because gyro biases and later force readings are ignored.
+/// Integrates the gyro to an attitude, starting with the tilt that the accelerometer measures. Strapdown assumes a
+/// constant rate in body axes during each sample. The attitude drifts, because Strapdown ignores gyro biases and later
+/// force readings.
 class Strapdown {
  public:
   struct Params {
@@ -35,16 +35,16 @@ class Strapdown {
 
   explicit Strapdown(const Params& params);
 
-  /// Cost: O(1), no allocation. The first sample sets the attitude from its specific force, with yaw 0. On error, the
-  /// state is unchanged.
+  /// The first sample sets the attitude from its specific force, with yaw 0. On error, the state is unchanged. Cost:
+  /// O(1), no allocation.
   Status step(const ImuSample& sample, State& state) const;
 
  private:
   Params params_;
 };
 
-/// Computes the attitude with yaw 0 from the specific force at rest, given in sensor axes. At rest, the specific force
-/// points upwards. Returns `degenerate` if the force is below 1e-6 m/s^2.
+/// Computes the attitude with yaw 0 from the specific force at rest, given in sensor axes [m/s^2]. Returns `degenerate`
+/// if the force is below 1e-6 m/s^2.
 Status level(const Eigen::Vector3d& specific_force_m_s2, Eigen::Quaterniond& q_WI);
 
 }  // namespace tumble

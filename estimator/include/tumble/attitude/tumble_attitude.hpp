@@ -59,32 +59,20 @@ struct TumbleAttitudeParams {
 
 /// Estimates attitude from gyro and accelerometer, assuming that the velocity of the body is bounded, and zero at rest.
 ///
-/// TumbleAttitude integrates the gyro to an attitude, exactly for a rate that is constant over a sample. A tilt error
-/// would let the integrated horizontal velocity and displacement grow without bound. Weak pseudo-measurements of zero
-/// velocity and zero displacement therefore correct the tilt and the gyro bias. A Kalman filter of nine states (tilt,
-/// bias, velocity, displacement) processes the pseudo-measurements every `node_s`. The Kalman filter acts like the
-/// low-pass of VQF in an inertial frame, with a corner frequency that adapts to the sensor's errors. When the body is
-/// at rest, its velocity and rate are zero up to noise. At rest, TumbleAttitude measures the gyro bias and keeps the
-/// attitude constant, so that noise changes neither tilt nor heading.
+/// TumbleAttitude integrates the gyro. Weak pseudo-measurements of zero velocity and zero displacement correct tilt and
+/// gyro bias every `node_s`. At rest, TumbleAttitude measures the gyro bias and keeps the attitude constant. The
+/// equations are in docs/maths/attitude.md.
 ///
-/// A large velocity or displacement counts as real motion if the tilt variance cannot explain its size. Real motion
-/// increases the assumed standard deviation of velocity or displacement for `motion_tau_s`.
-///
-/// The centre of a rolling sphere of radius r has the velocity r w x n, with the rate w and the floor's normal n. The
-/// IMU's velocity differs from the centre's velocity by w x (R rho), with the attitude R and the lever arm rho. The
-/// rolling constraint predicts the integral of the specific force, without the derivative of the rate, and so
-/// determines tilt and bias. A velocity that does not fit the rolling constraint indicates slip. During slip,
+/// For a rolling sphere (`radius_m` above 0), the rolling constraint gives the velocity of the centre. During slip,
 /// TumbleAttitude pauses its corrections for at most `slip_timeout_s`.
 ///
-/// The readings of a fast IMU are averaged over `reading_s`, and the attitude is extrapolated between averages. In a
-/// gap longer than `gap_min_s`, TumbleAttitude interpolates the rate and keeps the velocity, with increased variances.
-/// A body that is at rest before and after a gap is assumed to be at rest during the gap. If a gap increases the tilt's
-/// standard deviation to `gap_lost_tilt_rad`, a coarse alignment estimates the tilt in parallel to the Kalman filter.
-/// Until the coarse alignment ends, the reported tilt variance is at least the variance after the gap. If Kalman filter
-/// and coarse alignment disagree, the filter restarts from the alignment.
+/// A longer time than `gap_min_s` between two samples is a gap. During a gap, TumbleAttitude interpolates the rate,
+/// keeps the velocity, and increases the variances. A body that is at rest before and after a gap is assumed to be at
+/// rest during the gap. After a long gap, TumbleAttitude estimates the tilt again while the body moves: attitude.md
+/// (A19), (A20).
 ///
-/// TumbleAttitude has no heading reference. TumbleAttitude assumes an accelerometer without bias and scale errors,
-/// which would cause a tilt error at rest.
+/// The attitude is wrong if the body accelerates in one direction for many seconds. The heading drifts, because
+/// TumbleAttitude has no heading reference. Bias and scale errors of the accelerometer cause a tilt error.
 class TumbleAttitude {
  public:
   using Params = TumbleAttitudeParams;
@@ -92,15 +80,15 @@ class TumbleAttitude {
 
   explicit TumbleAttitude(const Params& params);
 
-  /// Cost: O(1), no allocation. The first sample sets the attitude from its specific force, with yaw 0. Each later
-  /// sample is integrated, and one sample per `node_s` corrects the state. On error, the state is unchanged.
+  /// The first sample sets the attitude from its specific force, with yaw 0. On error, the state is unchanged. Cost:
+  /// O(1), no allocation.
   Status step(const ImuSample& sample, State& state) const { return step(sample, Eigen::Matrix3d::Zero(), state); }
   /// Processes a sample whose rate was recovered from saturation. `rate_covariance_rad2_s2` is the covariance of the
-  /// rate error in sensor axes, or zero for a measured rate. The error of a recovered rate has the correlation time
+  /// rate in sensor axes, or zero for a measured rate. The error of a recovered rate has the correlation time
   /// `recovered_tau_s`. Returns `out_of_range` if the covariance is not finite or has a negative variance.
   Status step(const ImuSample& sample, const Eigen::Matrix3d& rate_covariance_rad2_s2, State& state) const;
 
-  /// Returns the covariance of the attitude error at the last node, with the error as defined in AttitudeState.
+  /// Returns the covariance of the attitude error at the last correction, with the error as defined in AttitudeState.
   static Eigen::Matrix3d attitude_covariance_rad2(const State& state);
 
  private:

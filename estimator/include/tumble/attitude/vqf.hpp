@@ -10,7 +10,7 @@
 
 namespace tumble {
 
-/// The authors of VQF use one value of the expert parameters for all devices.
+/// The defaults of the expert parameters are the constants of the VQF authors for all devices.
 struct VqfExpertParams {
   double bias_sigma_motion_rad_s = 1.7453e-3;  ///< standard deviation of the bias in motion: 0.1 deg/s
   double bias_sigma_rest_rad_s = 5.2360e-4;    ///< standard deviation of the bias at rest: 0.03 deg/s
@@ -31,7 +31,7 @@ struct VqfExpertParams {
   }
 };
 
-/// The parameters are named as in the publication.
+/// Parameters of the versatile quaternion filter, named as in the publication.
 struct VqfParams {
   double tau_s = 3.0;  ///< time constant of the low-pass filter on the specific force
   bool rest_bias_estimation = true;
@@ -61,8 +61,9 @@ struct VqfParams {
     visit(p.bias_forgetting_s, {"bias_forgetting_s", "s", 1e-9, 1e6,
                                 "time in which the bias variance grows to (0.1 deg/s)^2", FieldRank::basic});
     visit(p.bias_clip_rad_s, {"bias_clip_rad_s", "rad/s", 1e-9, 1.0, "largest estimated bias", FieldRank::basic});
-    visit(p.rest_time_s, {"rest_time_s", "s", 0.0, 1e4,
-                          "the sensor counts as stationary after quiet readings of this duration", FieldRank::basic});
+    visit(p.rest_time_s,
+          {"rest_time_s", "s", 0.0, 1e4,
+           "minimum duration of constant readings after which the sensor counts as stationary", FieldRank::basic});
     visit(p.rest_rate_rad_s,
           {"rest_rate_rad_s", "rad/s", 1e-9, 1.0,
            "maximum difference between gyro readings and their low-passed value at rest", FieldRank::basic});
@@ -78,11 +79,9 @@ struct VqfParams {
 /// Estimates attitude from gyro and accelerometer with the versatile quaternion filter (VQF). Source: Laidig and Seel,
 /// "VQF", Information Fusion 91, 2023.
 ///
-/// Vqf integrates the gyro, which rotates the specific force into a nearly inertial frame N. A low-pass filter in frame
-/// N averages out the acceleration of a bounded motion. The averaged force defines the vertical of N, and the smallest
-/// rotation that aligns the vertical of N with the world W levels the attitude. A Kalman filter of three states
-/// estimates the gyro bias. At rest, the low-passed gyro measures the bias; in motion, the rate of the vertical
-/// correction measures the bias. Vqf estimates neither the heading nor, in motion, the bias about the vertical.
+/// Vqf integrates the gyro to a nearly inertial frame N, and low-pass filters the specific force in frame N to obtain
+/// the vertical. A Kalman filter estimates the gyro bias, at rest and in motion. Vqf estimates neither the heading nor,
+/// in motion, the bias about the vertical.
 class Vqf {
  public:
   using Params = VqfParams;
@@ -107,9 +106,8 @@ class Vqf {
 
   explicit Vqf(const Params& params);
 
-  /// Cost: O(1), no allocation. The first sample sets the attitude from its specific force, with yaw 0. Each later
-  /// sample is integrated and corrects the attitude. If the force is below 1e-6 m/s^2, step() integrates the gyro
-  /// without a correction. On error, the state is unchanged.
+  /// The first sample sets the attitude from its specific force, with yaw 0. If the force is below 1e-6 m/s^2, step()
+  /// integrates the gyro without a correction. On error, the state is unchanged. Cost: O(1), no allocation.
   Status step(const ImuSample& sample, State& state) const;
 
  private:

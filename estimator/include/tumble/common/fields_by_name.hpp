@@ -9,12 +9,11 @@
 
 #include "tumble/common/parameters.hpp"
 
-/// Finds a parameter of a `Params` struct by its name, for command lines, tables and Python keywords.
 namespace tumble {
 
 namespace detail {
 
-/// Prepends the prefixes of nested groups to the name of each parameter.
+/// Prepends the prefixes of nested groups to each parameter's name.
 template <class Each>
 class PrefixedNameVisitor {
  public:
@@ -39,9 +38,8 @@ class PrefixedNameVisitor {
 
 }  // namespace detail
 
-/// Calls `each(name, value, field)` for each parameter in the struct `params`, in order of declaration. `value` is the
-/// parameter's value, a number or a Vector3d. `name` is a std::string that starts with the prefixes of the parameter's
-/// groups.
+/// Calls `each(name, value, field)` for each parameter in the struct `params`, in order of declaration. `name` is a
+/// std::string that starts with the prefixes of the parameter's groups.
 template <class Params, class Each>
 void visit_by_name(Params& params, Each each) {
   detail::PrefixedNameVisitor<Each> visitor(each);

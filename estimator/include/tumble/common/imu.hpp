@@ -9,7 +9,6 @@
 
 namespace tumble {
 
-/// Each bit marks one sensor axis that the device reports as clipped.
 enum ClipFlag : std::uint8_t {
   kClipGyroX = 1,
   kClipGyroY = 2,
@@ -21,8 +20,8 @@ enum ClipFlag : std::uint8_t {
 inline constexpr std::uint8_t kClipGyro = kClipGyroX | kClipGyroY | kClipGyroZ;
 inline constexpr std::uint8_t kClipAccel = kClipAccelX | kClipAccelY | kClipAccelZ;
 
-/// ImuSample is one reading of an inertial measurement unit (IMU), in the IMU's own axes I. The angular rate and the
-/// specific force are means over a time window that ends at `time_ns`.
+/// One reading of an inertial measurement unit (IMU), in the IMU's own axes I. The angular rate and the specific force
+/// are means over a time window that ends at `time_ns`.
 struct ImuSample {
   TimeNs time_ns = 0;
   Eigen::Vector3d angular_velocity_rad_s = Eigen::Vector3d::Zero();  ///< measured angular velocity w_WI_I

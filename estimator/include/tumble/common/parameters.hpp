@@ -11,17 +11,15 @@
 #include "tumble/common/status.hpp"
 
 /// Each `Params` struct describes its parameters once, in a static member function template `fields`. Range checks,
-/// tables and file readers call `fields` with a visitor to process every parameter.
+/// tables and file readers call `fields` with a visitor.
 ///
 /// The signature is `template <class Self, class Visitor> static void fields(Self& p, Visitor& visit)`, and `Self` may
 /// be const. `fields` calls `visit(p.member, Field)` for each number, boolean, enumeration and Vector3d of the struct.
-/// `fields` calls `visit.group("prefix_", p.member)` for each nested `Params` struct.
-///
-/// Poses, planes and calibrations in a `Params` struct are not visited, because users do not enter them as plain
-/// numbers. The bounds of a Field are constants; constructors check conditions that relate two parameters.
+/// `fields` calls `visit.group("prefix_", p.member)` for each nested `Params` struct. Poses, planes and calibrations
+/// are not visited, because users do not enter them as plain numbers.
 namespace tumble {
 
-/// The rank `basic` marks the parameters that most users adapt.
+/// Most users adapt only the parameters of rank `basic`.
 enum class FieldRank : std::uint8_t { basic, advanced };
 
 /// All strings in a Field must have static lifetime.
@@ -46,7 +44,7 @@ concept Number = std::is_arithmetic_v<std::remove_cvref_t<T>> || std::is_enum_v<
 
 namespace detail {
 
-/// First parameter with an invalid value; `names` contains the prefixes of its groups, followed by its name.
+/// `names` contains the prefixes of the invalid parameter's groups, followed by its name.
 struct OutOfBounds {
   std::array<const char*, 8> names{};
   std::size_t depth = 0;
@@ -80,14 +78,12 @@ class BoundsChecker {
   OutOfBounds& out_;
 };
 
-/// The exception contains the full name of the parameter.
 void throw_if_out_of_bounds(const OutOfBounds& found);
 
 }  // namespace detail
 
-/// Checks that all parameters of `params` are within their bounds, without allocating memory. Returns `out_of_range`
-/// with the name, value and bound of the first invalid parameter, or `ok`. The returned name of a nested parameter
-/// lacks the prefix of its group.
+/// Returns `out_of_range` with the name, value and bound of the first invalid parameter of `params`, or `ok`. The
+/// returned name of a nested parameter lacks the prefix of its group. No memory is allocated.
 template <class Params>
 Status check_fields(const Params& params) {
   detail::OutOfBounds found;

@@ -12,8 +12,7 @@ namespace tumble {
 struct AttitudeState {
   TimeNs time_ns = 0;
   Eigen::Quaterniond q_WA = Eigen::Quaterniond::Identity();
-  /// Covariance of the attitude error phi in world axes [rad^2], with q_true = Exp(phi) * q_WA. The covariance is zero
-  /// if the estimator does not compute a covariance.
+  /// covariance of the attitude error phi in world axes, with q_true = Exp(phi) * q_WA; zero if not estimated
   Eigen::Matrix3d covariance_rad2 = Eigen::Matrix3d::Zero();
 };
 
@@ -23,8 +22,8 @@ struct PoseState {
   Eigen::Vector3d p_WA_m = Eigen::Vector3d::Zero();
   Eigen::Quaterniond q_WA = Eigen::Quaterniond::Identity();
   Eigen::Vector3d v_WA_m_s = Eigen::Vector3d::Zero();
-  /// Covariance of the position error [m] and the attitude error [rad], both in world axes. The attitude error phi is
-  /// defined by q_true = Exp(phi) * q_WA. The covariance is zero if the estimator does not compute a covariance.
+  /// Covariance of the position error [m] and the attitude error phi [rad], both in world axes; zero if not estimated.
+  /// The attitude error is defined by q_true = Exp(phi) * q_WA.
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
 };
 

@@ -14,23 +14,17 @@
 namespace tumble {
 
 /// Estimates the time of each sensor sample from delayed time stamps that a host computer assigned. SampleClock is
-/// causal: an estimate uses only earlier time stamps and the current one. The sensor is assumed to have a regular
-/// sample period, and the host a varying delay. For example, at an angular acceleration of 300 rad/s^2, a timing error
-/// of 0.5 ms causes a rate error of 0.15 rad/s.
+/// causal, and assumes a sensor with a regular sample period and a host with a varying delay.
 ///
-/// A line is fitted to the time stamps as a function of the sample number; the weights of older time stamps decrease
-/// exponentially. The method is the fading-memory polynomial filter of first degree (Morrison, Introduction to
-/// Sequential Smoothing and Prediction, 1969, ch. 13). The error of an estimated time is 1.1 sqrt(T / memory_s) times
-/// the jitter of the time stamps, where T is the sample period. A constant delay of the host is not observable. The
-/// sample number also counts dropped samples.
+/// SampleClock fits a line to the time stamps as a function of the sample number, with exponentially decreasing weights
+/// of older time stamps. Source: fading-memory polynomial filter of first degree (Morrison, Introduction to Sequential
+/// Smoothing and Prediction, 1969, ch. 13). The error of an estimated time is 1.1 sqrt(T / memory_s) times the jitter
+/// of the time stamps, for the sample period T. An estimated time differs from the time stamp by at most half a period.
+/// A constant delay of the host is not observable.
 ///
-/// The first 32 time stamps remain unchanged. Later time stamps are unchanged if the jitter is below `jitter_min` of
-/// the period, which indicates time stamps of the sensor's own clock. Time stamps are also unchanged if the jitter
-/// exceeds `jitter_max` or successive errors are correlated, which indicates a varying sample period.
-///
-/// An estimated sample time differs from the time stamp by at most half a period.
-///
-/// Set `jitter_max` to 0 if a host computer triggers the samples at irregular times and assigns exact time stamps.
+/// SampleClock does not change the first 32 time stamps, time stamps with a jitter outside of [jitter_min, jitter_max],
+/// and time stamps with correlated errors. Set `jitter_max` to 0 if a host computer triggers the samples at irregular
+/// times and assigns exact time stamps.
 class SampleClock {
  public:
   struct Params {
@@ -40,8 +34,7 @@ class SampleClock {
 
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
-      visit(p.memory_s,
-            {"memory_s", "s", 0.01, 1e3, "time over which the rate of the sensor's clock is assumed to be constant"});
+      visit(p.memory_s, {"memory_s", "s", 0.01, 1e3, "time constant of the fit of sample times to time stamps"});
       visit(p.jitter_min,
             {"jitter_min", "1", 0.0, 1.0, "minimum jitter of time stamps that are corrected, in sample periods"});
       visit(p.jitter_max, {"jitter_max", "1", 0.0, 0.2,
@@ -75,8 +68,7 @@ class SampleClock {
   /// previous one. Cost: O(1), no allocation.
   Status push(TimeNs stamp_ns, State& state, TimeNs& time_ns) const;
 
-  /// Returns the standard deviation of the time stamps about the fitted line [s]. The result is empty before the first
-  /// fit.
+  /// Returns the standard deviation of the time stamps about the fitted line [s]; empty before the first fit.
   static std::optional<double> jitter_s(const State& state);
   bool corrects_stamps(const State& state) const;
 
@@ -87,9 +79,9 @@ class SampleClock {
   Params params_;
 };
 
-/// Replaces the time stamps of a recording with the sample times that SampleClock estimates. Cost: O(N). The output
-/// `corrected_jitter_s` is the largest corrected jitter [s], or 0 if all time stamps are unchanged. If the time stamps
-/// do not increase, the function returns `time_order` and leaves `stamps_ns` unchanged.
+/// Replaces the time stamps of a recording with the sample times that SampleClock estimates. The output
+/// `corrected_jitter_s` is the largest corrected jitter [s], or 0 if all time stamps are unchanged. Returns
+/// `time_order` and leaves `stamps_ns` unchanged if the time stamps do not increase. Cost: O(N).
 Status correct_stamps(const SampleClock& clock, std::span<TimeNs> stamps_ns, double& corrected_jitter_s);
 
 }  // namespace tumble

@@ -9,10 +9,9 @@
 #include "tumble/common/status.hpp"
 #include "tumble/common/time.hpp"
 
-/// Findings of TumblingOdometry, RollingOdometry and the checks of recordings.
 namespace tumble {
 
-/// one suspected fault of a sensor or of the estimate
+/// One suspected fault of a sensor or of the estimate, reported by health() of an odometry class.
 struct HealthFinding {
   enum class Kind : std::uint8_t {
     frozen_axis,        ///< one axis of a gyro or an accelerometer repeats one reading
@@ -42,22 +41,21 @@ struct HealthFinding {
   double value = 0.0;                   ///< value of the quantity
   double bound = 0.0;                   ///< violated limit
   std::optional<TimeNs> since_ns = {};  ///< start of the fault; empty if the check does not determine the start
-  /// The fault is over. health() of a live run only reports findings that have not ended.
+  /// the fault is over; health() of a live run reports only current faults
   bool ended = false;
 
-  /// Returns how far the value is beyond its bound: 0 for a value at the bound, towards 1 for a value far beyond the
-  /// bound. The result is a margin, not a probability.
+  /// Returns a margin between 0 (value at its bound) and 1 (value far beyond its bound), which is not a probability.
   double confidence() const;
   Status status() const { return {ErrorCode::out_of_range, quantity, value, bound}; }
-  /// Returns whether the finding makes the estimate unusable: readings contradict each other, or pose or map are wrong.
+  /// Returns true if the fault makes the estimate unusable.
   bool invalidates_estimate() const;
 };
 
 const char* to_string(HealthFinding::Kind kind);
-/// Returns one sentence for people: sensor, meaning, and the tested quantity with value and limit.
+/// Returns one sentence that names the sensor, the fault, and the tested quantity with value and limit.
 std::string to_text(const HealthFinding& finding);
 
-/// The most important fault is first. Without a finding, no memory is allocated.
+/// Suspected faults, most important first.
 struct SensorHealth {
   std::vector<HealthFinding> findings;
 
@@ -67,13 +65,13 @@ struct SensorHealth {
   std::string message() const { return ok() ? "ok" : to_text(findings.front()); }
   bool invalidates_estimate() const;
 
-  /// Adds the finding of a check unless `status` is ok. If a finding of the same kind, sensor and axis exists, add()
-  /// only marks its fault as not ended.
+  /// Adds a fault unless `status` is ok. If a fault of the same kind, sensor and axis exists, add() only marks this
+  /// fault as not ended.
   void add(HealthFinding::Kind kind, const Status& status, std::string sensor, const char* axis = "",
            std::optional<TimeNs> since_ns = {});
   void add(HealthFinding finding);
   void add(const SensorHealth& other);
-  /// Adds the findings of `now`, the newest result of health(), and marks all other findings as ended.
+  /// Adds the faults in `now`, the newest result of health(), and marks all other faults as ended.
   void observe(const SensorHealth& now);
 };
 

@@ -9,7 +9,6 @@
 
 namespace tumble {
 
-/// Kinds of input errors; `none` means success.
 enum class ErrorCode : std::uint8_t {
   none,
   empty,         ///< a required input is missing
@@ -24,8 +23,7 @@ enum class ErrorCode : std::uint8_t {
 
 const char* to_string(ErrorCode error_code);
 
-/// On error, Status contains the invalid input field, its value and the violated limit. The library reports input
-/// errors as a returned Status and prints nothing. Only constructors throw exceptions.
+/// Functions of the library return input errors as Status and print nothing; only constructors throw exceptions.
 struct Status {
   ErrorCode error_code = ErrorCode::none;
   const char* field = "";  ///< name of the input field (static string)
@@ -33,11 +31,11 @@ struct Status {
   double bound = 0.0;      ///< violated limit, in the field's unit
 
   bool ok() const { return error_code == ErrorCode::none; }
-  /// The message has the form "time_order: time_ns is 5; the bound is 7", or "ok".
+  /// Returns for example "time_order: time_ns is 5; the bound is 7", or "ok".
   std::string message() const;
 };
 
-/// A constructor throws InvalidParams if a parameter is out of its documented bounds.
+/// Exception of a constructor whose parameter is out of its documented bounds.
 class InvalidParams : public std::invalid_argument {
  public:
   InvalidParams(const std::string& field, double value, const std::string& bound);

@@ -14,8 +14,7 @@ using TimeNs = std::int64_t;
 /// time stamps fits into 64 bits.
 inline constexpr TimeNs kStampMax_ns = 3'070'000'000'000'000'000;
 
-/// Converts a duration from nanoseconds to seconds. The relative error of the conversion is at most 2^-53 for durations
-/// below 104 days.
+/// The relative error of seconds() is at most 2^-53 for durations below 104 days.
 constexpr double seconds(TimeNs span_ns) {
   return static_cast<double>(span_ns) * 1e-9;
 }

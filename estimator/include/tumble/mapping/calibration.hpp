@@ -8,9 +8,9 @@
 
 namespace tumble {
 
-/// The registration refines the initial calibration between lidar, IMU and world during the motion. The error vector of
-/// a calibration contains rotation of T_IL, translation of T_IL, time offset and gravity, in this order. The rotation
-/// error phi is a left perturbation in IMU axes: R_true = Exp(phi) R.
+/// Calibration between lidar, IMU and world, which the registration refines during the motion. The error vector
+/// contains rotation of T_IL, translation of T_IL, time offset and gravity, in this order. The rotation error phi is a
+/// left perturbation in IMU axes: R_true = Exp(phi) R.
 struct SweepCalibration {
   static constexpr int kErrorCount = 10;
   using Covariance = Eigen::Matrix<double, kErrorCount, kErrorCount>;
@@ -19,7 +19,6 @@ struct SweepCalibration {
   double time_offset_s = 0.0;                              ///< IMU clock minus lidar clock
   Eigen::Vector3d gravity_W_m_s2 = Eigen::Vector3d(0.0, 0.0, -9.80665);
 
-  /// See SweepCalibration for the order of the error vector.
   void add(const Eigen::Matrix<double, kErrorCount, 1>& error);
   /// Returns the error vector that transforms `other` to this calibration, to first order in the rotation difference.
   Eigen::Matrix<double, kErrorCount, 1> minus(const SweepCalibration& other) const;
@@ -28,21 +27,20 @@ struct SweepCalibration {
 /// `deviations` is the result of StatedCalibration::deviations(). Returns `out_of_range` above kDistanceMax_sigmas.
 Status verdict_on(double deviations);
 
-/// StatedCalibration is the calibration that the caller states, with one standard deviation per axis for each part
-/// (rotation, translation, time offset). A standard deviation of 0 marks an exact part of the calibration.
+/// Calibration that the caller states, with one standard deviation per axis for rotation, translation and time offset.
+/// A standard deviation of 0 marks an exact part of the calibration.
 struct StatedCalibration {
-  static constexpr double kDistanceMax_sigmas = 5.0;  ///< largest plausible distance from the stated calibration
+  static constexpr double kDistanceMax_sigmas = 5.0;  ///< largest plausible result of deviations()
 
   SweepCalibration calibration;
   double mount_sigma_rad = 0.0, mount_sigma_m = 0.0, time_offset_sigma_s = 0.0;
 
-  /// Returns the distance between an estimated calibration and the stated calibration in standard deviations. The
-  /// distance is the maximum over rotation, translation and time offset, see mapping.md (R69). The distance is infinite
-  /// if `estimated` changes a value that was stated as exact. The distance excludes gravity, because each run estimates
-  /// gravity.
+  /// Returns the distance between an estimated calibration and the stated calibration in standard deviations:
+  /// mapping.md (R69). The distance is the maximum over rotation, translation and time offset; infinite if `estimated`
+  /// changes an exact value.
   double deviations(const SweepCalibration& estimated) const;
-  /// Returns `out_of_range` if `estimated` is more than `kDistanceMax_sigmas` standard deviations from the stated
-  /// calibration. A larger distance means that the stated calibration is wrong.
+  /// Returns `out_of_range` if deviations() is above kDistanceMax_sigmas, because the stated calibration is probably
+  /// wrong.
   Status verdict(const SweepCalibration& estimated) const;
 };
 

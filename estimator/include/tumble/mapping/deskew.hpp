@@ -14,7 +14,7 @@
 
 namespace tumble {
 
-/// SweepPoint is a usable lidar return in IMU axes at the time when the laser fired.
+/// Usable lidar return in IMU axes at the time when the laser fired.
 struct SweepPoint {
   Eigen::Vector3f x_I_m = Eigen::Vector3f::Zero();
   Eigen::Vector3f point_L_m = Eigen::Vector3f::Zero();  ///< measured position, in lidar axes
@@ -27,7 +27,7 @@ struct SweepPoint {
 struct PointBounds {
   double range_min_m = 0.3;
   double range_max_m = 100.0;
-  Eigen::AlignedBox3d own_body_L;  ///< returns inside this box hit the robot; an empty box keeps all returns
+  Eigen::AlignedBox3d own_body_L;  ///< bounding box of the robot's own body, whose returns are dropped; may be empty
 };
 
 struct PointCounts {
@@ -42,26 +42,23 @@ struct PointCounts {
 PointCounts select_points(std::span<const LidarPoint> points, const PointBounds& bounds, const Eigen::Isometry3d& T_IL,
                           double sweep_start_s, std::vector<SweepPoint>& selected);
 
-/// Recomputes `points` for another calibration and writes the result to `moved`. Cost: O(n). `later_s` is added to the
-/// times of the points in the IMU's clock. `points` and `moved` must be different objects.
+/// Recomputes `points` for another calibration and writes the result to `moved`, which must be a different object.
+/// `later_s` is added to the times of the points in the IMU's clock. Cost: O(n).
 void apply_calibration(const SweepCalibration& calibration, double later_s, std::span<const SweepPoint> points,
                        std::vector<SweepPoint>& moved);
-/// Recomputes `points` for another calibration in place.
 void apply_calibration(const SweepCalibration& calibration, double later_s, std::span<SweepPoint> points);
 
-/// Computes the lever arm vector u_i = S(t_i) + R(t_i) x_i of SweepTrajectory for each point i. Cost: O(n). The
-/// position of point i in the world is trajectory.common_position_m(t_i) + u_i.
+/// Computes the lever arm vector of each point: the position of the point in the world minus
+/// SweepTrajectory::common_position_m() at the time of the point. Cost: O(n).
 void compute_lever_arm_vectors(const SweepTrajectory& trajectory, std::span<const SweepPoint> points,
                                std::vector<Eigen::Vector3f>& levers_W_m);
 
-/// Transforms the points of a sweep to IMU axes at the time `target_s`, usually the end of the trajectory. `target_s`
-/// is relative to the start of the trajectory. The deskewed points equal the points that a stationary sensor would
-/// measure at the time `target_s`.
+/// Transforms the points of a sweep to IMU axes at the time `target_s` after the start of the trajectory. The deskewed
+/// points equal the points that a stationary sensor would measure at `target_s`.
 void deskew(const SweepTrajectory& trajectory, std::span<const SweepPoint> points, double target_s,
             std::vector<Eigen::Vector3f>& positions_I_m);
 
-/// Keeps the first point in each cube of edge `voxel_m` in the world, because the registration needs fewer points of
-/// even density.
+/// Reduces a sweep to points of even density: the first point in each cube of edge `voxel_m` in the world.
 class SweepSampler {
  public:
   /// `chosen` receives the indices of the kept points, in increasing order.

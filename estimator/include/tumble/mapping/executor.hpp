@@ -8,12 +8,11 @@
 
 namespace tumble {
 
-/// ParallelFor is a function that runs body(0) to body(count - 1) once each, in any order and on any of the caller's
-/// threads. A ParallelFor returns when all calls of `body` are done. The library starts no threads; without a
-/// ParallelFor, the calling thread does all work. Results of the library are bit-identical for any number of threads.
+/// ParallelFor is a function of the caller that runs body(0) to body(count - 1) once each, in any order and on any
+/// threads. A ParallelFor returns when all calls of `body` are done. Without a ParallelFor, the calling thread does all
+/// work. Results are bit-identical for any number of threads.
 using ParallelFor = std::function<void(std::size_t count, const std::function<void(std::size_t)>& body)>;
 
-/// An empty `parallel_for` runs `body` on the calling thread.
 inline void run_parallel(const ParallelFor& parallel_for, std::size_t count,
                          const std::function<void(std::size_t)>& body) {
   if (parallel_for && count > 1) {

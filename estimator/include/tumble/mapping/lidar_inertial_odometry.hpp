@@ -20,29 +20,24 @@
 
 namespace tumble {
 
-/// Estimates pose and map of a tumbling body from an IMU and a lidar. The IMU is integrated between sweeps, and each
-/// point is deskewed at the time of its firing. Each sweep is registered to a voxel map by k-nearest-neighbour
-/// point-to-plane distances, and then inserted into the map. The registration refines position, attitude and velocity
-/// at the start of a sweep together, which also improves the deskewing.
+/// Estimates pose and map of a tumbling body from an IMU and a lidar. LidarInertialOdometry integrates the IMU between
+/// sweeps, and deskews each point at the time of its firing. Each sweep is registered to a voxel map by point-to-plane
+/// distances, and then inserted into the map. The equations are in docs/maths/mapping.md.
 ///
 /// The z axis of the world frame points upwards, along the specific force at rest. The earliest sweep with
-/// `matches_min` points starts the map. If the map starts within half a second after the first IMU sample, that sample
-/// defines origin and yaw of the world. If the map starts later, its first sweep defines origin and yaw, and dead
-/// reckoning gives velocity and tilt. Pass IMU samples in time order. Pass each sweep after the IMU samples that cover
-/// the sweep. LidarInertialOdometry starts no threads, uses no files and prints nothing.
+/// `matches_min` points starts the map. The first IMU sample defines origin and yaw of the world, or the first sweep if
+/// the map starts more than half a second later.
 ///
-/// The lidar's mounting, its time offset and gravity are estimated if their standard deviations are not 0.
-/// LidarInertialOdometry is an iterated error-state filter over sweeps. A fixed-lag smoother refines the last
-/// `window_sweeps` sweeps with the data of later sweeps, and moves the map points of the refined sweeps. To get a
-/// consistent map, process the recording a second time, starting from the calibration that calibration() returns.
+/// Pass IMU samples in time order, and each sweep after the IMU samples that cover the sweep. LidarInertialOdometry
+/// starts no threads, uses no files and prints nothing.
 ///
-/// Reported covariances result from propagating the errors through the gains of the filter. The residuals of the
-/// registration determine the covariance of the registered pose (Registration::Result::score_covariance).
+/// The lidar's mounting, its time offset and gravity are estimated if their standard deviations are not 0. A fixed-lag
+/// smoother refines the last `window_sweeps` sweeps. To get a consistent map, process the recording a second time,
+/// starting from the result of calibration().
 ///
-/// Tracking has failed if the registration rejects several consecutive sweeps. After a tracking failure, inertial
-/// prediction continues, with zero velocity while the IMU is at rest. Until tracking is restored, each sweep is also
-/// registered from several starting poses around the prediction, coarse to fine. LidarInertialOdometry does not model
-/// loop closure, moving objects, or IMU biases other than the gyro bias at the start.
+/// After a tracking failure (several consecutive sweeps rejected), inertial prediction continues. Until tracking is
+/// restored, each sweep is also registered from several starting poses around the predicted pose. LidarInertialOdometry
+/// does not model loop closure, moving objects, or IMU biases other than the gyro bias at the start.
 class LidarInertialOdometry {
  public:
   using Params = OdometryParams;
@@ -52,15 +47,13 @@ class LidarInertialOdometry {
   ~LidarInertialOdometry();
   LidarInertialOdometry(LidarInertialOdometry&&) noexcept;
   LidarInertialOdometry& operator=(LidarInertialOdometry&&) noexcept;
-  /// Copies the complete state. A run that continues from a copy gives bit-identical results.
+  /// A run that continues from a copy gives bit-identical results.
   LidarInertialOdometry(const LidarInertialOdometry&);
   LidarInertialOdometry& operator=(const LidarInertialOdometry&);
 
-  /// Sets position and heading of the IMU at the start of the map. The tilt comes from the specific force at rest.
-  /// Covariances are relative to the start pose. Call set_start_pose() before the first sweep; otherwise the map starts
-  /// at the origin.
+  /// Sets position and heading (not the tilt) of the IMU at the start of the map; the default is the origin. Reported
+  /// covariances are relative to the start pose. Call set_start_pose() before the first sweep.
   void set_start_pose(const Eigen::Isometry3d& T_WI);
-  /// Returns the pose of set_start_pose(), if any.
   const std::optional<Eigen::Isometry3d>& start() const;
 
   /// attitude correction for a start in motion, where the mean force is not gravity
@@ -68,20 +61,19 @@ class LidarInertialOdometry {
     Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  ///< correction of the levelled attitude
     double sigma_rad = 0.0;                                        ///< standard deviation of the corrected tilt
   };
-  /// Returns the tilt at the start, computed from the direction of gravity in the map. A second run over the same data
-  /// can use the tilt that start_tilt() returns. The result is empty after a start at rest, or if the motion does not
-  /// determine gravity more accurately than the start.
+  /// Returns the tilt at the start, computed from the direction of gravity in the map, for a second run over the same
+  /// data. start_tilt() is empty after a start at rest, or if the motion determines gravity less accurately than the
+  /// start.
   std::optional<StartTilt> start_tilt() const;
-  /// Sets the tilt of a start in motion. Call set_start_tilt() before the first sweep.
+  /// Call set_start_tilt() before the first sweep.
   void set_start_tilt(const StartTilt& tilt);
 
   /// Sets the map of an earlier run, in which the robot is then localised. Call use_map() before the first sweep.
   ///
-  /// Until the robot is localised, poses are in a local frame, and localised() returns `degenerate`. The local map is
-  /// compared with the prior map after each registered sweep. After localisation, poses and covariances are in the
-  /// frame of the prior map, and SweepReport::in_prior_map is true. If `map.T_MI` is set, use_map() also calls
-  /// set_start_pose(). The whole prior map is kept, also beyond map_radius_m. Returns `ok`, an error of
-  /// check_prior_map(), or `time_order` after the first sweep. On error, the state is unchanged.
+  /// Before localisation, poses are in a local frame, and localised() returns `degenerate`. After localisation, poses
+  /// and covariances are in the frame of the prior map, and SweepReport::in_prior_map is true. If `map.T_MI` is set,
+  /// use_map() also calls set_start_pose(). The whole prior map is kept, also beyond map_radius_m. Returns `ok`, an
+  /// error of check_prior_map(), or `time_order` after the first sweep. On error, the state is unchanged.
   Status use_map(PriorMap map);
   /// Copies the prior map, if any, and its parameters from another object. The localisation restarts from the pose of
   /// set_start_pose(), or else from the pose in the prior map.
@@ -92,68 +84,62 @@ class LidarInertialOdometry {
   const PriorMap* prior_map() const;
 
   /// `rate` is the estimated angular velocity of the sample. Returns `non_finite`, `time_order`, or `out_of_range` if
-  /// `rate` has another time stamp; on error, the state is unchanged. The first sample after a gap bridges the gap and
-  /// increases the uncertainty of the predicted motion.
+  /// `rate` has another time stamp; on error, the state is unchanged.
   Status add_imu(const ImuSample& sample, const RateState& rate);
 
-  /// Sets an odometer's velocity at the start of the next sweep, which is the end of the last sweep. The velocity is in
-  /// IMU axes, with one standard deviation for all axes. The odometer's velocity replaces the estimated velocity only
-  /// in the prediction of the next sweep. Returns `non_finite` if a number is not finite, or `out_of_range` if the
-  /// standard deviation is not above 0. On error, the state is unchanged.
+  /// Sets the velocity that an odometer measured at the start of the next sweep, in IMU axes, with one standard
+  /// deviation for all axes. The odometer's velocity replaces the estimated velocity in the prediction of the next
+  /// sweep. Returns `non_finite` if a number is not finite, or `out_of_range` if the standard deviation is not above 0.
+  /// On error, the state is unchanged.
   Status add_velocity(const Eigen::Vector3d& v_WI_I_m_s, double sigma_m_s);
-  /// Sets an odometer's reading for the next sweep. The reading must be between the end of the last sweep and the end
-  /// of the next sweep, with a margin of 20 ms. The reading is fused with the inertial prediction, weighted by their
-  /// covariances. A new odometer reading replaces an earlier reading and the velocity of add_velocity().
+  /// Sets an odometer's reading between the end of the last sweep and the end of the next sweep, with a margin of 20
+  /// ms. The odometer reading is fused with the inertial prediction, weighted by their covariances. A new odometer
+  /// reading replaces an earlier reading and the velocity of add_velocity().
   Status add_reading(const OdometerReading& reading);
-  /// Excludes the accelerometer from the prediction of the next sweep: the velocity is predicted as in a gap, but the
-  /// gyro is still used. exclude_accelerometer() replaces earlier odometer readings for the next sweep.
+  /// Excludes the accelerometer, but not the gyro, from the prediction of the next sweep, and drops earlier odometer
+  /// readings for this sweep.
   void exclude_accelerometer();
 
   /// Registers a sweep of points fired in [start_ns, end_ns]. Consecutive sweeps must not overlap. A point with NaN
   /// coordinates is a laser pulse without a return.
   ///
-  /// `time_order` means that the end is before the start, or that the start is before the end of the last sweep.
-  /// `too_few` means that the IMU samples do not cover the sweep. `out_of_range` means that the firing time of a point
-  /// is outside the sweep. If the points are unusable, the pose is the inertial prediction and the verdict is
-  /// `rejected`. For unusable points, the status is `empty` (no points), `non_finite` (no finite point), `too_few` (no
-  /// point in range) or `degenerate` (one time stamp). Before the map starts, a sweep with too few usable points has no
-  /// pose, and `report.trajectory` is empty.
+  /// Returns `time_order` if the sweep ends before its start or overlaps the last sweep. Returns `too_few` if the IMU
+  /// samples do not cover the sweep, and `out_of_range` if a point fired outside the sweep. If the points are unusable,
+  /// the pose is the inertial prediction and the verdict is `rejected`. The status of unusable points is `empty` (no
+  /// points), `non_finite` (no finite point), `too_few` (no point in range) or `degenerate` (one time stamp). Before
+  /// the map starts, a sweep with too few usable points has no pose, and `report.trajectory` is empty.
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points, SweepReport& report);
 
   /// Predicts pose and velocity with covariance at the last of `samples`, by inertial integration from the end of the
-  /// last sweep. The state of the odometry is unchanged. If no sample is later than the last sweep, predict() returns
-  /// the pose at the end of the last sweep. predict() provides a pose before the next sweep is complete. Returns `ok`,
-  /// an error of add_imu(), or `empty` before the first sweep. Cost: O(samples since the last sweep).
-  /// `velocity_covariance_I_m2_s2` (optional) is defined as in SweepReport.
+  /// last sweep. If no sample is later than the last sweep, the result is the pose at the end of the last sweep.
+  /// Returns `ok`, an error of add_imu(), or `empty` before the first sweep. `velocity_covariance_I_m2_s2` (optional)
+  /// is defined as in SweepReport. Cost: O(samples since the last sweep).
   Status predict(std::span<const ImuSample> samples, std::span<const RateState> rates, PoseState& pose,
                  Eigen::Matrix3d* velocity_covariance_I_m2_s2 = nullptr) const;
 
-  /// Returns the current calibration and the covariance of its errors. Calibration values that are not estimated have
-  /// covariance 0.
+  /// Returns the current calibration. Calibration values that are not estimated have covariance 0.
   SweepCalibration calibration() const;
   SweepCalibration::Covariance calibration_covariance() const;
-  /// Returns the prior covariance of the calibration for the registration of the next sweep. The prior covariance is
-  /// larger than the covariance of the errors, because correlated points have reduced weights. A second run over the
-  /// recording starts with the prior covariance.
+  /// Returns the calibration's prior covariance for the next registration, with which a second run over the recording
+  /// should start.
   SweepCalibration::Covariance calibration_weighting_covariance() const;
 
-  /// Returns `out_of_range` while the standard deviation of gravity's direction exceeds 0.02 rad. A run that starts in
-  /// motion has an uncertain vertical until the motion determines gravity.
+  /// Returns `out_of_range` while the standard deviation of gravity's direction exceeds 0.02 rad, for example after a
+  /// start in motion.
   Status check_vertical() const;
 
-  /// Estimates the pose at any time within the window of sweeps, from all data so far. Returns `out_of_range` for a
-  /// time outside the window.
+  /// Estimates the pose at any time within the last `window_sweeps` sweeps. Returns `out_of_range` for any other time.
   Status pose_at(TimeNs time_ns, PoseState& pose) const;
 
-  /// Returns the current poses of the sweeps in the window, oldest first. Later sweeps still refine the poses in the
-  /// window. The whole trajectory consists of all SweepReport::smoothed, followed by window_trajectories().
+  /// Returns the current poses of the last `window_sweeps` sweeps, oldest first, which later sweeps still refine. The
+  /// whole trajectory consists of all SweepReport::smoothed, followed by window_trajectories().
   std::vector<std::vector<PoseState>> window_trajectories() const;
 
   std::size_t map_bytes() const;
 
-  /// Returns the map points within `map_radius_m` of the robot. Cost: O(number of points). The normals are fitted to
-  /// nearest neighbours, and point towards the sensor position at the observation. The result omits points that two
-  /// later sweeps saw through, for example points on people who have walked away.
+  /// Returns the map points within `map_radius_m` of the robot. The normals are fitted to nearest neighbours, and point
+  /// towards the sensor position at the observation. Points that two later sweeps saw through, for example points on
+  /// people who have walked away, are omitted. Cost: O(number of points).
   std::vector<MapPoint> map() const;
 
   struct Impl;  ///< private implementation

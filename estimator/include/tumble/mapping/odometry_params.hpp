@@ -15,9 +15,9 @@ namespace tumble {
 
 struct OdometryExpertParams {
   double gravity_m_s2 = 9.80665;
-  /// standard deviation of gravity's horizontal part; 0: the direction of gravity is fixed
+  /// standard deviation of the horizontal part of gravity; 0: fixed direction of gravity
   double gravity_sigma_m_s2 = 0.0;
-  /// number of newest sweeps that the fixed-lag smoother refines together (see SweepReport::smoothed); 1: no smoothing
+  /// number of newest sweeps that the fixed-lag smoother refines together; 1: no smoothing
   int window_sweeps = 2;
   RestBoundsParams rest = {};
   OdometryStartParams start = {};
@@ -35,15 +35,17 @@ struct OdometryExpertParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 0.0, 100.0, "strength of gravity"});
-    visit(p.gravity_sigma_m_s2, {"gravity_sigma_m_s2", "m/s^2", 0.0, 10.0,
-                                 "standard deviation of gravity after initial levelling; 0: exact", FieldRank::basic});
+    visit(p.gravity_sigma_m_s2,
+          {"gravity_sigma_m_s2", "m/s^2", 0.0, 10.0,
+           "standard deviation of gravity's horizontal part after initial levelling; 0: fixed direction of gravity",
+           FieldRank::basic});
     visit.group("", p.rest);
     visit.group("", p.map);
     visit.group("", p.matching);
     visit.group("", p.prior);
     visit.group("", p.rails);
     visit(p.window_sweeps, {"window_sweeps", "1", 1, 8,
-                            "number of sweeps that are refined together; the estimate of a sweep uses this number "
+                            "number of newest sweeps that are refined together; each pose is final after this number "
                             "minus one of later sweeps",
                             FieldRank::basic});
     visit.group("", p.flight);
@@ -59,16 +61,15 @@ struct OdometryExpertParams {
 struct OdometryParams {
   Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< pose of the lidar in IMU axes
   double time_offset_s = 0.0;                              ///< IMU clock minus lidar clock
-  /// Standard deviations of T_IL and of the time offset. A standard deviation of 0 marks an exact quantity, which is
-  /// not estimated.
+  /// standard deviations of T_IL and of the time offset; 0: exact, not estimated
   double mount_sigma_rad = 0.0;
   double mount_sigma_m = 0.0;
   double time_offset_sigma_s = 0.0;
   double range_min_m = 0.3;        ///< minimum range of a usable return
   double range_max_m = 100.0;      ///< maximum range of a usable return
-  Eigen::AlignedBox3d own_body_L;  ///< returns inside this box hit the robot and are removed; empty: none
+  Eigen::AlignedBox3d own_body_L;  ///< bounding box of the robot's own body, whose returns are dropped; may be empty
   double sweep_voxel_m = 0.25;     ///< edge of the voxels; the registration uses one point per voxel
-  /// Runs the loops of the registration on the caller's threads; results do not depend on the number of threads.
+  /// threads of the caller for the registration; empty: the calling thread
   ParallelFor parallel_for;
 
   using Expert = OdometryExpertParams;
@@ -85,19 +86,19 @@ struct OdometryParams {
     visit(p.range_max_m, {"range_max_m", "m", 0.0, 1e4, "maximum range; farther returns are dropped"});
     visit(p.own_body_L.min(),
           {"own_body_min_m", "m", -kUnbounded, kUnbounded,
-           "minimum corner of a box around the robot, lidar axes; returns inside the box are dropped"});
+           "minimum corner of the bounding box of the robot's own body, lidar axes; returns inside are dropped"});
     visit(p.own_body_L.max(),
           {"own_body_max_m", "m", -kUnbounded, kUnbounded,
-           "maximum corner of a box around the robot, lidar axes; returns inside the box are dropped"});
+           "maximum corner of the bounding box of the robot's own body, lidar axes; returns inside are dropped"});
     visit(p.sweep_voxel_m, {"sweep_voxel_m", "m", 0.01, 10.0,
-                            "edge length of the voxels; one point per voxel and sweep is registered, so a larger value "
-                            "is faster and coarser",
+                            "edge length of the voxels; one point per voxel is registered, so a larger value is "
+                            "faster and coarser",
                             FieldRank::basic});
     visit.group("", p.expert);
   }
 };
 
-/// Checks all parameters including poses, and returns `out_of_range` for the first invalid parameter.
+/// Returns `out_of_range` for the first invalid parameter, including poses.
 Status check_odometry_params(const OdometryParams& params);
 
 }  // namespace tumble

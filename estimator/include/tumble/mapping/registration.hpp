@@ -19,14 +19,13 @@ template <int Rows, int Columns>
 class OuterProducts;
 }  // namespace mapping
 
-/// Registers a sweep to a map by point-to-plane distances, and estimates the motion within the sweep.
+/// Registers a sweep to a map by point-to-plane distances, and estimates the motion within the sweep:
+/// docs/maths/mapping.md.
 ///
-/// The unknowns are position p, attitude (left perturbation phi in W) and velocity v of the IMU at the start of the
-/// trajectory. The saturation deficit (the true rate minus the clipped reading) and the calibration are additional
-/// unknowns if their prior is uncertain. A point in the world is X = p + v t + g t^2/2 + Exp(phi) u. The symbol g is
-/// gravity, and u is the lever arm vector of SweepTrajectory. Each iteration deskews the points with the current
-/// estimate. The cost is the sum of robustly weighted squared distances to planes through the k nearest map points, and
-/// the squared Mahalanobis distance from the prior. The Gauss-Newton solver uses a normal matrix of at most 28x28. The
+/// The unknowns are position, attitude and velocity of the IMU at the start of the trajectory. The saturation deficit
+/// (true rate minus clipped reading) and the calibration are additional unknowns if their prior is uncertain. Each
+/// Gauss-Newton iteration deskews the points with the current estimate. The cost is the sum of robustly weighted
+/// squared distances to planes through the nearest map points, and the squared Mahalanobis distance from the prior. The
 /// prior determines the directions that no surface constrains.
 class Registration {
   static constexpr std::size_t kBlock = 128;  // points per partial sum; independent of the number of threads
@@ -55,8 +54,7 @@ class Registration {
   /// deskewing.
   double point_variance_m2(const SweepPoint& point) const;
 
-  /// Computes the distance of a point from a plane, and its derivatives with respect to all unknowns. Public, so that
-  /// tests can compare the derivatives with finite differences.
+  /// Computes the distance of a point from a plane, and its derivatives with respect to all unknowns. Public for tests.
   static double residual(const SweepTrajectory& trajectory, const SweepCalibration& calibration,
                          const SweepPoint& point, const PlaneFit& plane, std::size_t& hint, Vector& derivative);
 
@@ -106,7 +104,7 @@ class Registration {
   Weight compute_weight(const SweepPoint& point, const Match& match, double distance_m, double kernel_m) const;
 
   Params params_;
-  // Results do not depend on the contents of the buffers.
+  // buffers, which do not influence results
   std::vector<Eigen::Vector3f> lever_arm_vectors_, positions_;
   std::vector<SweepPoint> moved_;
   std::vector<Match> matches_;

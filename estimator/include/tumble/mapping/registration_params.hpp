@@ -15,14 +15,14 @@ struct RegistrationExpertParams {
   double step_s = 1e-5;       ///< convergence limit for a step of the time offset
   double rematch_m = 0.05;    ///< motion of a point after which its plane is searched again
   double kernel_min_m = 0.1;  ///< minimum width of the robust kernel (Geman-McClure)
-  /// Factor below 1 on the weight of each point, because neighbouring lidar returns share the map's errors.
+  /// weight of the information of one point; below 1 because neighbouring returns are correlated
   double correlation_discount = 0.1;
   double cluster_m = 1.0;        ///< edge of a cube whose points have correlated errors
   double match_ratio_min = 0.1;  ///< minimum ratio of matches to points
   /// Minimum number of matches for accepting a registration that agrees with the prior but violates `matches_min` or
-  /// `match_ratio_min`. The large default of agreeing_matches_needed disables the exception for agreeing registrations.
+  /// `match_ratio_min`; disabled by default.
   std::size_t agreeing_matches_needed = 1'000'000'000;
-  /// Minimum fraction of matches within three standard deviations for accepting a registration.
+  /// minimum fraction of matches within three standard deviations
   double inlier_ratio_min = 0.6;
   PlaneBounds plane;
 
@@ -35,15 +35,16 @@ struct RegistrationExpertParams {
     visit(p.kernel_min_m, {"kernel_min_m", "m", 1e-6, 1e3, "minimum width of the robust kernel (Geman-McClure)"});
     visit(p.correlation_discount,
           {"correlation_discount", "1", 1e-6, 1.0,
-           "weight of the information of one point; below 1, because neighbouring returns are correlated"});
-    visit(p.cluster_m, {"cluster_m", "m", 0.01, 100.0, "edge length of the cube whose points count as correlated"});
-    visit(p.match_ratio_min,
-          {"match_ratio_min", "1", 0.0, 1.0, "minimum share of matched points in an accepted result"});
+           "weight of one point in the registration; below 1, because neighbouring returns have correlated errors"});
+    visit(p.cluster_m, {"cluster_m", "m", 0.01, 100.0, "edge length of a cube whose points have correlated errors"});
+    visit(p.match_ratio_min, {"match_ratio_min", "1", 0.0, 1.0,
+                              "minimum share of a sweep's points that are matched in an accepted registration"});
     visit(p.agreeing_matches_needed, {"agreeing_matches_needed", "1", 1, 1e9,
-                                      "minimum number of matches with which a result that agrees with the prior is "
-                                      "accepted"});
-    visit(p.inlier_ratio_min, {"inlier_ratio_min", "1", 0.0, 1.0,
-                               "minimum share of matches within three standard deviations in an accepted result"});
+                                      "minimum number of matches of a registration that agrees with the predicted "
+                                      "pose"});
+    visit(p.inlier_ratio_min,
+          {"inlier_ratio_min", "1", 0.0, 1.0,
+           "minimum share of matches within three standard deviations in an accepted registration"});
     visit.group("plane_", p.plane);
   }
 };
@@ -76,11 +77,13 @@ struct RegistrationParams {
     visit(p.skew_sigma_m_s,
           {"skew_sigma_m_s", "m/s", 0.0, 1e3,
            "growth of a point's standard deviation with the time since the start of the sweep; 0: no growth"});
-    visit(p.matches_min, {"matches_min", "1", 0, 1e9, "minimum number of matches in an accepted result"});
-    visit(p.correction_max_m, {"correction_max_m", "m", 0.0, 1e6,
-                               "maximum accepted correction of the prior pose; a larger correction is rejected"});
-    visit(p.correction_max_rad, {"correction_max_rad", "rad", 0.0, 3.15,
-                                 "maximum accepted correction of the prior pose; a larger correction is rejected"});
+    visit(p.matches_min, {"matches_min", "1", 0, 1e9, "minimum number of matches in an accepted registration"});
+    visit(p.correction_max_m,
+          {"correction_max_m", "m", 0.0, 1e6,
+           "maximum correction of the predicted pose; a registration with a larger correction is rejected"});
+    visit(p.correction_max_rad,
+          {"correction_max_rad", "rad", 0.0, 3.15,
+           "maximum correction of the predicted pose; a registration with a larger correction is rejected"});
     visit.group("", p.expert);
   }
 };

@@ -20,27 +20,23 @@ struct RegistrationResult {
   RegistrationVerdict verdict = RegistrationVerdict::too_few;
   SweepUnknowns::Estimate mean;
   SweepUnknowns::Matrix covariance = SweepUnknowns::Matrix::Zero();  ///< covariance of all unknowns
-  /// Covariance of the cost gradient with respect to the unknowns, measured from the residuals (cluster-robust
-  /// covariance, Liang and Zeger, 1986). Points within RegistrationExpertParams::cluster_m share the map's errors, and
-  /// points farther apart are independent. If all points were independent, the covariance would equal
-  /// correlation_discount times the points' contribution to the normal matrix.
+  /// Covariance of the gradient of the registration's cost, measured from the residuals (cluster-robust covariance,
+  /// Liang and Zeger, 1986). Points within RegistrationExpertParams::cluster_m have correlated errors; points farther
+  /// apart have independent errors.
   SweepUnknowns::Matrix score_covariance = SweepUnknowns::Matrix::Zero();
-  /// Part of the normal matrix that noise of the fitted normals causes, for all estimated unknowns. The errors of
-  /// normals that are fitted to few points add apparent information in every direction of a plane. Source: errors in
-  /// variables (Fuller, Measurement Error Models, 1987, section 2.2). The apparent information stabilises the
-  /// iterations, but contains no information about the motion.
+  /// Apparent information in the Gauss-Newton normal equations that comes from noise of the fitted plane normals.
+  /// Source: errors in variables (Fuller, Measurement Error Models, 1987, section 2.2).
   SweepUnknowns::Matrix normal_noise_information = SweepUnknowns::Matrix::Zero();
   std::size_t points = 0, matches = 0, inliers = 0;
   double correction_m = 0.0;  ///< position correction at the start, even if rejected as too large
   double correction_rad = 0.0;
   int iterations = 0;
-  /// Ascending eigenvalues of the normal matrix of the pose, without the prior. The attitude is scaled to metres by the
-  /// root-mean-square lever arm. The matrix is scaled so that its translation part has trace 1. The columns of
-  /// `directions` are its eigenvectors.
+  /// Ascending eigenvalues and eigenvectors (columns) of the pose's information from the lidar, without the prior. The
+  /// attitude is scaled to metres by the root-mean-square lever arm. The information matrix of the pose is scaled so
+  /// that its translation part has trace 1.
   Eigen::Matrix<double, 6, 1> eigenvalues = Eigen::Matrix<double, 6, 1>::Zero();
   Eigen::Matrix<double, 6, 6> directions = Eigen::Matrix<double, 6, 6>::Identity();
-  /// Standard deviation of the pose in its least constrained direction, from the surfaces alone. Apparent information
-  /// from noise of the normals is excluded.
+  /// Standard deviation of the pose in its least constrained direction, without the inertial prediction.
   double least_constrained_sigma_m = std::numeric_limits<double>::infinity();
 };
 

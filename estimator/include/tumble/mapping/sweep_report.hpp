@@ -10,9 +10,8 @@
 
 namespace tumble {
 
-/// SweepVerdict states how a sweep determined the pose. If the verdict is not `registered`, the pose relies on the
-/// inertial prediction. A `degenerate` sweep with eigenvalue_ratio 0 uses the prediction in every direction. A
-/// `rejected` sweep with too few matches is also inserted into the map.
+/// Source of a sweep's pose: registration or inertial prediction. A `degenerate` sweep with eigenvalue_ratio 0 uses the
+/// prediction in every direction.
 enum class SweepVerdict : std::uint8_t {
   first,       ///< the sweep started the map
   registered,  ///< aligned with the map in all six directions
@@ -24,30 +23,29 @@ const char* to_string(SweepVerdict verdict);
 struct SweepReport {
   SweepVerdict verdict = SweepVerdict::rejected;
   PoseState pose;  ///< pose and velocity of the IMU at the end of the sweep, with covariance
-  /// covariance of the velocity error in IMU axes, R_IW v_WI_W, at the end of the sweep [m^2/s^2]
+  /// covariance of the velocity in IMU axes at the end of the sweep [m^2/s^2]
   Eigen::Matrix3d velocity_covariance_I_m2_s2 = Eigen::Matrix3d::Zero();
   std::vector<PoseState> trajectory;  ///< IMU poses within the sweep, corrected by the registration
-  /// Final poses of the oldest sweep in the window, smoothed with all newer sweeps; empty while the window fills. With
-  /// a window of two sweeps, the oldest sweep is the previous sweep.
+  /// Final poses of the oldest sweep that the fixed-lag smoother refines; empty until `window_sweeps` sweeps have
+  /// arrived. With the default `window_sweeps` of 2, the oldest sweep is the previous sweep.
   std::vector<PoseState> smoothed;
   double inlier_ratio = 0.0;      ///< fraction of the registered points that are inliers
   double eigenvalue_ratio = 0.0;  ///< smallest divided by largest eigenvalue of the scaled normal matrix
-  /// Standard deviation of the pose in the least constrained direction, from the surfaces of the reported sweep alone;
-  /// 0: not aligned.
+  /// standard deviation of the pose in the least constrained direction, from this sweep's points alone; 0: not aligned
   double least_constrained_sigma_m = 0.0;
   /// Normalised innovation: correction of pose and velocity in standard deviations of the inertial prediction, divided
-  /// by sqrt(9). The mean innovation is at most 1 if the covariances of prediction and surfaces are correct. The value
-  /// 0 means that the sweep was not aligned.
+  /// by sqrt(9). The mean innovation is at most 1 if the covariances are correct; 0 means that the sweep was not
+  /// aligned.
   double innovation = 0.0;
   /// Standard deviation of the position relative to the map around the robot. The covariance of `pose` also includes
   /// the map's drift and tilt, which grow with the travelled distance.
   double map_sigma_m = 0.0;
   int iterations = 0;
   int consecutive_rejected_sweeps = 0;  ///< consecutive rejected sweeps, including the current sweep
-  /// True if the sweep relocalised the robot at an unpredicted pose, and later sweeps have not confirmed the pose. Two
-  /// further sweeps must confirm a relocalisation; a contradicting sweep reverts the relocalisation.
+  /// True if the sweep relocalised the robot at an unpredicted pose, and two further sweeps have not yet confirmed this
+  /// pose. A contradicting sweep reverts the relocalisation.
   bool relocalisation_unconfirmed = false;
-  /// Direction in world axes in which the surfaces constrain the pose least, as a unit vector of position and attitude.
+  /// Direction in world axes in which the lidar constrains the pose least, as a unit vector of position and attitude.
   /// The attitude is scaled to metres by the root-mean-square lever arm.
   Eigen::Matrix<double, 6, 1> least_constrained_direction = Eigen::Matrix<double, 6, 1>::Zero();
   Eigen::Vector3d saturation_deficit_rad_s = Eigen::Vector3d::Zero();  ///< mean correction of the clipped gyro axes
@@ -55,7 +53,7 @@ struct SweepReport {
   std::size_t isolated_points = 0;    ///< unused returns that no neighbouring beam confirms
   std::size_t points_registered = 0;  ///< usable points after sampling, one per voxel
   std::size_t map_points_added = 0;
-  /// True if the poses of the report are in the frame of the prior map; always false without a prior map.
+  /// true if the poses of the report are in the frame of the prior map
   bool in_prior_map = false;
 };
 

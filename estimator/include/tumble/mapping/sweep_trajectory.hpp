@@ -17,7 +17,7 @@ namespace tumble {
 
 struct SweepPoint;
 
-/// Force and rate are means over (from_ns, time_ns].
+/// Mean force and rate over (from_ns, time_ns], in IMU axes.
 struct MotionSample {
   TimeNs from_ns = 0;
   TimeNs time_ns = 0;
@@ -32,8 +32,8 @@ struct MotionSample {
   bool bridges_gap = false;             ///< the sample bridges a gap: the force is unknown, the velocity constant
 };
 
-/// MotionState contains the motion of the IMU at one time, with the errors of position, attitude and velocity in world
-/// axes. The attitude error is defined as in AttitudeState.
+/// Motion of the IMU at one time. The covariance refers to position, attitude and velocity in world axes, with the
+/// attitude error of AttitudeState.
 struct MotionState {
   TimeNs time_ns = 0;
   Eigen::Vector3d p_WI_m = Eigen::Vector3d::Zero();
@@ -44,38 +44,29 @@ struct MotionState {
   PoseState pose() const;
 };
 
-/// Computes the motion of the IMU over a segment by strapdown integration from a known start. The motion can be
-/// evaluated at any time of the segment.
+/// Computes the motion of the IMU over a time segment by strapdown integration from a known start.
 ///
-/// The attitude is R(t) = R_k Exp(w_k (t - t_k)) with the rate w_k of sample k. The attitude is exact if the rate is
-/// constant in body axes over each sample. The position is p(t) = p_0 + v_0 t + g t^2 / 2 + S(t). The vectors p_0 and
-/// v_0 are position and velocity at the start, g is gravity, and S is the double integral of the specific force. The
-/// mean force over a sample of length dt is R_k J_l(w_k dt) f_k, with attitude R_k, rate w_k, measured force f_k and
-/// left Jacobian J_l. The mean force is exact if the force is constant in body axes, like the centripetal force of a
-/// spin.
+/// The attitude is exact if the rate is constant in body axes over each sample. The mean force over a sample is exact
+/// if the force is constant in body axes, like the centripetal force of a spin. SweepTrajectory neglects sculling
+/// within a sample and the earth's rotation.
 ///
-/// The saturation deficit e is the true rate minus the clipped reading, and corrects the clipped axes. The saturation
-/// deficit is linear in time between kKnots knots, at equal steps from the start to the end of the segment. If axis j
-/// is clipped, the corrected rate is w_j + s_j e_j(t), with the measured rate w_j, a factor s_j and the saturation
-/// deficit e_j. The factor s_j has the sign of w_j, and magnitude sigma_j divided by the largest sigma_j of the
-/// segment's clipped samples. The symbol sigma_j is the standard deviation of the rate; if all sigma_j are 0, the
-/// magnitude of s_j is 1. The saturation deficit corrects rates with a small standard deviation only a little. Within a
-/// sample, the saturation deficit is constant and has the value at the middle of the sample. Sculling within a sample
-/// and the earth's rotation are neglected.
+/// The saturation deficit (true rate minus clipped reading) corrects the clipped gyro axes. The saturation deficit is a
+/// linear interpolation between kKnots support points, equally spaced over the segment. The equations are in
+/// docs/maths/mapping.md.
 class SweepTrajectory {
  public:
   static constexpr int kKnots = 3;
-  static constexpr int kDeficitSize = 3 * kKnots;  ///< number of unknowns, axis by axis within a knot
+  static constexpr int kDeficitSize = 3 * kKnots;  ///< number of unknowns: three axes per support point
   using Deficit = Eigen::Matrix<double, 3, kKnots>;
   using DeficitJacobian = Eigen::Matrix<double, 3, kDeficitSize>;
 
-  /// attitude R(t) and double integral S(t) of the specific force at the time of a lidar point
+  /// attitude, and double integral of the specific force, at the time of a lidar point
   struct PreintegratedMotion {
     Eigen::Quaterniond q_WI;
     Eigen::Vector3d preintegrated_position_m;
   };
-  /// First-order errors due to the saturation deficit e: attitude_jacobian_s * e of the attitude, and
-  /// position_jacobian_m_s * e of S(t).
+  /// derivatives of the attitude and of the double integral of the specific force with respect to the saturation
+  /// deficit
   struct DeficitDerivative {
     DeficitJacobian attitude_jacobian_s;
     DeficitJacobian position_jacobian_m_s;
@@ -84,7 +75,6 @@ class SweepTrajectory {
   /// Integrates the motion from `start` to `end_ns`. The samples must be contiguous and in time order, beginning at the
   /// start. Returns `too_few` if there is no sample or if the samples end before `end_ns`. Returns `time_order` if the
   /// end is before the start. Returns `gap` with the time in seconds if the first sample begins after the start.
-  /// Repeated calls reuse the memory of the trajectory.
   Status build(const MotionState& start, std::span<const MotionSample> samples, TimeNs end_ns,
                const Eigen::Vector3d& gravity_W_m_s2, const Deficit& deficit_rad_s = Deficit::Zero());
   /// The gravity has magnitude `gravity_m_s2` along -z.
@@ -97,34 +87,31 @@ class SweepTrajectory {
   double duration_s() const { return duration_s_; }
 
   /// Returns the motion at `t_s` seconds after the start. Outside of the segment, at() extrapolates the motion by up to
-  /// kExtrapolation_s, which covers errors of the time offset. `hint` is the interval of the previous call, and speeds
-  /// up calls in time order. Any value of `hint` in [0, intervals()) is valid.
+  /// kExtrapolation_s. `hint` is the interval of the previous call, and speeds up calls in time order.
   static constexpr double kExtrapolation_s = 0.02;
   PreintegratedMotion at(double t_s, std::size_t& hint) const;
-  /// Computes the lever arm vector S(t) + R(t) x of each point x. lever_arm_vectors() is faster than at() for several
-  /// points, and gives bit-identical results.
+  /// Computes the lever arm vector of each point: the position of the point in the world minus common_position_m() at
+  /// the time of the point.
   void lever_arm_vectors(std::span<const SweepPoint> points, std::span<Eigen::Vector3f> levers_W_m) const;
   DeficitDerivative deficit_derivative(double t_s, std::size_t& hint) const;
   std::size_t intervals() const { return intervals_.size(); }
   /// end of interval i in seconds after the start of the segment
   double interval_end_s(std::size_t i) const { return intervals_[i].start_s + intervals_[i].length_s; }
 
-  /// Returns the common part p_0 + v_0 t + g t^2 / 2 of the positions of all points at time t. The position of a point
-  /// x is common_position_m(t) plus the lever arm vector u(t) = S(t) + R(t) x.
+  /// Returns the start position plus the effect of start velocity and gravity on the position at `t_s`.
   Eigen::Vector3d common_position_m(double t_s) const {
     return start_.p_WI_m + t_s * start_.v_WI_m_s + (0.5 * t_s * t_s) * gravity_W_m_s2_;
   }
 
-  /// Returns the motion at `t_s` seconds after the start, and the velocity in world axes of a point at x_I in IMU axes.
+  /// Returns the motion at `t_s` seconds after the start, and the velocity in world axes of a point at `x_I_m` in IMU
+  /// axes.
   PreintegratedMotion at(double t_s, const Eigen::Vector3d& x_I_m, std::size_t& hint,
                          Eigen::Vector3d& velocity_m_s) const;
 
-  /// Returns the full motion state at the time `t_s` within the segment. The covariance is propagated without process
-  /// noise.
+  /// Returns the motion state at `t_s` within the segment. The covariance is propagated without process noise.
   MotionState state(double t_s) const;
 
-  /// first-order derivatives of position, attitude and velocity at time t_s with respect to the start state, the
-  /// saturation deficit and gravity
+  /// derivatives of position, attitude and velocity with respect to start state, saturation deficit and gravity
   struct Transition {
     Eigen::Matrix<double, 9, 9> jacobian_start;
     Eigen::Matrix<double, 9, kDeficitSize> jacobian_deficit_s;
@@ -132,12 +119,11 @@ class SweepTrajectory {
   };
   Transition transition(double t_s) const;
 
-  /// Return the magnitude |s_j| of the saturation deficit's factor in the first and in the last interval; 0 if axis j
-  /// is not clipped there.
+  /// factor of the saturation deficit on each axis in the first or last interval; 0: axis not clipped
   Eigen::Vector3d deficit_factor_at_start() const { return intervals_.front().deficit_factor.cwiseAbs(); }
   Eigen::Vector3d deficit_factor_at_end() const { return intervals_.back().deficit_factor.cwiseAbs(); }
 
-  /// gyro axes that were clipped anywhere in the segment: bit j for axis j
+  /// gyro axes clipped in the segment: bit j for axis j
   std::uint8_t clipped_axes() const { return clipped_axes_; }
 
  private:

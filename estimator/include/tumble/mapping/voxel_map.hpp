@@ -20,12 +20,8 @@ struct Neighbours {
   std::array<std::uint32_t, kMax> index;  ///< index of the point in its VoxelMap
 };
 
-/// VoxelMap stores map points in world axes and finds nearest neighbours.
-///
-/// The cells of a cubic grid store their points in chunks of sixteen. Each chunk has one array per coordinate, so that
-/// distances are computed over contiguous floats. One look-up in a hash table finds a group of 8x8x8 cells. At most one
-/// point per cube of edge `spacing_m` is kept. Coordinates are single-precision floats, which limits the width of a map
-/// to a few kilometres.
+/// Stores map points in world axes and finds nearest neighbours. VoxelMap keeps at most one point per cube of edge
+/// `spacing_m`. Coordinates are single-precision floats, which limits the width of a map to a few kilometres.
 class VoxelMap {
  public:
   static constexpr std::uint32_t kUnknownScanLine = 0xffffffffu;
@@ -37,8 +33,9 @@ class VoxelMap {
 
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
-      visit(p.voxel_m, {"voxel_m", "m", 0.01, 100.0,
-                        "edge length of a cell; the search is fastest at a few times the spacing of the points"});
+      visit(p.voxel_m,
+            {"voxel_m", "m", 0.01, 100.0,
+             "edge length of a cell; the search for neighbours is fastest at a few times the spacing of the points"});
       visit(p.spacing_m, {"spacing_m", "m", 0.0, 100.0,
                           "edge length of the cube that stores at most one point; 0: store all points"});
     }
@@ -56,35 +53,33 @@ class VoxelMap {
 
   /// Returns the index of the new point, or kNoPoint if the point was rejected.
   std::uint32_t add(const Eigen::Vector3f& position_W_m, float sigma_m, std::uint32_t sweep, std::uint32_t line);
-  /// Returns true if add() would reject a point, because its cube already has a point or the position is outside the
-  /// map's range. Call is_occupied() first if the properties of a point are expensive to compute.
+  /// Returns true if add() would reject a point. Call is_occupied() first if the properties of a point are expensive to
+  /// compute.
   bool is_occupied(const Eigen::Vector3f& position_W_m) const;
 
-  /// If the refined position is in another cell, move() returns false and leaves the point unchanged.
+  /// Returns false and leaves the point unchanged if the new position is in another cell.
   bool move(std::uint32_t index, const Eigen::Vector3f& position_W_m);
 
   /// Counts a sweep whose beam passed through the position of a point (`through` is true) or hit the point again
-  /// (`through` is false). A passing beam and a hitting beam cancel each other.
+  /// (`through` is false).
   void count_observation(std::uint32_t index, bool through);
 
-  /// Finds the k <= Neighbours::kMax nearest points within `radius_m`. Points of a cell at equal distances are in order
-  /// of insertion. The search is exact and does not allocate. The cost grows with the number of cells within the
-  /// distance of the k-th neighbour.
+  /// Finds the k <= Neighbours::kMax nearest points within `radius_m`, without allocating memory. The cost grows with
+  /// the number of cells within the distance of the k-th neighbour.
   void nearest(const Eigen::Vector3f& query_W_m, int k, float radius_m, Neighbours& found) const;
 
-  /// Deletes the points farther than `radius_m` from `centre_W_m` and frees their memory. Cost: O(number of points).
-  /// The indices of points change, and the remaining sweeps are renumbered in order. Returns the old number of each
-  /// remaining sweep.
+  /// Deletes the points farther than `radius_m` from `centre_W_m`. The indices of points change, and the remaining
+  /// sweeps are renumbered in order. Returns the old number of each remaining sweep. Cost: O(number of points).
   std::vector<std::uint32_t> remove_beyond(const Eigen::Vector3f& centre_W_m, float radius_m);
 
-  /// Deletes the points of `first_sweep` and of later sweeps. Cost: O(number of points). The indices of points change,
-  /// and the numbers of sweeps are unchanged.
+  /// Deletes the points of `first_sweep` and of later sweeps. The indices of points change, but not the numbers of
+  /// sweeps. Cost: O(number of points).
   void remove_sweeps_from(std::uint32_t first_sweep);
 
   std::size_t bytes() const;
 
   std::size_t size() const { return sigma_m_.size() - free_slots_; }
-  /// Returns the upper limit of the point indices in use. Indices for which exists() returns false are unused.
+  /// Returns the upper limit of the point indices in use; exists() is false for unused indices.
   std::uint32_t index_end() const { return static_cast<std::uint32_t>(sigma_m_.size()); }
   bool exists(std::uint32_t index) const { return sigma_m_[index] >= 0.0f; }
   Eigen::Vector3f position_W_m(std::uint32_t index) const;

@@ -11,9 +11,8 @@
 
 namespace tumble {
 
-/// Converts map points to a PCL cloud of positions and normals. Cost: O(n). The field `intensity` of the cloud contains
-/// sigma_m, because PCL has no field for a standard deviation; `curvature` is 0. Programs that include map_cloud.hpp
-/// must find PCL, directly or through find_package(tumble).
+/// The field `intensity` of the cloud contains the standard deviation sigma_m, and `curvature` is 0. Programs that
+/// include map_cloud.hpp must find PCL, directly or through find_package(tumble). Cost: O(n).
 pcl::PointCloud<pcl::PointXYZINormal> to_pcl(std::span<const MapPoint> points);
 
 /// Inverse of to_pcl(). Cost: O(n).

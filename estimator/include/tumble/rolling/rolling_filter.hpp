@@ -17,24 +17,17 @@ namespace tumble {
 /// floor.
 ///
 /// While the sphere grips the floor, the rolling constraint acts as a velocity measurement. The velocity measurements
-/// determine tilt, biases, scale, misalignment, delay and lever arm of the IMU. The calibrated IMU can then be
-/// integrated through several seconds without grip. The contact mode, for example grip or slip, is also estimated. Each
-/// hypothesis about the past contact modes has a separate error-state Kalman filter, until later data decide between
-/// the hypotheses. The state contains the position, so grip after a slip or bump also corrects the displacement during
-/// the slip or bump. RollingSmoother revises earlier poses with later data.
+/// determine tilt and sensor errors, so that the calibrated IMU can be integrated through several seconds without grip.
+/// Each hypothesis about the past contact modes (grip, slip, bump, incline, rough floor) has a separate error-state
+/// Kalman filter. The equations are in docs/maths/rolling.md.
 ///
-/// While the sphere is at rest, the reported position is constant. Measurements at rest may correct the path before the
-/// rest; the corrections are applied when motion resumes. If another hypothesis becomes the most probable at rest, the
-/// position is corrected immediately.
+/// While the sphere is at rest, the reported position is constant, unless another hypothesis becomes the most probable
+/// one. Corrections of the position at rest are applied when motion resumes.
 ///
-/// The readings of a fast IMU are averaged over RollingExpertParams::reading_s, and the estimate is extrapolated
-/// between averages. Over a gap of up to gap_max_s, the rate is interpolated and the force unknown, with an increased
-/// covariance. A start in motion is detected, and increases the initial uncertainty.
+/// In a gap of up to gap_max_s between samples, the rate is interpolated, the force is unknown, and the covariance
+/// grows. While the gyro is saturated, the rolling constraint is not used, and the covariance of the position grows.
 ///
-/// While the gyro is saturated, the rolling constraint is not used, and the covariance of the position grows. The state
-/// needs 430 KiB of memory.
-///
-/// The floor is assumed rigid and unmoving. The heading drifts.
+/// RollingFilter assumes a rigid, unmoving floor. The heading drifts. The state needs 430 KiB of memory.
 class RollingFilter {
  public:
   static constexpr int kStates = 40;
@@ -93,24 +86,24 @@ class RollingFilter {
 
   explicit RollingFilter(const Params& params);
 
-  /// The first sample sets the tilt from its specific force, with yaw 0, and sets the sphere's centre to the origin, at
+  /// The first sample sets the tilt from its specific force, with yaw 0, and the sphere's centre to the origin, at
   /// rest. The sphere should be at rest for one second after the first sample. On error, the state is unchanged. Cost:
-  /// no allocation; about kHypotheses * kStates^2 * 40 operations per node.
+  /// about kHypotheses * kStates^2 * 40 operations per `node_s`, no allocation.
   Status step(const ImuSample& sample, State& state) const {
     return step(sample, state, [](const State&) {});
   }
 
-  /// Calls `closed(state)` after each completed node; a sample that ends a gap completes several nodes.
+  /// Calls `closed(state)` after each completed node (time step of `node_s`).
   template <typename Closed>
   Status step(const ImuSample& sample, State& state, Closed closed) const {
     return step_with(sample, state,
                      Listener{&closed, [](void* to, const State& at) { (*static_cast<Closed*>(to))(at); }});
   }
 
-  /// The covariance contains only the position block; all other entries are zero.
+  /// The covariance of the returned estimate contains only the position block.
   static RollingEstimate estimate(const State& state);
 
-  /// The constants of sensors and sphere refer to the last node.
+  /// Returns the constants of sensors and sphere at the last node.
   static RollingCalibration calibration(const State& state);
 
  private:

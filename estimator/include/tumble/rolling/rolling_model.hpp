@@ -17,7 +17,6 @@ enum class RollingMode : std::uint8_t {
 };
 inline constexpr int kRollingModes = 5;
 
-/// Returns true if the contact point may move along the floor in this contact mode.
 inline bool may_slip(RollingMode mode) {
   return mode == RollingMode::slip || mode == RollingMode::bump;
 }
@@ -29,9 +28,9 @@ struct RollingEstimate {
   Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
   Eigen::Vector3d v_WG_m_s = Eigen::Vector3d::Zero();
   Eigen::Vector3d w_WI_I_rad_s = Eigen::Vector3d::Zero();  ///< gyro reading minus bias
-  /// Covariance of the position error [m] and the attitude error [rad] in world axes, at the node after the sample.
+  /// covariance of the position error [m] and the attitude error [rad], in world axes
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
-  /// Covariance of the error of the centre's velocity in IMU axes, at the node after the sample.
+  /// covariance of the centre's velocity, in IMU axes
   Eigen::Matrix3d velocity_covariance_I_m2_s2 = Eigen::Matrix3d::Zero();
   RollingMode mode = RollingMode::grip;
   bool at_rest = false;
@@ -55,16 +54,15 @@ struct RollingNominal {
   bool operator==(const RollingNominal&) const = default;
 };
 
-/// Constants that one run estimated, usable as the prior of another run of the same sphere. The order is that of the
-/// error state, rolling.md (R1), from the gyro bias to the radius.
+/// Constants that one run estimated, usable as the prior of another run of the same sphere. The constants have the
+/// order of the error state, from the gyro bias to the radius: rolling.md (R1).
 struct RollingCalibration {
   static constexpr int kSize = 31;
   Eigen::Matrix<double, kSize, 1> constants = Eigen::Matrix<double, kSize, 1>::Zero();
   Eigen::Matrix<double, kSize, kSize> covariance = Eigen::Matrix<double, kSize, kSize>::Zero();
 };
 
-/// RollingIntegrals contains integrals since the last node, with attitude R, specific force f and rate w. The
-/// integrands are R, R f, R (x) f^T, R (x) w^T, R (w x f), w, f and |w|^2.
+/// Integrals of attitude, specific force, rate and their products since the last measurement update (node).
 struct RollingIntegrals {
   Eigen::Matrix3d rotation_integral_s = Eigen::Matrix3d::Zero();
   Eigen::Matrix3d rotation_integral_used_force_s =
@@ -81,7 +79,7 @@ struct RollingIntegrals {
   double unexplained_impact_m_s = 0.0;                 ///< part of impact_m_s that rotation does not explain
   Eigen::Vector3d subsample_saturation_W_m_s =
       Eigen::Vector3d::Zero();  ///< standard deviation of force lost to saturation shorter than a sample
-  // Duration of a gap, and the variances that the gap adds to angle, rate (times duration) and velocity.
+  // duration of a gap, and variances that the gap adds to angle, rate (times duration), velocity
   double gap_s = 0.0, gap_angle_variance_rad2 = 0.0, gap_rate_variance_rad2_s = 0.0, gap_speed_variance_m2_s2 = 0.0;
   double node_s = 0.0;
   bool operator==(const RollingIntegrals&) const = default;

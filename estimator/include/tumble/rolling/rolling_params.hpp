@@ -15,12 +15,10 @@ namespace tumble {
 
 struct RollingExpertParams {
   double node_s = 0.02;  ///< time between two measurement updates
-  /// Averaging time of the readings, which the other thresholds assume; 0: no averaging. If the sample period is longer
-  /// than reading_s, the readings are not averaged.
+  /// averaging time of the readings; 0: no averaging
   double reading_s = 4e-3;
-  /// The rest detector processes the mean reading of each node. The rate limit of 0.0115 rad/s per axis is 0.02 rad/s
-  /// in total, at which the sphere rolls at 3 mm/s. With a limit of 0.02 rad/s per axis, the drift of a sphere that
-  /// comes to rest would be 1.5 times as large.
+  /// The rest detector processes the mean reading of each node. With a rate limit of 0.02 instead of 0.0115 rad/s per
+  /// axis, the drift of a sphere that comes to rest would be 1.5 times as large.
   RestDetector::Params rest = {
       .rate_max_rad_s = 0.0115, .rate_spread_rad_s = 0.016, .force_spread_m_s2 = 0.15, .rest_s = 0.4, .memory_s = 0.1};
   RollingPriorParams prior = {};
@@ -52,11 +50,11 @@ struct RollingParams {
   double lever_arm_sigma_m = 2e-3;
   std::optional<Eigen::Quaterniond> q_WI_start = {};  ///< attitude at the first sample; empty: tilt from gravity
   double gravity_m_s2 = 9.80665;
-  /// Gyro readings at or above gyro_range_rad_s are clipped, in addition to readings that the device flags as clipped.
+  /// readings at or above the range are clipped, in addition to flagged readings
   double gyro_range_rad_s = 1e3;
   double accel_range_m_s2 = 1e5;
-  /// Calibration from an earlier run, which replaces the prior of the sensor errors, the lever arm and the radius.
-  /// Biases keep the prior's uncertainty in addition, because biases change at every switch-on.
+  /// Calibration from an earlier run, which replaces the prior of the sensor errors, the lever arm and the radius. The
+  /// prior variances of the biases are added to the calibrated variances, because biases change at every switch-on.
   std::shared_ptr<const RollingCalibration> calibration = {};
   double speed_max_m_s = 2.5;  ///< maximum speed of the sphere; grip at a higher speed is rejected
 
@@ -72,9 +70,11 @@ struct RollingParams {
     visit(p.lever_arm_sigma_m,
           {"lever_arm_sigma_m", "m", 0.0, 1e3, "prior standard deviation of the lever arm", FieldRank::basic});
     visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-12, 100.0, "strength of gravity"});
-    visit(p.gyro_range_rad_s, {"gyro_range_rad_s", "rad/s", 1e-12, 1e3, "rates from this value on count as saturated"});
+    visit(p.gyro_range_rad_s, {"gyro_range_rad_s", "rad/s", 1e-12, 1e3,
+                               "measuring range of the gyro; readings at or above this value count as saturated"});
     visit(p.accel_range_m_s2,
-          {"accel_range_m_s2", "m/s^2", 1e-12, 1e5, "forces from this value on count as saturated"});
+          {"accel_range_m_s2", "m/s^2", 1e-12, 1e5,
+           "measuring range of the accelerometer; readings at or above this value count as saturated"});
     visit(p.speed_max_m_s, {"speed_max_m_s", "m/s", 1e-12, 1e3,
                             "maximum rolling speed; the filter rejects the hypothesis of grip above this speed"});
     visit.group("", p.expert);

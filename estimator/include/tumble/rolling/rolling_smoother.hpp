@@ -15,47 +15,40 @@
 
 namespace tumble {
 
-/// Smooths the poses of RollingFilter with later data, with a fixed lag or over the whole run.
-///
-/// The smoother uses the contact modes of RollingFilter's most probable hypothesis at the time of smoothing. With the
-/// contact modes fixed, one Kalman filter runs forward over the stored samples. The modified Bryson-Fraser smoother
-/// then runs backward (Bierman, Factorization Methods for Discrete Sequential Estimation, 1977). The Bryson-Fraser
-/// smoother needs no matrix inverse, only the gains of the Kalman filter. The errors of a sample are interpolated from
-/// the errors of its two neighbouring nodes.
+/// Smooths the poses of RollingFilter with later data, with a fixed lag or over the whole run. The contact modes are
+/// those of RollingFilter's most probable hypothesis at the time of smoothing, and are treated as certain. Source:
+/// modified Bryson-Fraser smoother (Bierman, Factorization Methods for Discrete Sequential Estimation, 1977).
 ///
 /// With a fixed lag, the reported position is constant while the sphere is at rest. When motion resumes, the position
-/// is corrected for errors of the path before the rest. If the whole run is smoothed, the path before a rest is
-/// corrected directly.
-///
-/// The contact modes are treated as certain, except for the spread of positions that RollingFilter prunes at rest.
+/// is corrected for errors of the path before the rest.
 class RollingSmoother {
  public:
   static constexpr double kWholeRun = 1e9;
 
   struct Params {
     RollingParams filter = {};
-    /// Ratio of the process noise of the smoother to the process noise of RollingFilter. The reported covariance uses
-    /// the full process noise of RollingFilter.
+    /// ratio of the smoother's to RollingFilter's process noise; the reported covariance ignores this ratio
     double final_pass_noise_ratio = 0.65;
     double lag_s = kWholeRun;    ///< delay of an estimate behind the newest sample
     double block_s = 0.2;        ///< RollingSmoother reports estimates in blocks of this duration
     double rate_max_hz = 500.0;  ///< sample rate for which memory is allocated in advance
     /// Measured horizontal distance of the centre between start and end of the run, and its standard deviation; 0: not
-    /// measured. The measured distance and the prior on the radius determine the radius.
+    /// measured. A measured distance corrects the radius of the sphere.
     double known_distance_m = 0.0, known_distance_sigma_m = 5e-3;
 
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("", p.filter);
-      visit(p.final_pass_noise_ratio, {"final_pass_noise_ratio", "1", 1e-6, 1.0,
-                                       "process noise of the last pass, as a share of the filter's process noise"});
+      visit(p.final_pass_noise_ratio,
+            {"final_pass_noise_ratio", "1", 1e-6, 1.0,
+             "process noise of the smoother, as a share of the process noise of RollingFilter"});
       visit(p.lag_s,
             {"lag_s", "s", 1e-3, 1e9,
              "maximum delay of a pose; a longer delay makes poses more accurate; 1e9: until the end of the run",
              FieldRank::basic});
       visit(p.block_s, {"block_s", "s", 1e-3, 1e3, "length of the blocks in which estimates are reported"});
       visit(p.rate_max_hz,
-            {"rate_max_hz", "Hz", 1e-3, 1e5, "maximum sample rate; determines the memory for the delay"});
+            {"rate_max_hz", "Hz", 1e-3, 1e5, "sample rate for which the memory of the delay is allocated in advance"});
       visit(p.known_distance_m,
             {"known_distance_m", "m", 0.0, 1e6,
              "known horizontal distance from start to end, from which the radius is estimated; 0: not known",
@@ -75,7 +68,7 @@ class RollingSmoother {
     bool spins_in_place = false;
     bool operator==(const NodeModes&) const = default;
   };
-  /// state of the smoother at the committed node, up to which estimates are reported
+  /// state of the smoother at the last node with reported estimates
   struct FinalPassState {
     RollingNominal nominal;
     RollingFilter::Covariance P = RollingFilter::Covariance::Zero();
@@ -104,31 +97,30 @@ class RollingSmoother {
 
   explicit RollingSmoother(const Params& params);
 
-  /// RollingFilter updates State::live. A program that needs only live poses can use RollingFilter alone.
+  /// Returns the filter that updates State::live.
   const RollingFilter& filter() const { return filter_; }
 
-  /// Appends the estimates that are older than the lag to `out`. On error, the state is unchanged. The first call of
-  /// step() allocates the memory for samples within the lag. Later calls of step() allocate memory only for `out` and
-  /// for the processing of a block. The memory grows with the duration (64 bytes per sample, 152 per node) if the
-  /// sample rate exceeds rate_max_hz, if the lag contains over a million samples, or with kWholeRun. The call of step()
-  /// for the last sample of a block smooths the block. Smoothing temporarily needs 14 KiB of memory per node of lag and
-  /// block, or 4 MiB plus 0.3 KiB per node if there are many nodes.
+  /// Appends the estimates that are older than the lag to `out`. On error, the state is unchanged.
+  ///
+  /// The first call allocates the memory for samples within the lag. Later calls allocate memory only for `out` and for
+  /// smoothing, at the last sample of a block of `block_s`. Smoothing temporarily needs 14 KiB per node of lag and
+  /// block, or 4 MiB plus 0.3 KiB per node if there are many nodes. The memory of the state grows with the duration (64
+  /// bytes per sample, 152 per node) with kWholeRun, above rate_max_hz, or beyond a million samples in the lag.
   Status step(const ImuSample& sample, State& state, std::vector<RollingEstimate>& out) const;
 
-  /// Smooths the remaining estimates with all data, and passes them to `take` in time order. For a whole run of N
-  /// nodes, finish() temporarily needs 4 MiB + N * 0.3 KiB of memory, in addition to the state.
+  /// Smooths the remaining estimates with all data, and passes the estimates to `take` in time order. For a whole run
+  /// of N nodes, finish() temporarily needs 4 MiB + N * 0.3 KiB of memory.
   using EstimateCallback = std::function<void(const RollingEstimate&)>;
   void finish(State& state, const EstimateCallback& take) const;
   void finish(State& state, std::vector<RollingEstimate>& out) const;
 
-  /// Ends the run with externally known contact modes. `known` contains one contact mode per sample of a whole run that
-  /// was processed with kWholeRun.
+  /// Ends the run with externally known contact modes. `known` contains one contact mode per sample of a run that was
+  /// processed with kWholeRun.
   void finish(std::span<const RollingMode> known, State& state, const EstimateCallback& take) const;
 
  private:
   struct Path;
 
-  /// number of samples for which the memory of the lag is allocated in advance
   std::size_t preallocated_samples() const;
   Path most_probable_path(const State& state) const;
   void smooth_window(const Path& path, std::size_t emitted, State& state, const EstimateCallback& take) const;

@@ -25,8 +25,7 @@ using Marginal = System::Marginal;
 
 inline constexpr int kErrorCount = 29;  ///< number of sensor errors, which all blocks share: see SensorErrors
 
-/// derivative of a block's gradient with respect to the sensor errors; after back-substitution, derivative of the
-/// block's step
+/// derivative of a block's gradient with respect to the sensor errors; after back-substitution, of the block's step
 using ErrorMatrix = Eigen::Matrix<double, kBlockSize, kErrorCount>;
 using BorderErrors = Eigen::Matrix<double, kBorderSize, kErrorCount>;
 
@@ -36,11 +35,11 @@ StateVector back_substitute(const Block& block, const StateVector* next_step, co
 Conditional back_conditional(const Block& block, const Conditional* next);
 Marginal marginal(const Conditional& conditional, const BorderMatrix& border_covariance);
 
-/// Eliminates the sensor-error columns `errors` of `block`, after eliminate(). `next` is null for the last block.
+/// Call eliminate() for `block` first. `next` is null for the last block.
 void eliminate_errors(const Block& block, ErrorMatrix& errors, ErrorMatrix* next, BorderErrors& border);
 
-/// Returns the derivative of an eliminated block with respect to each sensor error. Call eliminate_errors() first.
-/// `next_moved` (null for the last block) and `border_moved` are the derivatives of the next block and of the border.
+/// Returns the derivative of a block's step with respect to each sensor error. `next_moved` (null for the last block)
+/// and `border_moved` are the same derivatives of the next block and of the border.
 ErrorMatrix back_substitute_errors(const Block& block, const ErrorMatrix& errors, const ErrorMatrix* next_moved,
                                    const BorderErrors& border_moved);
 

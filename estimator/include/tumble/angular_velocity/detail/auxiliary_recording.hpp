@@ -17,10 +17,10 @@ struct AuxiliaryRecording {
   std::vector<ImuSample> samples;
 };
 
-/// Interpolates the readings of additional IMUs at the time stamps of the primary IMU. Each IMU is appended with its
-/// estimated sensing directions to `model.auxiliary_imus`, and its readings to `out`. Recordings beyond the first
-/// kAuxiliaryImusMax are ignored. Returns `ok`, or the first error of align() for a single IMU. Cost: O(N), plus the
-/// search of ClippingFinder.
+/// Interpolates the readings of additional IMUs at the time stamps of the primary IMU. Appends each IMU, with its
+/// estimated sensing directions, to `model.auxiliary_imus`, and its readings to `out`. Recordings beyond the first
+/// kAuxiliaryImusMax are ignored. Returns `ok`, or the first error of align() for a single IMU. Cost: O(N), plus
+/// ClippingFinder::find().
 Status align(std::span<const AuxiliaryRecording> recordings, std::span<const ImuSample> primary, double gap_max_s,
              RateModelParams& model, std::vector<std::vector<AuxiliaryReading>>& out);
 

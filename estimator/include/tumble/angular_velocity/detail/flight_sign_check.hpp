@@ -12,24 +12,17 @@
 
 namespace tumble {
 
-/// Detects wrong signs of the accelerometer from free flight. Checks at rest cannot detect mirrored forces (three axes
-/// flipped, or one axis flipped), because mirrored gravity has the correct magnitude and rotation.
+/// Detects wrong signs of the accelerometer (three axes inverted, or one axis) from free flight. Checks at rest cannot
+/// detect inverted axes, because mirrored gravity has the correct magnitude and rotation.
 ///
-/// In free flight, the force at the lever arm t from the centre of mass is a x t + w x (w x t), with rate w and angular
-/// acceleration a. FlightSignCheck compares the measured force with the force of free flight, for the true sensor and
-/// for each alternative. If an alternative agrees within a quarter for 0.02 s, the flight time of the alternative
-/// increases. The force along the lever arm is -|w x t|^2 for any angular acceleration, and determines the rate of one
-/// saturated gyro axis.
-///
-/// A person who swings a body can produce the forces of a flight with a different lever arm. For a body that may be
-/// hand-held, FlightSignCheck therefore reports only three inverted axes, from unsaturated rates. FlightSignCheck
-/// detects wrong sensors only if the body flies while spinning, the IMU is off the centre of mass, and at most one gyro
-/// axis clips. A lever arm with the wrong sign looks like an inverted accelerometer.
+/// For a body that may be hand-held, FlightSignCheck reports only three inverted axes, because a swinging hand can
+/// imitate a flight. FlightSignCheck needs a spinning flight with at most one clipped gyro axis, and an IMU off the
+/// centre of mass. A lever arm with the wrong sign looks like an inverted accelerometer.
 class FlightSignCheck {
  public:
   static constexpr double kMemory_s = 60.0;
 
-  /// true accelerometer; accelerometer with all axes, or axis x, y or z, inverted
+  /// inverted axes: none, all, x, y, z
   static constexpr std::size_t kAlternatives = 5;
 
   enum class Body { may_be_hand_held, thrown };
@@ -74,9 +67,9 @@ class FlightSignCheck {
   /// Cost: O(1), no allocation. Samples that are not finite or out of order are ignored.
   void step(const ImuSample& sample, State& state) const;
 
-  /// Returns `out_of_range` if the measured flights match an accelerometer with wrong signs.
+  /// Returns `out_of_range` if the forces in flight match an accelerometer with wrong signs.
   Status verdict(const State& state) const;
-  /// Returns verdict() while the last flight of an alternative sensor is at most kMemory_s old, and otherwise `ok`.
+  /// Returns verdict() if the last flight that fits inverted axes is at most kMemory_s old, and otherwise `ok`.
   Status current_verdict(const State& state) const;
 
  private:

@@ -15,16 +15,12 @@
 
 namespace tumble {
 
-/// Detects single axes of an IMU that have stopped updating, sample by sample.
+/// Detects single axes of an IMU that have stopped updating, sample by sample. An axis is frozen if one reading repeats
+/// bit for bit for 0.5 s, and for ten times the longest earlier repetition, while another axis of the sensor changes.
+/// FrozenAxes cannot detect a frozen axis whose readings never changed, or often repeat at rest due to coarse
+/// quantisation.
 ///
-/// FrozenAxes reports an axis as frozen if one reading repeats bit for bit for 0.5 s, and for ten times the longest
-/// earlier repetition. The readings of the axis must have changed before, for an equal time. Another axis of the same
-/// sensor must change from sample to sample, by far more than the quantisation of the tested axis. FrozenAxes cannot
-/// detect a frozen axis whose readings never changed, or often repeat at rest due to coarse quantisation.
-///
-/// A saturated axis may repeat one reading and does not count as frozen. A reading counts as saturated if the device
-/// flags the reading, or if the reading exceeds 0.9 of the stated range. The extreme reading of an axis counts as
-/// saturated above 0.5 of the stated range.
+/// A saturated axis may repeat one reading and does not count as frozen.
 class FrozenAxes {
  public:
   struct Params {
@@ -48,7 +44,7 @@ class FrozenAxes {
     double changing_duration_s = 0.0;  ///< total time with changing readings
     double smallest_change = 0.0;      ///< smallest observed change; 0: none yet
     double min_reading = 0.0, max_reading = 0.0;
-    /// minimum, maximum and number of changes of the sensor's two other axes while this axis repeats its reading
+    /// minimum, maximum and number of changes of the sensor's two other axes during the repetition
     std::array<double, 2> others_min{}, others_max{}, others_changes{};
     double samples = 0.0;  ///< number of repeated samples
     bool operator==(const Axis&) const = default;
@@ -71,12 +67,12 @@ class FrozenAxes {
   static const Axis& axis(Triad triad, int axis, const State& state);
 
   static bool any_frozen(const State& state);
-  /// Adds a finding (`frozen_axis` or `unit_frozen`) for each currently frozen axis.
+  /// Adds a warning (`frozen_axis` or `unit_frozen`) for each currently frozen axis.
   void add_findings(HealthFinding::Kind kind, const std::string& sensor, const State& state,
                     SensorHealth& health) const;
 
   /// Returns the variance of a rate at `time_ns` due to currently frozen gyro axes. The standard deviation of a frozen
-  /// gyro axis is the largest rate measured so far.
+  /// axis is the largest rate measured so far.
   Eigen::Vector3d rate_variance_rad2_s2(TimeNs time_ns, const State& state) const;
 
  private:
@@ -94,7 +90,7 @@ struct FrozenAxis {
   TimeNs from_ns = 0, to_ns = 0;  ///< first and last sample with this reading
 };
 
-/// Adds a finding about an interval in which an axis is frozen, with 0.5 s as bound.
+/// Adds a warning about an interval in which an axis is frozen.
 void add_finding(HealthFinding::Kind kind, const std::string& sensor, const FrozenAxis& interval, SensorHealth& health);
 
 /// Returns the intervals with frozen axes, sorted by axis and time. Cost: O(N).

@@ -11,9 +11,8 @@
 namespace tumble {
 
 /// Estimates a large zero offset of a gyro from the rest at the start of a run. Consumer gyros may have offsets above
-/// the mean rate that RestDetector accepts at rest by default (0.05 rad/s). GyroOffset detects rest if rate and force
-/// are constant for half a second and the offset is at most kOffsetMax_rad_s per axis. GyroOffset mistakes a steady
-/// rotation about the vertical for an offset.
+/// the mean rate that RestDetector accepts at rest by default (0.05 rad/s). GyroOffset mistakes a steady rotation about
+/// the vertical for an offset.
 class GyroOffset {
  public:
   static constexpr double kOffsetMin_rad_s = 0.05, kOffsetMax_rad_s = 0.15;
@@ -27,7 +26,7 @@ class GyroOffset {
 
   GyroOffset();
 
-  /// Returns the offset once, as soon as the offset is known. The sample must be finite. Cost: O(1), no allocation.
+  /// Returns the zero offset of the gyro once, when known. The sample must be finite. Cost: O(1), no allocation.
   std::optional<Eigen::Vector3d> observe(const ImuSample& sample, State& state) const;
   /// Returns the gyro's zero offset in a recording, or zero if the offset is small.
   Eigen::Vector3d find(std::span<const ImuSample> samples) const;

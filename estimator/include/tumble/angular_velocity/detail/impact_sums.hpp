@@ -11,19 +11,17 @@ struct TriadDelay {
   bool operator==(const TriadDelay&) const = default;
 };
 
-/// ImpactSums correlates angular acceleration and force at impacts, for each tested delay between gyro and
-/// accelerometer. The tested delays range from -4 to +4 samples, in steps of an eighth of a sample. See
-/// docs/maths/rate_smoother.md (R45).
+/// ImpactSums correlates angular acceleration and force at impacts, for delays of -4 to +4 samples between gyro and
+/// accelerometer: rate_smoother.md (R45).
 struct ImpactSums {
   static constexpr int kDelayMax_samples = 4, kDelaysPerSample = 8, kDelayMax = kDelayMax_samples * kDelaysPerSample,
                        kDelayCount = 2 * kDelayMax + 1;
   using DelayGrid = Eigen::Matrix<double, kDelayCount, 1>;
 
-  /// number, sum and sum of squares of the angular acceleration x over intervals between adjacent unsaturated gyro
-  /// readings
+  /// number of intervals between unsaturated gyro readings, and sums of their angular acceleration and its square
   double intervals = 0.0, acceleration_sum = 0.0, acceleration_squared = 0.0;
-  /// for each tested delay: sums of the force z, of z^2 and of x z, and numbers of intervals with an impact and almost
-  /// without force
+  /// sums for each tested delay: force, squared force, force times angular acceleration, intervals with and without
+  /// impact
   DelayGrid force = DelayGrid::Zero(), force_squared = DelayGrid::Zero(), product = DelayGrid::Zero(),
             impacts = DelayGrid::Zero(), flying = DelayGrid::Zero();
 
@@ -34,11 +32,9 @@ struct ImpactSums {
   void add(double acceleration_rad_s2, const DelayGrid& force_m_s2);
   void decay(double share);
   /// Returns the delay with the best correlation, for samples that are `period_s` apart. `slower_s` is the update
-  /// period of the slower of the two sensors. The returned sigma_s is 0 if the delay is not accepted. Cost:
-  /// O(kDelayCount).
+  /// period of the slower sensor. The returned sigma_s is 0 if no delay is accepted. Cost: O(kDelayCount).
   TriadDelay estimate_delay(double period_s, double slower_s) const;
-  /// Returns the correlation at the tested delay that is nearest to `delay_s`, even if there are few impacts. Cost:
-  /// O(1).
+  /// Returns the correlation at the tested delay that is nearest to `delay_s`. Cost: O(1).
   double correlation_at(double delay_s, double period_s) const;
 
   bool operator==(const ImpactSums&) const = default;

@@ -11,8 +11,7 @@
 #include "tumble/angular_velocity/detail/rate_stream_state.hpp"
 #include "tumble/common/imu.hpp"
 
-/// Interpolates the readings of a gyro that updates more slowly than its log. The interpolation is cubic between the
-/// readings around a sample, and uses the time at which the gyro took each reading. See docs/maths/rate_stream.md
+/// Interpolates the readings of a gyro that updates more slowly than its log, by a cubic polynomial: rate_stream.md
 /// (R96).
 namespace tumble {
 
@@ -23,14 +22,13 @@ struct InterpolatedRate {
   Eigen::Vector3d variance_rad2_s2 = Eigen::Vector3d::Zero();
 };
 
-/// Returns the interpolated rate of sample `k` in the window of a RateStream. Cost: O(samples of three readings). The
-/// result is empty if no reading repeats, the next reading has not yet arrived, or a reading is invalid.
+/// Returns the interpolated rate of sample `k` in the window of a RateStream. The result is empty if no reading
+/// repeats, the next reading has not yet arrived, or a reading is invalid. Cost: O(samples of three readings).
 std::optional<InterpolatedRate> rate_between_readings(std::span<const RateStreamKnot> window, std::size_t k,
                                                       double period_s);
 
-/// Returns the interpolated rates of a recording. Cost: O(N), plus find_repeated(). The result is empty if no reading
-/// repeats. `hidden` contains one bit mask of unused axes per sample. The result has no rate next to samples with
-/// unused axes, and at the ends of the recording.
+/// Returns the interpolated rates of a recording, or an empty result if no reading repeats. `hidden` contains one bit
+/// mask of unused axes per sample, next to which the rate is empty. Cost: O(N).
 std::vector<std::optional<InterpolatedRate>> rates_between_readings(std::span<const ImuSample> samples,
                                                                     std::span<const std::uint8_t> hidden);
 struct RepeatedReadings;
@@ -39,9 +37,8 @@ std::vector<std::optional<InterpolatedRate>> rates_between_readings(std::span<co
                                                                     std::span<const std::uint8_t> hidden,
                                                                     const std::optional<RepeatedReadings>& repeated);
 
-/// Returns the force at the time of each sample, for an accelerometer that updates more slowly than the log. Cost:
-/// O(N), plus find_repeated(). The force is linear between readings, and constant before the first reading and after
-/// the last reading. The result is empty if no reading repeats.
+/// Returns the force at the time of each sample, for an accelerometer that updates more slowly than the log. The result
+/// is empty if no reading repeats. Cost: O(N).
 std::vector<Eigen::Vector3d> forces_between_readings(std::span<const ImuSample> samples);
 
 }  // namespace tumble

@@ -9,42 +9,36 @@
 
 namespace tumble {
 
-/// CalibratedRig is the calibration that one run estimates and that a later run may start from.
+/// Calibration that one run estimates and that a later run may start from.
 struct CalibratedRig {
   RigCalibration calibration;
   std::array<std::optional<double>, 6> rail;  ///< limits of gyro [rad/s], accelerometer [m/s^2]; empty: not observed
   /// Intersections of the gyro's saturation planes with the axis of each sensing element, for the negative and the
-  /// positive sign. RigConstants::elements contains the cross-axis sensitivities of the planes. An intersection is
-  /// empty if the plane was not observed or is parallel to the axis.
+  /// positive sign; empty if not observed.
   using Planes = std::array<std::array<std::optional<double>, 2>, 3>;
   Planes gyro_planes_rad_s = {};
-  /// Intersections of the accelerometer's saturation planes with the axis of each sensing element. The array
-  /// accelerometer_elements contains the cross-axis sensitivities of the accelerometer planes in the same order.
+  /// intersections of the accelerometer's saturation planes with the axes, and their cross-axis sensitivities
   Planes accelerometer_planes_m_s2 = {};
   Eigen::Matrix<double, 6, 1> accelerometer_elements = Eigen::Matrix<double, 6, 1>::Zero();
   /// empty if not estimated
   std::optional<KnownSensorErrors> device_errors = std::nullopt;
-  /// The run estimated only saturation limits or an accelerometer delay, and all other values are the prior. The flag
-  /// is not saved.
+  /// true if the run estimated only saturation limits or an accelerometer delay; not saved
   bool only_rails = false;
 
   RailPlanes planes(Triad triad = Triad::gyro) const;
-  /// Stores the intersections of all certain saturation planes. Cross-axis sensitivities of uncertain planes are
-  /// discarded, because a few partly clipped readings can suggest a wrong plane.
+  /// Stores only certain saturation planes, because a few partly clipped readings can suggest a wrong plane.
   void keep(const RailPlanes& planes, Triad triad = Triad::gyro);
 };
 
 /// If RateReport::calibration_at_prior is set, the returned calibration is the prior.
 CalibratedRig learnt(const RateReport& report);
 
-/// Updates `before` by the certain saturation limits of a run that could not estimate the rig constants. Old saturation
-/// limits are replaced if the run found better limits, and removed if readings contradict the old limits. Returns empty
+/// Updates `before` by the certain saturation limits of a run that could not estimate the rig constants. Returns empty
 /// if no saturation plane is certain.
 std::optional<CalibratedRig> calibration_with_rails(const CalibratedRig& before, const SaturationLevels& rails);
 
-/// Applies a calibration to the next run. The lowest saturation limit of a sensor becomes the sensor's range. The
-/// covariance of the constants is multiplied by `trust` (>= 1), because a rig may be reassembled between runs. Throws
-/// std::invalid_argument if `trust` is below 1.
+/// Applies a calibration to the next run. The covariance of the constants is multiplied by `trust`, because a rig may
+/// be reassembled between runs. Throws std::invalid_argument if `trust` is below 1.
 void start_from(const CalibratedRig& rig, double trust, RateSmoother::Params& params);
 
 /// Sets the priors of the next run from a saved calibration. Lever arm and inertia get four times their saved
@@ -57,21 +51,19 @@ void apply_saved_calibration(const CalibratedRig& rig, RateStream::Params& param
 CalibratedRig prior_rig_calibration(const CalibratedRig* given, const RateModelParams& model);
 
 /// Returns the calibration to save after a run that started from `given` (null: none). If the run did not estimate the
-/// constants, the result is `given` or the prior of `model`, with the certain saturation limits of the run. Returns
+/// rig constants, the result is `given` or the prior of `model`, with the certain saturation limits of the run. Returns
 /// empty if the run estimated neither constants nor saturation limits.
 std::optional<CalibratedRig> learnt(const RateReport& report, const CalibratedRig* given, const RateModelParams& model);
 
 /// Returns true if a RateStream has not estimated the rig constants since its start or its last reset.
 bool is_at_prior(const RateStream& stream, const RateStream::State& state);
-/// Returns the calibration to save after a run of a RateStream. The delay is the only sensor error that RateStream
-/// estimates.
+/// Returns the calibration to save after a run of a RateStream, which estimates no sensor error except the delay.
 std::optional<CalibratedRig> learnt(const RateStream& stream, const RateStream::Params& params,
                                     const CalibratedRig* given, const RateStream::State& state);
 
-/// Returns the distance between two calibrations: the larger of the Mahalanobis distances of lever arm and inertia,
-/// each divided by the square root of its dimension. In 18 pairs of runs on an unchanged rig, the distance was 0.14 to
-/// 1.0. An inertia error of 30 % gave a distance of at least 2.3. The covariance of `before` is multiplied by four, as
-/// in apply_saved_calibration().
+/// Returns the larger of the Mahalanobis distances of lever arm and inertia between two calibrations, each divided by
+/// the square root of its dimension. In 18 pairs of runs on an unchanged rig, the result was 0.14 to 1.0; an inertia
+/// error of 30 % gave at least 2.3. The covariance of `before` is multiplied by four, as in apply_saved_calibration().
 double calibration_distance(const RigCalibration& before, const RigCalibration& now);
 
 }  // namespace tumble

@@ -6,13 +6,11 @@
 
 namespace tumble {
 
-/// Lower bounds of the saturation limits, per sensing element and sign: no reading exceeds its limit, see rails.md
-/// (R75).
+/// Lower bounds of the saturation limits, per sensing element and sign: rails.md (R75).
 class MinSaturationLevels {
  public:
   void add(const Eigen::Vector3d& rate_rad_s);
-  /// Returns true if a reading of element `axis` is certainly below the saturation limit for its sign. A margin covers
-  /// the tilt and the noise of saturation planes.
+  /// Returns true if the reading of element `axis` is certainly below its saturation limit.
   bool is_below_min_level(const Eigen::Vector3d& rate_rad_s, Eigen::Index axis) const;
   bool operator==(const MinSaturationLevels&) const = default;
 

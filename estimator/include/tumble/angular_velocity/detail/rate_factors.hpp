@@ -14,30 +14,26 @@ struct RateKnot {
   bool operator==(const RateKnot&) const = default;
 };
 
-/// RateFactor is a residual of three rows, with its derivatives with respect to rate, angular acceleration and rig
-/// constants.
+/// Residual of three rows, with its derivatives with respect to rate, angular acceleration and rig constants.
 struct RateFactor {
   Eigen::Vector3d residual;
   Eigen::Matrix<double, 3, 6> jacobian_knot;
   Eigen::Matrix<double, 3, RigConstants::kSize> jacobian_calibration;
 };
 
-/// Residual of the gyro while it is unsaturated: rate + bias - reading [rad/s].
+/// Gyro residual while unsaturated: rate + bias - reading [rad/s].
 RateFactor gyro_factor(const RateKnot& knot, const RigConstants& rig, const Eigen::Vector3d& reading_rad_s);
 
-/// Residual of the gyro per sensing element while an element clips: the component of (rate + bias - reading) along m_j
-/// [rad/s]. The residual of an unsaturated sensing element is noise. The residual of a clipped sensing element is its
-/// saturation deficit, independent of the device's cross-axis compensation.
+/// Residual of the gyro per sensing element while an element clips: the component of (rate + bias - reading) along the
+/// sensing direction [rad/s].
 RateFactor element_factor(const RateKnot& knot, const RigConstants& rig, const Eigen::Vector3d& reading_rad_s);
 
-/// Residual of the accelerometer in free flight [m/s^2]: alpha x t + w x (w x t) + bias - reading. The symbols are the
-/// rate w, the angular acceleration alpha and the lever arm t. The specific force at the centre of mass is zero in free
-/// flight.
+/// Residual of the accelerometer in free flight [m/s^2]: tangential plus centripetal force at the lever arm, plus bias,
+/// minus reading.
 RateFactor flight_factor(const RateKnot& knot, const RigConstants& rig, const Eigen::Vector3d& reading_m_s2);
 
-/// Residual of an accelerometer in free flight whose readings are `delay_s` late [m/s^2]. Rate and angular acceleration
-/// are propagated back by the delay d: w - d alpha + d^2/2 j and alpha - d j, with the angular jerk j. `jacobian_delay`
-/// (or null) receives the derivative of the residual with respect to the delay.
+/// Residual of an accelerometer in free flight whose readings are `delay_s` late [m/s^2]. `jacobian_delay` (or null)
+/// receives the derivative of the residual with respect to the delay.
 RateFactor delayed_flight_factor(const RateKnot& knot, const RigConstants& rig, const Eigen::Vector3d& reading_m_s2,
                                  double delay_s, Eigen::Vector3d* jacobian_delay);
 
@@ -46,11 +42,10 @@ RateFactor delayed_flight_factor(const RateKnot& knot, const RigConstants& rig, 
 RateFactor delayed_flight_jacobian_calibration(const RateKnot& knot, const RigConstants& rig,
                                                const Eigen::Vector3d& reading_m_s2, double delay_s);
 
-/// Returns the second time derivative of the specific force at the lever arm in free flight [m/s^4]. Averaging changes
-/// a reading by half of the force's second derivative, times the variance of the time within the averaging window.
+/// Returns the second time derivative of the specific force at the lever arm in free flight [m/s^4].
 Eigen::Vector3d flight_curvature(const RateKnot& knot, const RigConstants& rig);
 
-/// Residual of Euler's equation without torque, with the inertia scaled to trace 3 [rad/s^2]: J alpha + w x J w.
+/// Residual of Euler's equation without torque, with the inertia scaled to trace 3 [rad/s^2].
 RateFactor euler_factor(const RateKnot& knot, const RigConstants& rig);
 
 }  // namespace tumble

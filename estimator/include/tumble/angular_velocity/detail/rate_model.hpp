@@ -14,34 +14,33 @@
 
 namespace tumble {
 
-/// RateModel adds the measurements of samples and the motion between samples to the normal equations of RateSmoother
-/// and RateStream.
+/// Adds the measurements of samples and the motion between samples to the normal equations of RateSmoother and
+/// RateStream.
 class RateModel {
  public:
   /// `period_s` is the nominal time between samples, which determines the noise per sample.
   RateModel(const RateModelParams& params, double period_s);
 
-  /// Computes the weight of a sample between contact (0) and free flight (1) at the current estimate. `rig_covariance`
-  /// prevents that calibration errors are mistaken for contact. `threshold_factor` >= 1 multiplies the contact
-  /// threshold while the rates are still inaccurate. `jump` is the smaller result of jump() between the sample and its
-  /// two neighbours. In flight, the motion is smooth on at least one side of a sample.
+  /// Computes the weight of a sample between contact (0) and free flight (1) at the current estimate. `rig_covariance`,
+  /// the covariance of the calibration, prevents that calibration errors are mistaken for contact. `threshold_factor`
+  /// >= 1 multiplies the contact threshold while the rates are still inaccurate. `jump` is the smaller result of jump()
+  /// between the sample and its two neighbours.
   void compute_flight_weight(const RateObservation& observation, const RigConstants& rig,
                              const RigConstants::Matrix& rig_covariance, double threshold_factor, double jump,
                              RateEstimate& estimate) const;
 
-  /// Returns the squared normalised deviation from constant angular acceleration between two samples, with six degrees
-  /// of freedom.
+  /// Returns the squared normalised deviation from constant angular acceleration between two samples (chi-square
+  /// distribution with six degrees of freedom).
   double jump(const RateKnot& from, const RateKnot& to, double dt_s) const;
 
-  /// Moves the unmeasured rates of a sample in contact to the minimum of the contact force, if the minimum is far below
-  /// the current force. Between two impacts, a body may fly for a single sample, which local solver steps do not find.
+  /// Moves the unmeasured rates of a sample in contact to the minimum of the contact force, if this minimum is far
+  /// below the current contact force.
   void search_flight(const RateObservation& observation, const RigConstants& rig, RateEstimate& estimate) const;
 
   void start_bounds(const RateObservation& observation, const RigConstants& rig, RateEstimate& estimate) const;
 
-  /// Refines the lower bounds of a sample's clipped rates by expectation propagation (Minka 2001). A Gaussian factor
-  /// (site) gives the marginal rate the mean and variance of a distribution truncated at the reading. `damping` in (0,
-  /// 1] is the weight of the new Gaussian factor.
+  /// Refines the lower bounds of a sample's clipped rates by expectation propagation (Minka 2001). `damping` in (0, 1]
+  /// is the weight of the new bound.
   void update_bounds(const RateObservation& observation, const RigConstants& rig, const arrow::Conditional& conditional,
                      const RigConstants::Matrix& rig_covariance, double damping, RateEstimate& estimate) const;
 
@@ -52,8 +51,7 @@ class RateModel {
                   arrow::Block& block, arrow::Corner& corner, const RigConstants::Matrix* rig_spread = nullptr) const;
 
   /// Adds the derivatives of a sample's gradient with respect to the sensor errors, and the sample's information about
-  /// these errors. Clipped elements and samples in contact contribute no information about SensorErrors. `rig_spread`
-  /// states whether add_sample() received a covariance.
+  /// these errors. Clipped elements and samples in contact contribute no information about SensorErrors.
   void add_errors(const RateObservation& observation, const RateEstimate& estimate, const RigConstants& rig,
                   arrow::ErrorMatrix& block, arrow::BorderErrors& border, SensorErrorEvidence& evidence,
                   bool rig_spread = false) const;
@@ -63,8 +61,8 @@ class RateModel {
 
   void add_rig_prior(const RigConstants& rig, arrow::Corner& corner) const;
 
-  /// Returns the distance of `rig` from its prior in standard deviations, with an expected value of about 1. The result
-  /// is the largest distance among lever arm, gyro bias, accelerometer bias and inertia.
+  /// Returns the largest distance of lever arm, gyro bias, accelerometer bias and inertia from their prior, in standard
+  /// deviations.
   double calibration_mahalanobis(const RigConstants& rig) const;
 
   RigConstants prior_constants() const { return prior_constants_; }
@@ -72,12 +70,12 @@ class RateModel {
 
   Eigen::Matrix<double, 6, 1> unscaled(const arrow::StateVector& step) const;
   arrow::StateVector scaled(const Eigen::Matrix<double, 6, 1>& difference) const;
-  /// In contact, the reported covariance of a rate is larger than the covariance of the fit. The reported covariance
-  /// includes the uncertain time of the reading.
+  /// Returns the covariance to report: larger than the covariance of the fit in contact, and with the uncertain time of
+  /// the reading.
   Eigen::Matrix3d reported(const Eigen::Matrix3d& covariance_rad2_s2, const RateObservation& observation,
                            const RateEstimate& estimate) const;
   double gyro_sigma_rad_s() const { return gyro_sigma_rad_s_; }
-  /// The ratio period_s / model_error_s (at most 1) is the weight of one sample, because close samples have equal model
+  /// Returns period_s / model_error_s, at most 1: the weight of one sample, because close samples have equal model
   /// errors.
   double independent_reading_ratio() const { return share_; }
 
@@ -86,17 +84,15 @@ class RateModel {
     RateFactor factor;
     Eigen::Vector3d information;  ///< information (inverse variance) of each axis or element
   };
-  /// Converts the flight residual to element directions if an accelerometer element clips. Returns additional variances
-  /// due to uncertain sensing directions and the saturation deficit of the force.
+  /// Converts the flight residual to element directions if an accelerometer element clips. Returns variances from
+  /// uncertain sensing directions and from the saturation deficit of the force.
   static Eigen::Vector3d read_accel_elements(const RateObservation& observation, RateFactor& flight);
   ForceFactor force_factor(const RateObservation& observation, const RateEstimate& estimate,
                            const RigConstants& rig) const;
-  /// The gyro's reading is earlier than the sample by the age of the reading.
   RateKnot knot_at_reading(const RateObservation& observation, const RateEstimate& estimate) const;
   Eigen::Vector3d corrected_rate(const RateObservation& observation, const RateEstimate& estimate) const;
   RateFactor flight(const RateObservation& observation, const RateKnot& knot, const RigConstants& rig,
                     Eigen::Vector3d* jacobian_delay = nullptr) const;
-  /// Computes only derivatives with respect to the calibration, in less than half of the time of flight().
   RateFactor flight_jacobian_calibration(const RateObservation& observation, const RateKnot& knot,
                                          const RigConstants& rig) const;
   double gyro_information(const RateObservation& observation, const RateEstimate& estimate, int axis) const;

@@ -10,9 +10,7 @@ namespace tumble {
 struct RateReadingParams {
   /// relative scale and misalignment error of the accelerometer
   double accel_scale_error = 1e-3;
-  /// Uncertainty of a reading's time due to the gyro's bandwidth and clock. For example, a first-order low-pass filter
-  /// at 415 Hz delays by 0.38 ms. The covariance of the rate includes the time uncertainty multiplied by the angular
-  /// acceleration.
+  /// Uncertainty of a reading's time due to the gyro's bandwidth and clock.
   double gyro_time_sigma_s = 2.5e-4;
   double rail_sigma_rad_s = 0.05;  ///< standard deviation of the lower bound from a clipped reading
 
@@ -28,7 +26,6 @@ struct RateReadingParams {
   }
 };
 
-/// In free flight, only gravity acts on the body.
 struct RateFlightParams {
   double sigma_m_s2 = 0.02;         ///< error of the specific force besides noise (drag, bias in motion)
   double euler_sigma_rad_s2 = 0.3;  ///< error of the angular acceleration from Euler's equation without torque
@@ -51,30 +48,29 @@ struct RateFlightParams {
   }
 };
 
-/// In contact, an unknown force acts on the body.
 struct RateContactParams {
-  /// angular acceleration that a contact force causes: rad/s^2 per m/s^2 of specific force beyond the flight model
+  /// angular acceleration that a contact force causes [rad/s^2 per m/s^2]
   double gain_rad_m = 4.0;
-  /// Impacts need a larger standard deviation, because their errors are not Gaussian.
+  /// factor on the standard deviation of rates during impacts, whose errors are not Gaussian
   double sigma_factor = 1.3;
-  /// Largest angular acceleration perpendicular to a contact force, per unit of specific force. The value is mass times
-  /// the distance of the contact point, divided by a third of the trace of the inertia.
+  /// Largest angular acceleration perpendicular to a contact force, per unit of specific force.
   double lever_rad_m = 5.0;
-  /// Ratio of the angular accelerations about a contact force and perpendicular to the force. Several contacts, or a
-  /// contact that moves within a sample, cause torque about the direction of the contact force.
+  /// Ratio of the angular accelerations about a contact force and perpendicular to the contact force.
   double twist_ratio = 0.3;
-  /// Standard deviation of the unknown contact force, relative to the force. The mean of the contact force is zero. A
-  /// prior that is uniform in the logarithm of the force corresponds to 0.58. The value 0 disables the prior.
+  /// standard deviation of the unknown contact force, relative to the force; 0: no assumption
   double force_share = 1.0;
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.gain_rad_m, {"contact_gain_rad_m", "rad/m", 0.0, 1e3,
-                         "standard deviation of the angular acceleration per contact force", FieldRank::basic});
-    visit(p.sigma_factor, {"contact_sigma_factor", "1", 1.0, 10.0,
-                           "the standard deviations of rates fitted through an impact are multiplied by this factor"});
-    visit(p.lever_rad_m, {"contact_lever_rad_m", "rad/m", 0.0, 1e3,
-                          "largest angular acceleration perpendicular to a contact force, per force"});
+    visit(p.gain_rad_m,
+          {"contact_gain_rad_m", "rad/m", 0.0, 1e3,
+           "standard deviation of the angular acceleration, per unit of specific force that a contact causes",
+           FieldRank::basic});
+    visit(p.sigma_factor,
+          {"contact_sigma_factor", "1", 1.0, 10.0, "factor on the standard deviations of rates during an impact"});
+    visit(p.lever_rad_m,
+          {"contact_lever_rad_m", "rad/m", 0.0, 1e3,
+           "largest angular acceleration about an axis perpendicular to a contact force, per unit of specific force"});
     visit(p.twist_ratio,
           {"contact_twist_ratio", "1", 0.0, 1.0,
            "angular acceleration about the axis of the contact force, as a share of the angular acceleration about "
@@ -86,11 +82,9 @@ struct RateContactParams {
 };
 
 struct RateModelExpertParams {
-  /// Duration for which the model error of a force, a torque or a rate is constant. Averaging samples within
-  /// `model_error_s` reduces the noise, but not the model error.
+  /// correlation time of the model errors of force, torque and rate
   double model_error_s = 0.01;
-  /// Standard deviation of the rate about zero at rest, independent for each sample. The value covers vibration and
-  /// false detections of rest.
+  /// standard deviation of the rate at rest per sample, including vibration and false detections of rest
   double rest_sigma_rad_s = 0.01;
   SensorErrorPriors error_priors = {};  ///< uncertainty of RateModelParams::errors
   RateReadingParams readings = {};

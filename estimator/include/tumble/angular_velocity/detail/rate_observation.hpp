@@ -19,8 +19,7 @@ struct RateObservation {
   ImuSample sample;
   Clipping clipping;
   bool at_rest = false;  ///< the rate is zero, see RestDetector
-  // Bit masks of axes whose readings have a separate standard deviation; each axis is in at most one of the three
-  // masks.
+  // bit masks of axes whose readings have a separate standard deviation; an axis is in at most one mask
   std::uint8_t subsample_saturated = 0;  ///< saturated during a part of the sample, see SubsampleSaturation
   std::uint8_t isolated_high_axes = 0;   ///< few high readings, whose saturation limit is unknown
   std::uint8_t suspect = 0;              ///< readings that may be at an unknown saturation limit: lower bounds
@@ -28,22 +27,20 @@ struct RateObservation {
       Eigen::Vector3d::Zero();  ///< expected saturation deficit, with the reading's sign
   Eigen::Vector3d expected_deficit_sigma_rad_s =
       Eigen::Vector3d::Zero();  ///< standard deviation of expected_deficit_rad_s
-  /// Ages of the readings refer to the sample's time stamp.
+  /// ages of the readings at the time stamp of the sample
   double gyro_age_s = 0.0, accel_age_s = 0.0;
   bool gyro_repeats = false;
   SensingDirections accel_rows = {};  ///< sensing directions of the accelerometer; needed if an element clips
   std::array<AuxiliaryReading, kAuxiliaryImusMax> auxiliary_imus =
       {};  ///< readings in the order of RateModelParams::auxiliary_imus
 
-  /// Returns true if a gyro element clips or is unusable. A clipped element corrupts all axes, so the gyro is then used
-  /// element by element.
+  /// Returns true if a gyro element clips or is unusable, so that the gyro must be used element by element.
   bool is_element_clipped() const { return (clipping.gyro | clipping.unusable_gyro) != 0; }
 
   /// Returns the axes whose readings have a larger standard deviation than the gyro's noise.
   std::uint8_t partly_saturated_axes() const {
     return static_cast<std::uint8_t>(subsample_saturated | isolated_high_axes | suspect);
   }
-  /// Returns the axes whose reading may be saturated at a limit that is not yet known.
   std::uint8_t possibly_saturated_axes() const { return static_cast<std::uint8_t>(isolated_high_axes | suspect); }
 
   /// Returns the axes whose rate has no measurement or only a lower bound.
@@ -56,17 +53,16 @@ struct RateObservation {
   }
 };
 
-/// The neighbouring samples show which axes are saturated during a part of the sample. A missing neighbour is null.
+/// `before` and `after` are null if absent.
 void mark_subsample_saturation(const RailDetector& rails, const RailDetector::State& state, double noise_rad_s,
                                const ImuSample* before, RateObservation& now, const ImuSample* after);
 
 struct RateEstimate {
   RateKnot knot;
   double flight_weight = 0.0;  ///< 0: contact, 1: free flight
-  /// specific force of contact at the centre of mass: the part of the force that the flight model does not explain
+  /// force that contact causes at the centre of mass, per mass
   Eigen::Vector3d contact_force_m_s2 = Eigen::Vector3d::Zero();
-  /// Gaussian factors (sites) that approximate the lower bounds of clipped elements. Each Gaussian factor acts on the
-  /// saturation deficit along m_j, and is stored as precision and precision * mean.
+  /// Gaussian factors that approximate the lower bounds of clipped elements, stored as precision and precision * mean.
   Eigen::Vector3d bound_precision = Eigen::Vector3d::Zero();
   Eigen::Vector3d bound_shift = Eigen::Vector3d::Zero();
   bool soft_bounds = false;  ///< false: lower bounds are hard, and act only if violated

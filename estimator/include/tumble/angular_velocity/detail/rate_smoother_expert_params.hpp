@@ -12,8 +12,7 @@ struct RateDescentParams {
   double tolerance_rad_s = 2e-3;          ///< converged if every rate changes by less than this
   double step_max_rad_s = 10.0;           ///< largest change of a rate in one iteration
   double initial_threshold_factor = 8.0;  ///< factor on the contact threshold; halved in each iteration
-  /// Number of iterations after convergence in which samples in contact use truncated distributions instead of hard
-  /// lower bounds. The additional iterations make the covariance of samples in contact consistent.
+  /// number of additional iterations with truncated distributions, which make covariances in contact consistent
   int bound_iterations = 3;
   double bound_damping = 0.5;  ///< weight of a new bound in each additional iteration
 
@@ -21,17 +20,18 @@ struct RateDescentParams {
   static void fields(Self& p, Visitor& visit) {
     visit(p.iterations_max, {"iterations_max", "1", 1, 1000, "maximum number of iterations of one optimisation"});
     visit(p.tolerance_rad_s, {"tolerance_rad_s", "rad/s", 1e-12, 1.0,
-                              "change of the rates in one iteration, below which the optimisation stops"});
+                              "largest change of a rate in one iteration, below which the optimisation stops"});
     visit(p.step_max_rad_s, {"step_max_rad_s", "rad/s", 1e-3, 1e4, "maximum change of a rate in one iteration"});
-    visit(p.initial_threshold_factor,
-          {"initial_threshold_factor", "1", 1.0, 1000.0,
-           "factor on the contact threshold in the first iteration; each later iteration halves the factor"});
     visit(
-        p.bound_iterations,
-        {"bound_iterations", "1", 0, 1000,
-         "number of iterations after convergence that treat the bounds in contact as truncated normal distributions"});
-    visit(p.bound_damping, {"bound_damping", "1", 0.01, 1.0,
-                            "each iteration after convergence applies this share of the computed change of a bound"});
+        p.initial_threshold_factor,
+        {"initial_threshold_factor", "1", 1.0, 1000.0,
+         "factor on the contact threshold (flight_threshold) in the first iteration, halved in each later iteration"});
+    visit(p.bound_iterations, {"bound_iterations", "1", 0, 1000,
+                               "number of iterations after convergence in which clipped rates in contact have "
+                               "truncated normal distributions"});
+    visit(p.bound_damping,
+          {"bound_damping", "1", 0.01, 1.0,
+           "share of the computed change of a lower bound that each iteration after convergence applies"});
   }
 };
 
@@ -40,8 +40,7 @@ struct RateSmootherExpertParams {
   RailPlaneFinder::Params accel_planes = RailPlaneFinder::Params::for_accelerometer();
   RestDetector::Params rests = {};
   RateDescentParams descent = {};
-  /// Maximum number of optimisations, each with readings corrected by the sensor errors of the previous one. If
-  /// error_rounds_max is 1, sensor errors are not estimated, but still increase the covariance.
+  /// maximum number of optimisations with corrected readings; 1: no correction of sensor errors
   int error_rounds_max = 3;
 
   template <class Self, class Visitor>

@@ -7,17 +7,18 @@
 
 namespace tumble {
 
-/// The calibration's uncertainty is increased until enough flight samples (number n) have updated the calibration. A
-/// sample shorter than `model_error_s` counts as a fraction of a sample.
+/// The uncertainty of an uncalibrated rig is increased until enough flight samples (number n, each of `model_error_s`)
+/// have updated the calibration.
 struct RigInflationParams {
-  /// The calibration's covariance is multiplied by 1 + covariance / (1 + n / samples), up to the prior covariance.
+  /// The calibration's covariance is multiplied by 1 + covariance / (1 + n / samples), up to the prior covariance,
+  /// after n flight samples.
   double covariance = 60.0;
   double samples = 30.0;
-  /// The standard deviation of a rate recovered in contact is at least contact / (1 + n / samples) times the saturation
+  /// The standard deviation of a clipped rate in contact is at least contact / (1 + n / samples) times the saturation
   /// deficit.
   double contact = 0.5;
-  /// Minimum standard deviation of a rate in a clipped run in contact: slopes * predicted deficit - estimated deficit.
-  /// The slopes of the rate before and after the run predict the saturation deficit.
+  /// Minimum standard deviation of a clipped rate in contact: slopes * (deficit predicted from the slopes before and
+  /// after saturation) - estimated deficit.
   double slopes = 1.0;
 
   template <class Self, class Visitor>
@@ -25,14 +26,16 @@ struct RigInflationParams {
     visit(p.covariance, {"rig_inflation", "1", 0.0, 1e3,
                          "the covariance of an uncalibrated rig is multiplied by 1 + rig_inflation / (1 + n / "
                          "rig_inflation_samples), with n flight samples of model_error_s each"});
-    visit(p.samples,
-          {"rig_inflation_samples", "1", 1.0, 1e6, "number of flight samples that halves the effect of rig_inflation"});
-    visit(p.contact, {"contact_inflation", "1", 0.0, 10.0,
-                      "uncalibrated rig: standard deviation of a clipped rate in contact, as a share of the saturation "
-                      "deficit, divided by 1 + n / rig_inflation_samples"});
-    visit(p.slopes, {"contact_slopes", "1", 0.0, 10.0,
-                     "standard deviation of a clipped rate in contact, as a share of the saturation deficit that the "
-                     "slopes before and after the clipped samples predict"});
+    visit(p.samples, {"rig_inflation_samples", "1", 1.0, 1e6,
+                      "number of flight samples after which the effect of rig_inflation is halved"});
+    visit(p.contact,
+          {"contact_inflation", "1", 0.0, 10.0,
+           "minimum standard deviation of a clipped rate in contact, as a share of the saturation deficit; divided "
+           "by 1 + n / rig_inflation_samples after n flight samples"});
+    visit(p.slopes,
+          {"contact_slopes", "1", 0.0, 10.0,
+           "minimum standard deviation of a clipped rate in contact, as a share of the saturation deficit that "
+           "the rate's slopes before and after saturation predict"});
   }
 };
 
@@ -56,18 +59,19 @@ struct RateStreamExpertParams {
     visit.group("rests_", p.rests);
     visit(p.initial_threshold_factor,
           {"initial_threshold_factor", "1", 1.0, 1000.0,
-           "factor on the contact threshold of a new clipped sample; each step halves the factor"});
+           "factor on the contact threshold (flight_threshold) of a new clipped sample, halved in each step"});
     visit(p.step_max_rad_s,
           {"step_max_rad_s", "rad/s", 1e-3, 1e4, "maximum change of the rate of one sample in one step"});
     visit(p.bound_hard_steps,
           {"bound_hard_steps", "1", 0, 4096,
-           "number of steps after which the bounds of a contact sample become truncated normal distributions"});
+           "number of steps after which clipped rates in contact have truncated normal distributions"});
     visit(p.flight_run_min,
-          {"flight_run_min", "1", 0, 4096, "minimum number of consecutive flight samples that calibrate the rig"});
+          {"flight_run_min", "1", 0, 4096, "minimum number of consecutive flight samples that update the calibration"});
     visit.group("", p.inflation);
-    visit(p.uncalibrated, {"uncalibrated", "1", 0.0, 0.99, "prior probability that a device is not calibrated"});
+    visit(p.uncalibrated,
+          {"uncalibrated", "1", 0.0, 0.99, "prior probability that the IMU does not match its data sheet"});
     visit(p.bound_damping,
-          {"bound_damping", "1", 0.01, 1.0, "each step applies this share of the computed change of a bound"});
+          {"bound_damping", "1", 0.01, 1.0, "share of the computed change of a lower bound that each step applies"});
   }
 };
 

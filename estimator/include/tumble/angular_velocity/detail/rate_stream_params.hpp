@@ -13,10 +13,8 @@
 namespace tumble {
 
 struct RateStreamParams {
-  /// The priors of accelerometer bias and inertia are narrower than the defaults of RateModelParams, because RateStream
-  /// reports rates before the data outweigh the priors. The prior accelerometer bias of 2 mg is typical after a factory
-  /// calibration. The prior inertia fits a box: equal moments, with moments of 3 : 2 : 2 at one standard deviation. A
-  /// disc is 1.8 and a rod 3.6 standard deviations from equal moments.
+  /// The priors of accelerometer bias (2 mg) and inertia are narrower than in RateModelParams, because RateStream
+  /// reports rates early.
   RateModelParams model = {.accel_bias_sigma_m_s2 = 0.02, .inertia_sigma = 0.15};
   RailDetector::Params rails = {};
   double period_s = 0.01;                    ///< nominal time between samples
@@ -51,7 +49,7 @@ struct RateStreamParams {
                                     FieldRank::basic});
     visit(p.calibration_mahalanobis_max, {"calibration_mahalanobis_max", "1", 0.1, 1e6,
                                           "maximum Mahalanobis distance between the estimated rig constants and their "
-                                          "prior; a larger distance is reported as an error",
+                                          "prior; a larger distance resets the calibration to the prior",
                                           FieldRank::basic});
     visit(p.gap_max_s, {"gap_max_s", "s", 1e-6, 3600.0,
                         "maximum time between two samples; a longer gap ends the run with an error"});

@@ -39,8 +39,7 @@ struct RateStreamKnot {
   Clipping by_axis_aligned_rails;  ///< clipping from flags and equal readings; the observation also uses planes
   RateEstimate estimate;
   Eigen::Matrix3d covariance_rad2_s2 = Eigen::Matrix3d::Zero();
-  /// increase of each axis' magnitude per sample before this sample: the smaller increase of the last two steps, at
-  /// least 0
+  /// smaller increase of each axis' magnitude per sample, among the last two samples
   Eigen::Vector3d reading_growth_rad_s = Eigen::Vector3d::Zero();
   int age = 0;
   bool repeats = false;      ///< the gyro repeats the previous reading: RepeatDetector
@@ -59,7 +58,7 @@ struct RateStreamDelay {
   bool operator==(const RateStreamDelay&) const = default;
 };
 
-/// Contains the information about sensor errors from all samples that have left the window, see rate_stream.md (R100).
+/// Information about sensor errors from all samples that have left the window: rate_stream.md (R100).
 struct RateStreamDevice {
   struct Work {
     arrow::BorderErrors border, calibration_by_errors;
@@ -85,16 +84,15 @@ struct RateStreamState {
   std::vector<RateStreamKnot> window;  ///< oldest first
   RigConstants rig;
   RigConstants::Matrix rig_covariance;
-  // Gaussian prior on the oldest sample and on the calibration, from all samples that have left the window
+  // Gaussian prior on oldest sample and calibration, from all earlier samples
   arrow::Block prior;
   arrow::Corner prior_corner;
-  /// The state of the sensor errors is on the heap (in a vector of one element), because threads with a small stack use
-  /// RateStream.
+  /// one element on the heap, for threads with a small stack
   std::vector<RateStreamDevice> device = std::vector<RateStreamDevice>(1);
   std::array<Eigen::Vector3d, 2> extremes{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
   MinSaturationLevels min_levels;  ///< lower bounds from the readings so far
-  /// slope of the readings before a run of possibly saturated readings, and number of the run's samples that have left
-  /// the window
+  /// slope of the readings before possible saturation, and number of possibly saturated samples that have left the
+  /// window
   Eigen::Vector3d slope_before_clipping_rad_s = Eigen::Vector3d::Zero(), entry_samples = Eigen::Vector3d::Zero();
   std::optional<RateKnot> last_marginalised;  ///< sample that left the window last, and its time
   TimeNs last_marginalised_ns = 0;

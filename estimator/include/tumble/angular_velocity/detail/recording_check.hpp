@@ -8,11 +8,11 @@
 
 namespace tumble {
 
-/// Cost: O(N). Returns `empty`, `too_few` (fewer than `count_min` samples), an error of check_samples(), or `ok`.
+/// Returns `empty`, `too_few` (fewer than `count_min` samples), an error of check_samples(), or `ok`. Cost: O(N).
 Status check_recording(std::span<const ImuSample> samples, std::size_t count_min, double gap_max_s);
 
-/// Returns the median time between samples, limited to 1 us and 10 s. Cost: O(N). The recording must have at least two
-/// samples.
+/// Returns the median time between samples, limited to 1 us and 10 s. The recording must have at least two samples.
+/// Cost: O(N).
 double median_period_s(std::span<const ImuSample> samples);
 
 }  // namespace tumble

@@ -9,7 +9,7 @@
 
 namespace tumble {
 
-/// A reading repeats (sample and hold) if the sensor updates more slowly than the log.
+/// State of a repeated reading (sample and hold), which occurs if the sensor updates more slowly than the log.
 struct RepeatedReading {
   bool repeats = false;                              ///< repeats the reading of the previous sample
   double age_samples = 0.0;                          ///< mean age of the reading
@@ -17,16 +17,16 @@ struct RepeatedReading {
   Eigen::Vector3d change = Eigen::Vector3d::Zero();  ///< change from the previous reading [unit of the reading]
 
   bool is_slower_than_log() const { return period_samples > 1.0; }
-  /// Returns the time from the middle of the reading's window to the middle of the sample's window, in samples. The
-  /// reading's window has the length of the update period, and ends when the sensor takes the reading.
+  /// Returns the time from the middle of the reading's averaging window to the middle of the sample's averaging window,
+  /// in samples.
   double delay_samples() const { return is_slower_than_log() ? age_samples + 0.5 * (period_samples - 1.0) : 0.0; }
-  /// The change is extrapolated with the slope of the last change.
+  /// Extrapolates with the slope of the last change.
   Eigen::Vector3d change_since_reading() const;
   bool operator==(const RepeatedReading&) const = default;
 };
 
-/// Detects causally whether a log has a higher sample rate than the sensor. RepeatDetector does not estimate the phase
-/// of the sensor's clock, so a new reading has an age of 0.5 +- 0.29 samples. See docs/maths/rate_stream.md (R95).
+/// Detects causally whether a log has a higher sample rate than the sensor: rate_stream.md (R95). The age of a new
+/// reading is 0.5 +- 0.29 samples, because the phase of the sensor's clock is unknown.
 class RepeatDetector {
  public:
   struct Memory {
@@ -42,8 +42,8 @@ class RepeatDetector {
     bool operator==(const State&) const = default;
   };
 
-  /// The sample must be finite. Cost: O(1), no allocation. A clipped gyro repeats its reading at any update rate, so
-  /// RepeatDetector ignores samples that are `clipped`.
+  /// The sample must be finite. Samples that are `clipped` are ignored, because a clipped gyro repeats its reading at
+  /// any update rate. Cost: O(1), no allocation.
   void observe(const ImuSample& sample, bool clipped, State& state) const;
 };
 

@@ -12,13 +12,8 @@
 
 namespace tumble {
 
-/// Detects saturation limits and saturation planes from all readings so far; causal form of ClippingFinder.
-///
-/// For gyro and accelerometer, up to `readings_max` distinct readings are stored. The latest readings and readings near
-/// the extremes have priority. The search for saturation planes repeats whenever the number of readings near the
-/// extremes has grown by an eighth. A run of n readings at the extreme therefore needs only O(log n) searches. A
-/// saturation plane remains valid after its readings were dropped, until readings contradict the plane. Saturation is
-/// detected some samples after its first occurrence, so users must classify earlier samples again.
+/// Detects saturation limits and saturation planes from all readings so far; causal form of ClippingFinder. Saturation
+/// is detected some samples after its first occurrence, so callers must classify earlier samples again.
 class StreamingClippingFinder {
  public:
   struct Params {
@@ -53,12 +48,12 @@ class StreamingClippingFinder {
   /// The returned state has all memory that observe() needs.
   State start() const;
 
-  /// The sample must be finite. Cost: O(1), sometimes a search. Returns true if the known saturation limits or planes
-  /// changed.
+  /// The sample must be finite. Returns true if the known saturation limits or planes changed. Cost: O(1), but
+  /// O(`readings_max`) when enough new large readings have arrived.
   bool observe(const ImuSample& sample, State& state) const;
 
   /// Returns the clipped axes of a finite sample, according to the saturation limits found so far and the flags of the
-  /// device. Cost: O(1). `before` and `after` are the neighbours of the sample, or null at the ends.
+  /// device. `before` and `after` are the neighbours of the sample, or null at the ends. Cost: O(1).
   Clipping classify(const ImuSample* before, const ImuSample& sample, const State& state,
                     const ImuSample* after = nullptr) const;
 

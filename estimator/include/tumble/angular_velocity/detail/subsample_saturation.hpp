@@ -7,28 +7,22 @@
 
 namespace tumble {
 
-/// SubsampleSaturation is the saturation deficit of a reading whose averaging window is saturated during a part of its
-/// length. Such a reading is below the saturation limit, and slightly smaller than the true mean.
+/// Saturation deficit of a reading whose averaging window is saturated during a part of its length.
 struct SubsampleSaturation {
   bool saturated = false;
   double expected_deficit_rad_s = 0.0;  ///< expected |truth| - |reading|
   double sigma_rad_s = 0.0;             ///< standard deviation of the saturation deficit
 };
 
-/// Estimates the saturation deficit of a partly saturated reading from its unsaturated neighbour. The model is a rate
-/// with constant slope (D per window) that passes the saturation limit c within two successive windows. If the fraction
-/// p of the window is clipped, the reading is m = c - (1-p)^2 D/2. The fraction p follows from (c - m) / (m -
-/// neighbour) in closed form. The saturation deficit p^2 D/2 is zero if the reading is at the limit, or within noise of
-/// the neighbour. `neighbour_rad_s` is the smaller of the neighbours' readings, with a sign for which the saturation
-/// limit is positive. The standard deviation sigma_rad_s covers a change of slope within the two windows (measured on
-/// impacts of tumbling bodies).
+/// Estimates the saturation deficit of a partly saturated reading from its unsaturated neighbour, for a rate with
+/// constant slope: rails.md (R70). `neighbour_rad_s` is the smaller of the neighbours' readings, with a sign for which
+/// the saturation limit is positive.
 SubsampleSaturation subsample_saturation(double reading_rad_s, double neighbour_rad_s, double rail_rad_s,
                                          double noise_rad_s);
 
-/// Returns the smaller reading of the neighbours `before` and `after`, which may be null. `read` converts the angular
-/// velocity of a neighbour to a reading. Returns the saturation limit if there is no usable neighbour. A neighbour
-/// flagged as saturated is used only if most of the neighbour's window was unsaturated. Flagged readings that decrease
-/// along a tilted plane do not measure the rate. See rails.md (R70).
+/// Returns the smaller reading of the neighbours `before` and `after`, which may be null: rails.md (R70). `read`
+/// converts the angular velocity of a neighbour to a reading. A neighbour flagged as saturated is used only if most of
+/// its averaging window was unsaturated. Returns the saturation limit if there is no usable neighbour.
 template <class Read>
 double unsaturated_neighbour(double reading_rad_s, double rail_rad_s, int axis, const ImuSample* before,
                              const ImuSample* after, const Read& read) {

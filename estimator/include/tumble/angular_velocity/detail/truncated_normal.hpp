@@ -7,18 +7,17 @@ struct NormalMoments {
   double mean = 0.0, variance = 1.0;
 };
 
-/// Returns the moments of a normal distribution truncated below `bound`. The bound has the variance `bound_variance`.
-/// Expectation propagation uses the moments of truncated distributions (Minka 2001).
+/// Returns the moments of a normal distribution truncated below `bound`, which has the variance `bound_variance`.
 NormalMoments truncated_below(const NormalMoments& from, double bound, double bound_variance);
 
-/// GaussianSite is a Gaussian factor, stored as precision and precision * mean.
+/// Gaussian factor of expectation propagation (Minka 2001), stored as precision and precision * mean.
 struct GaussianSite {
   double precision = 0.0, shift = 0.0;
 };
 
-/// Returns the Gaussian factor (site) that gives `marginal` the moments of a distribution truncated at `bound`. `now`
-/// is the current Gaussian factor. `share` in (0, 1] is the weight of the new Gaussian factor, which damps the update.
-/// The standard deviation of the marginal without its site is limited to sqrt(`variance_max`).
+/// Returns the Gaussian factor that gives `marginal` the moments of a distribution truncated at `bound`. `now` is the
+/// current Gaussian factor, and `share` in (0, 1] is the weight of the new one. The standard deviation of `marginal`
+/// without its current factor is limited to sqrt(`variance_max`).
 GaussianSite refined_bound(const NormalMoments& marginal, const GaussianSite& now, double bound, double bound_variance,
                            double variance_max, double share);
 

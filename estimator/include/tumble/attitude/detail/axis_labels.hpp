@@ -6,12 +6,10 @@
 
 namespace tumble {
 
-/// AxisLabels assigns the axes of an accelerometer to the axes of the gyro in the same IMU.
-///
-/// Some recordings swap or flip axes, for example to let the z axis point down. While the body rotates, the measured
-/// gravity rotates as the gyro predicts only if the axis labels are correct. The rotation of gravity distinguishes 24
-/// assignments of the labels, and 48 if the gyro may also be inverted. The rotation of gravity does not reveal that all
-/// three axes of the accelerometer are flipped. AxisLabels describes only rotations by multiples of a right angle.
+/// AxisLabels assigns the axes of an accelerometer to the axes of the gyro in the same IMU. While the body rotates, the
+/// measured gravity rotates as the gyro predicts only if the axis labels are correct. The rotation of gravity cannot
+/// reveal that all three axes of the accelerometer are flipped. AxisLabels describes only rotations by multiples of a
+/// right angle.
 struct AxisLabels {
   std::array<int, 3> axis = {0, 1, 2};        ///< index of the accelerometer reading along x, y, z of the gyro
   std::array<double, 3> sign = {1., 1., 1.};  ///< sign of each axis; the first sign is 1

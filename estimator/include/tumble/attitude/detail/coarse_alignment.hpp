@@ -10,11 +10,9 @@
 
 namespace tumble {
 
-/// CoarseAlignment estimates the vertical after a loss of the attitude, while the body continues to move. The integral
-/// of the specific force is gravity's integral plus the change of velocity, in axes rotated by the gyro. The integral
-/// of gravity grows with time, but the change of velocity is bounded. See attitude.md (A19), (A20). The method uses no
-/// linearisation, so it works from any initial attitude. The caller adds the gyro's error to
-/// `tilt_variance_growth_rad2`.
+/// CoarseAlignment estimates the vertical after a loss of the attitude, while the body continues to move: attitude.md
+/// (A19), (A20). CoarseAlignment works from any initial attitude, because the method uses no linearisation. The caller
+/// adds the variance of the gyro's error to `tilt_variance_growth_rad2`.
 struct CoarseAlignment {
   bool running = false;
   double time_s = 0.0;
@@ -31,24 +29,23 @@ struct CoarseAlignment {
     start_tilt_variance_rad2 = tilt_variance_rad2;
   }
 
-  /// `more_W_m_s` is the integral of the specific force over the time `length_s`.
+  /// `more_W_m_s` is the specific force integrated over `length_s`, in world axes.
   void add(const Eigen::Vector3d& more_W_m_s, double length_s) {
     force_W_m_s += more_W_m_s;
     time_s += length_s;
   }
 
-  /// variance of the tilt per axis without the correction by levelling()
+  /// variance of the tilt per axis, uncorrected
   double tilt_rad2() const { return start_tilt_variance_rad2 + tilt_variance_growth_rad2; }
 
   /// Returns the variance of the tilt after levelling(), due to the velocities at start and end and the gyro's errors.
-  /// A mean force whose magnitude differs from gravity indicates a change of velocity, which increases the variance.
   double variance_rad2(double velocity_variance_m2_s2, double gravity_m_s2) const {
     const double gravity_m_s = gravity_m_s2 * std::max(time_s, 1e-9);
     const double seen = squared(force_W_m_s.norm() - gravity_m_s);
     return std::max(velocity_m2_s2 + velocity_variance_m2_s2, seen) / squared(gravity_m_s) + tilt_variance_growth_rad2;
   }
 
-  /// levelling() is the rotation in world axes that turns the mean force upwards and keeps the heading.
+  /// Returns the rotation in world axes that turns the mean force upwards and keeps the heading.
   Eigen::Quaterniond levelling() const { return tumble::levelling(force_W_m_s.normalized()); }
   double mean_force_tilt_rad() const { return std::atan2(force_W_m_s.head<2>().norm(), force_W_m_s.z()); }
 };

@@ -8,14 +8,9 @@
 
 namespace tumble {
 
-/// Estimates the errors of several accelerometers on one rigid body from the differences between their readings.
-///
-/// In fast rotation, large opposite forces cancel in the mean of all IMUs, but their scale and misalignment errors do
-/// not. For each IMU k, a Kalman filter estimates bias b_k, scale and misalignment M_k, and position error dp_k. The
-/// measurement model is f_k = c + A p_k + b_k + M_k f_k + A dp_k, with A = [a]x + [w]x[w]x. The symbols are the common
-/// force c, the position p_k of the IMU, the rate w and the angular acceleration a. The measurement is the difference
-/// of each IMU's force from the mean of all IMUs, averaged over kSpan_s. Averaging neglects the rotation of the body
-/// within kSpan_s. Errors that all IMUs share are not observable, and their estimates remain close to zero.
+/// Estimates the errors of several accelerometers on one rigid body from the differences between their readings. For
+/// each accelerometer, a Kalman filter estimates bias, scale and misalignment M, and position error. Errors that all
+/// accelerometers share are not observable, and their estimates remain close to zero.
 class ForceErrors {
  public:
   static constexpr int kUnits = 4;
@@ -38,7 +33,7 @@ class ForceErrors {
   struct State {
     Vector x = Vector::Zero();
     Covariance P = Covariance::Zero();
-    // sums over the current averaging time kSpan_s
+    // sums over the current averaging interval
     Eigen::Matrix<double, 3, kUnits> difference_m_s2 = Eigen::Matrix<double, 3, kUnits>::Zero();
     Eigen::Matrix<double, 3, kUnits> force_m_s2 = Eigen::Matrix<double, 3, kUnits>::Zero();
     Eigen::Matrix3d jacobian_position = Eigen::Matrix3d::Zero();
@@ -52,8 +47,8 @@ class ForceErrors {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit ForceErrors(const Params& params);
 
-  /// Processes the forces of all IMUs in common axes C, measured over `dt_s`. The filter is updated once per kSpan_s.
-  /// Cost: O((kPerUnit count)^2), no allocation.
+  /// Processes the forces of all IMUs in common axes C, measured over `dt_s`. Cost: O((kPerUnit count)^2), no
+  /// allocation.
   void calibrate(std::span<const Eigen::Vector3d> forces_m_s2, const Eigen::Vector3d& rate_rad_s,
                  const Eigen::Vector3d& acceleration_rad_s2, double dt_s, State& state) const;
 

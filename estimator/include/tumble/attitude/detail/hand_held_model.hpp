@@ -9,18 +9,18 @@
 namespace tumble {
 
 /// Formulates hand-held motion as a least-squares problem over a chain of states (nodes) at equal time steps. Each
-/// function adds one residual to the normal equations H d = g and returns the cost of the residual.
+/// function adds one residual to the normal equations and returns the cost of the residual.
 namespace hand_held {
 
 inline constexpr int kBlockSize = 18;  ///< size of a node's error vector: see Index
 inline constexpr int kBorderSize = 9;  ///< number of constants: see ConstantIndex
 using System = ArrowSystem<kBlockSize, kBorderSize>;
 
-/// first index of each part of a node's error vector The attitude error phi is defined by q_true = q_WI Exp(phi).
+/// first index of each part of a node's error vector, with the attitude error phi: q_true = q_WI Exp(phi)
 enum Index { kPhi = 0, kRate = 3, kAngularAcceleration = 6, kHandAcceleration = 9, kVelocity = 12, kPosition = 15 };
 enum ConstantIndex { kGyroBias = 0, kAccelBias = 3, kLever = 6 };
 
-/// The held point is the point of the body at the hand; its acceleration, velocity and position are bounded.
+/// The held point is the point of the body at the hand.
 struct Node {
   Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
   Eigen::Vector3d w_WI_I_rad_s = Eigen::Vector3d::Zero();
@@ -38,11 +38,10 @@ struct Constants {
   void move(const System::BorderVector& step);
 };
 
-/// Sums over the readings z of one sensing element near a node; times are relative to the node. The sums make the cost
-/// of a solver step independent of the IMU's sample rate.
+/// Sums over the readings of one sensing element near a node, with times relative to the node.
 struct ElementSums {
   double count = 0.0, time_sum_s = 0.0, time_squared_sum_s2 = 0.0, reading_sum = 0.0,
-         reading_time_sum = 0.0;                           ///< count and sums of the unsaturated readings z
+         reading_time_sum = 0.0;                           ///< count and sums of unsaturated readings
   double clipped = 0.0, clipped_time_s = 0.0, rail = 0.0;  ///< count, mean time and mean level of clipped readings
   double sign = 0.0;                                       ///< sign of the saturation limit
   double unusable_count = 0.0, unusable_mean = 0.0;        ///< count and mean of unusable readings
@@ -74,21 +73,20 @@ struct ReadingNoise {
   double rest_m_s2 = 0.0;                ///< standard deviation of the acceleration at rest
 };
 
-/// Row i of `rows` is the sensing direction m_i of element i. Unsaturated readings measure m_i' (rate + bias). Clipped
-/// readings limit m_i' (rate + bias) from one side.
+/// Row i of `rows` is the sensing direction of gyro element i. Clipped readings limit the component of (rate + bias)
+/// along row i from one side.
 double add_gyro(const NodeReadings& readings, const Eigen::Matrix3d& rows, const ReadingNoise& noise, const Node& node,
                 const Constants& constants, System::Block& block, System::Corner& corner);
 
-/// Adds the residual of the specific force of one node: f = R'(a - g) + alpha x r + w x (w x r) + bias. Symbols:
-/// attitude R, held point's acceleration a, gravity g, rate w, angular acceleration alpha, lever arm r.
+/// Adds the residual of the specific force of one node, with gravity, the held point's acceleration, and the
+/// centripetal and tangential force at the lever arm.
 double add_force(const NodeReadings& readings, const Eigen::Vector3d& g_W_m_s2, const ReadingNoise& noise,
                  const Node& node, const Constants& constants, System::Block& block, System::Corner& corner);
 
 double add_rest(const ReadingNoise& noise, const Node& node, System::Block& block);
 
-/// Motion is the motion model between two nodes that are `step_s` apart. The angular jerk is white noise. The held
-/// point's acceleration is a first-order process. Velocity and position of the held point return to zero, each with a
-/// separate time constant.
+/// Motion model between two nodes that are `step_s` apart. The angular jerk is white noise. Acceleration, velocity and
+/// position of the held point return to zero, each with a separate time constant.
 class Motion {
  public:
   struct Params {
@@ -118,8 +116,7 @@ class Motion {
   double phi_variance_;
 };
 
-/// Returns the rotation vector between two nodes. The rate is interpolated by a cubic polynomial; the coning term is
-/// the fourth-order term of the Magnus expansion.
+/// Returns the rotation vector between two nodes, for a rate that is a cubic polynomial in time.
 Eigen::Vector3d turned(const Node& from, const Node& to, double step_s);
 
 }  // namespace hand_held

@@ -13,9 +13,7 @@
 namespace tumble {
 
 /// Estimates the angular velocity of a body that is known to be hand-held, from a single IMU. HandHeldPipeline detects
-/// the saturation limits that HandHeldStream needs as input. After each detection of a saturation limit,
-/// HandHeldPipeline processes the window again. HandHeldPipeline assumes hand-held motion; RegimeStream also handles
-/// flight and contact.
+/// the saturation limits that HandHeldStream needs as input.
 class HandHeldPipeline {
  public:
   struct Params {
@@ -45,7 +43,7 @@ class HandHeldPipeline {
   /// `time_order`, `gap`), the saturation limits are unchanged and `out` is empty.
   Status push(const ImuSample& sample, State& state, std::optional<RateState>& out) const;
 
-  /// Appends the unreported rates of the samples in the window to `out`, oldest first.
+  /// Appends the rates of the samples in the window that were not yet reported, oldest first.
   void flush(const State& state, std::vector<RateState>& out) const { stream_.flush(state.stream, out); }
 
  private:

@@ -5,12 +5,12 @@
 
 namespace tumble {
 
-/// Readings that differ more from the readings of all other IMUs are excluded.
+/// Maximum differences of one IMU from the others, beyond which ImuMerge excludes the IMU.
 struct ImuOutlierParams {
   double rate_rad_s = 0.15;  ///< maximum difference from the median
   double rate_share = 0.03;  ///< additional difference, as a fraction of the rate
   double force_m_s2 = 3.0;   ///< maximum difference from the median
-  /// A reading above subsample_saturation_ratio * range may be saturated during a part of its averaging window.
+  /// A reading above this fraction of the range may be saturated during a part of its averaging window.
   double subsample_saturation_ratio = 0.15;
   double hidden_force_m_s2 = 3.0;  ///< largest force error attributed to saturation during a part of the window
 
@@ -25,7 +25,7 @@ struct ImuOutlierParams {
                          "maximum accepted difference between an IMU's force and the median of all IMUs"});
     visit(p.subsample_saturation_ratio,
           {"subsample_saturation_ratio", "1", 1e-12, 1.0,
-           "above this share of the range, a reading may contain saturation within its sample period"});
+           "a reading above this share of the range may be saturated during a part of its sample period"});
     visit(p.hidden_force_m_s2,
           {"hidden_force_m_s2", "m/s^2", 1e-12, 1e4,
            "maximum accepted difference between a possibly saturated force and the forces of the other IMUs"});

@@ -13,7 +13,7 @@
 
 namespace tumble {
 
-/// run of equal readings of one IMU, with the readings of other IMUs at its start and the rotation since its start
+/// equal consecutive readings of one IMU, with the readings of other IMUs at the first one and the rotation since then
 struct ImuRepeat {
   Eigen::Vector3d reading = Eigen::Vector3d::Zero(), others = Eigen::Vector3d::Zero();
   Eigen::Vector3d turned_rad = Eigen::Vector3d::Zero();
@@ -29,8 +29,7 @@ struct ImuMergeUnit {
   Eigen::Matrix<double, kErrorCount, 1> x = Eigen::Matrix<double, kErrorCount, 1>::Zero();
   Eigen::Matrix<double, kErrorCount, kErrorCount> P = Eigen::Matrix<double, kErrorCount, kErrorCount>::Zero();
   ImuAverage window;  ///< average of the IMU's readings since the last window
-  /// Mean rate and force over the last window. For an absent IMU, the means are predicted from the readings of the
-  /// other IMUs.
+  /// mean rate and force over the last window; for an absent IMU, predicted from other IMUs
   Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero(), last_force_m_s2 = Eigen::Vector3d::Zero();
   double exclusion_left_s = 0.0;      ///< remaining time of exclusion from the mean force
   std::int64_t excluded_windows = 0;  ///< number of windows without this IMU

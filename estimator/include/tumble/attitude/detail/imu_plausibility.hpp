@@ -12,19 +12,12 @@ namespace tumble {
 
 /// Detects a gyro whose scale or sign contradicts gravity, and frozen sensors.
 ///
-/// If the magnitude of the force is close to gravity and constant for a fifth of a second, the force is probably
-/// gravity. The direction of gravity in sensor axes must rotate as the gyro measures: u(t + T) = R^T u(t). The vector u
-/// is the direction of the force, and R is the rotation of the sensor from t to t + T. Directions are compared only if
-/// the gyro is unsaturated.
-///
-/// A regression line relates the rotation of the force to the rotation of the gyro. The slope of the regression is 1
-/// for a correct IMU, 2 for a half-scale gyro, and -1 for an inverted gyro. Pushes, and a force along a rod, scatter
-/// the measured rotations about the regression line but change its slope little.
+/// ImuPlausibility compares the rotation of measured gravity with the rotation that the gyro measures: imu_merge.md
+/// (I20).
 ///
 /// A sensor is frozen if one reading repeats bit for bit for at least a second, and ten times longer than any earlier
-/// repetition. Sensors whose readings never changed, or often repeat at rest due to coarse quantisation, do not count
-/// as frozen. A gyro with constant readings is frozen if gravity rotates, or if forces differ from gravity for long
-/// enough. An accelerometer that always reads 0 is frozen if the gyro measures motion.
+/// repetition. A gyro with constant readings is frozen only if the forces exclude rest. An accelerometer that always
+/// reads 0 is frozen if the gyro measures motion.
 ///
 /// ImuPlausibility does not detect errors of a few per cent, exchanged axes, or errors while the body is pushed.
 class ImuPlausibility {
@@ -70,17 +63,16 @@ class ImuPlausibility {
   /// Cost: O(1), no allocation. Samples that are not finite or out of order are ignored.
   void step(const ImuSample& sample, State& state) const;
 
-  /// Limits the memory to about a minute of evidence, so that a finding ends after its cause.
+  /// Reduces the weight of old samples to about a minute, so that a warning ends after its cause.
   static void limit_memory(State& state);
 
   /// Returns the fraction of the force's rotation that the gyro does not explain, or 0 while unknown.
   double unexplained_rotation_ratio(const State& state) const;
-  /// Returns the regression slope of the force's rotation on the gyro's rotation (I20), or 1 while unknown.
+  /// Returns the slope of the regression of the force's rotation on the gyro's rotation: imu_merge.md (I20). The slope
+  /// is 1 for a correct gyro, 2 for a half-scale gyro, -1 for an inverted gyro, and 1 while unknown.
   double rotation_slope(const State& state) const;
   /// Returns the correlation of the gyro's rotation with the force's rotation, from -1 to 1. The correlation is 1 for a
-  /// gyro of any scale, -1 for an inverted gyro, and about 0 for swapped axes. Pushes that are mistaken for gravity
-  /// reduce the correlation to a value between 0 and 1. The correlation is 1 while the rotation is too small for a
-  /// decision.
+  /// gyro of any scale, -1 for an inverted gyro, about 0 for swapped axes, and 1 while unknown.
   double rotation_agreement(const State& state) const;
   /// Returns the longest time for which the gyro or the accelerometer was frozen [s], or 0 if both sensors always
   /// worked.
@@ -89,8 +81,7 @@ class ImuPlausibility {
   Status verdict(const State& state) const;
 
  private:
-  /// Returns whether a gyro scaled by the regression slope leaves a far smaller residual, because the gyro is inverted
-  /// or has a wrong scale.
+  /// Returns whether an inverted or rescaled gyro would leave a far smaller residual.
   bool fits_better(const State& state) const;
   void process_average(State& state) const;
   void compare_rotations(const Eigen::Vector3d& force_m_s2, State& state) const;

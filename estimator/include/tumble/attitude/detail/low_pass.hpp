@@ -9,8 +9,7 @@
 namespace tumble {
 
 /// LowPass is a second-order Butterworth low-pass filter (bilinear transform, corner frequency sqrt(2) / (2 pi tau)).
-/// Until the time tau has passed, the output is the mean of all inputs, so that a single sample cannot determine the
-/// start value. The state consists of output and slope, so a change of the sample period causes no transient.
+/// Until the time tau has passed, the output is the mean of all inputs.
 template <int Rows>
 struct LowPass {
   using Vector = Eigen::Matrix<double, Rows, 1>;
@@ -40,7 +39,7 @@ struct LowPass {
   bool operator==(const LowPass&) const = default;
 };
 
-/// Returns tan(pi f_c dt), bounded so that a sample period much longer than tau passes the input unfiltered.
+/// Returns tan(pi * corner frequency * dt), bounded for sample periods much longer than tau.
 inline double low_pass_prewarp(double tau_s, double dt_s) {
   return std::tan(std::min(dt_s / (std::numbers::sqrt2 * tau_s), 1.5));
 }

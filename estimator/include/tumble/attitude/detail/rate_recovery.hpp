@@ -11,24 +11,17 @@
 
 namespace tumble {
 
-/// Estimates the rate of a body beyond the range of its gyros from force differences between accelerometers.
-///
-/// An extended Kalman filter estimates rate w, angular acceleration a and specific force c at the mean position of the
-/// IMUs, and the error of each lever arm r_k. The measurement model of IMU k is f_k = c + a x r_k + w x (w x r_k). The
-/// filter predicts that the specific force c is constant in world axes. The filter runs while a gyro is clipped or
-/// above kActiveRangeRatio * range, so lever arms are calibrated before saturation. ClippingFinder sets the flags for
-/// devices that clip below their range without reporting saturation. Clipped readings (flagged or beyond the range) are
-/// lower bounds.
+/// Estimates the rate of a body beyond the range of its gyros from force differences between accelerometers. An
+/// extended Kalman filter estimates rate, angular acceleration, the specific force at the mean position of the IMUs,
+/// and the error of each lever arm. Readings that are flagged as clipped or beyond the range are lower bounds.
 ///
 /// RateRecovery neglects scale errors, and calibrates the lever arms relative to the gyro's scale. IMUs at one position
-/// provide no information about the rate. An impact increases the uncertainty of the rate, but does not change the
-/// estimated rate.
+/// provide no information about the rate.
 class RateRecovery {
  public:
   static constexpr int kUnits = 4;
   static constexpr int kStates = 9 + 3 * kUnits;
-  /// The parameters in ReadingNoise hold for a reading of the duration kReading_s. Readings of a shorter duration d
-  /// have noise that is larger by the factor sqrt(kReading_s / d), so a higher sample rate adds no information.
+  /// duration of a reading for which ReadingNoise holds; shorter readings have more noise
   static constexpr double kReading_s = 4e-3;
   static constexpr double kActiveRangeRatio = 0.5;  ///< fraction of the gyro's range above which the filter runs
   using Vector = Eigen::Matrix<double, kStates, 1>;
@@ -50,8 +43,7 @@ class RateRecovery {
     double force_walk_m_s2_sqrts = 25.0;            ///< random walk of the common force; bound (0, 1e6]
     double recovered_sigma_rad_s = 1.0;  ///< rates with a larger standard deviation remain clipped; bound (0, 1e3]
     ReadingNoise noise;
-    /// While a sensing element clips, its saturation deficit corrupts the readings of all axes of the sensor.
-    /// RateRecovery then uses the unsaturated sensing elements along their sensing directions.
+    /// sensing directions, along which the unsaturated elements of a clipped sensor are used
     std::array<SensingDirections, kUnits> gyro_elements{}, accel_elements{};
   };
   struct State {
@@ -66,11 +58,10 @@ class RateRecovery {
   explicit RateRecovery(const Params& params);
 
   /// `dt_s` is the time since the previous readings; each IMU's readings are in its own axes. IMUs whose readings are
-  /// not finite are ignored. `merged` contains the mean of the used IMUs in axes C. Where saturation corrupts the mean,
-  /// the estimates of the filter replace rate and force in `merged`. The gyro flags of `merged` are set if the rate
-  /// could not be recovered. The accelerometer flags are set if most accelerometers are saturated, or if one
-  /// accelerometer and a gyro are saturated. All other clip flags are cleared, because a recovered rate is not clipped.
-  /// Cost: O(count), no allocation; almost no computation while the body rotates slowly and no gyro is clipped.
+  /// not finite are ignored. `merged` contains the mean of the used IMUs in axes C, and receives the recovered rate and
+  /// force. The gyro flags of `merged` are set if the rate could not be recovered. The accelerometer flags are set if
+  /// most accelerometers are saturated, or if one accelerometer and a gyro are saturated. All other clip flags are
+  /// cleared. Cost: O(count), no allocation.
   void step(std::span<const ImuSample> units, double dt_s, State& state, ImuSample& merged) const;
 
  private:

@@ -18,7 +18,7 @@ Status estimate_rates(std::span<const ImuSample> samples, std::span<const Auxili
                       const RegimeSmoother::Params& params, std::vector<RateState>& rates,
                       RegimeSmoother::Report& report);
 
-/// recording with replaced gyro readings, for methods that need gyro readings instead of rates
+/// Recording with replaced gyro readings, for methods that need gyro readings instead of rates.
 struct RecoveredRates {
   std::vector<ImuSample> samples;  ///< the recording with replaced gyro readings
   std::vector<Eigen::Matrix3d>
@@ -32,16 +32,14 @@ struct RecoveredRates {
 
 enum class ReplacedReadings : std::uint8_t {
   clipped,  ///< readings with a clipped axis
-  /// readings with a clipped or suspect axis If the gyro updates more slowly than the log, all readings are replaced,
-  /// because RateSmoother removes the gyro's delay. Smoothers with their own motion model perform better with
-  /// `clipped`.
+  /// readings with a clipped or suspect axis; all readings if the gyro updates more slowly than the log
   unreliable,
 };
 
-/// Replaces all three axes of readings by estimated rates, because a tilted saturation plane also corrupts the
-/// unclipped axes. The gyro bias is added to replaced readings, so that replaced and original readings have equal bias.
-/// If no reading clips or the estimation fails, all readings remain. With `unreliable`, the readings of a gyro that
-/// updates more slowly than the log are still interpolated. Cost: O(N).
+/// Replaces clipped gyro readings by estimated rates plus the gyro bias, so that replaced and original readings have
+/// equal bias. All three axes of a reading are replaced, because a tilted saturation plane also corrupts the unclipped
+/// axes. If no reading clips or the estimation fails, all readings remain. With `unreliable`, the readings of a gyro
+/// that updates more slowly than the log are still interpolated. Cost: O(N).
 RecoveredRates recover_rates(std::span<const ImuSample> samples, std::span<const AuxiliaryRecording> auxiliary_imus,
                              const RegimeSmoother::Params& params, ReplacedReadings replaced);
 

@@ -13,17 +13,13 @@
 namespace tumble {
 
 /// Checks estimated rates and the accelerometer with the force at rest, which must have the magnitude of gravity. A
-/// wrong magnitude reveals another unit of the accelerometer, for example g.
+/// wrong magnitude reveals another unit of the accelerometer, for example g. Between two rests, the force rotated by
+/// the estimated rates must integrate to gravity times the duration: imu_merge.md (I23), (I24), (I25), (I26).
 ///
-/// Between two rests, the force rotated by the estimated rates integrates to gravity times the duration, because the
-/// velocity at both rests is zero. A gyro with wrong sign, scale or axis labels violates the relation between
-/// integrated force and gravity.
-///
-/// The equations of RestGravity are imu_merge.md (I23), (I24), (I25), (I26). RestGravity does not detect wrong rates if
-/// the body returns to its initial attitude (a pendulum), rotates about the vertical, or rests less than twice.
-/// RestGravity does not detect an accelerometer with all axes flipped. RestGravity mistakes a body that falls for a
-/// second without rotation, and never rests, for a wrong accelerometer. If one rest is on the ground and another rest
-/// is in a steadily moving vehicle, RestGravity mistakes correct rates for wrong rates.
+/// RestGravity does not detect wrong rates if the body returns to its initial attitude, rotates about the vertical, or
+/// rests less than twice. RestGravity does not detect an accelerometer with all axes flipped. RestGravity mistakes a
+/// body that falls for a second without rotation, and never rests, for a wrong accelerometer. If one rest is on the
+/// ground and another in a steadily moving vehicle, RestGravity mistakes correct rates for wrong rates.
 class RestGravity {
  public:
   struct Params {
@@ -63,20 +59,19 @@ class RestGravity {
 
   /// Cost: O(1), no allocation. Samples that are not finite or out of order are ignored.
   void step(const ImuSample& sample, const RateState& rate, State& state) const;
-  /// Without rates, only the magnitude of the force at rest is checked.
+  /// Checks only the magnitude of the force at rest.
   void step(const ImuSample& sample, MagnitudeState& state) const { (void)follow(sample, state); }
 
-  /// The memory is limited to a minute of rest, so that the finding ends after the fault ends.
+  /// Reduces the weight of old rests to a minute, so that a warning ends after its cause.
   static void limit_memory(MagnitudeState& state);
 
   /// Returns the mean magnitude of the force at rest as a fraction of gravity. Returns 0 if every rest of a second was
   /// without force, and 1 if the body never rested.
   double magnitude_error_ratio(const MagnitudeState& state) const;
-  /// Returns `out_of_range` if magnitude_error_ratio() differs from 1. If the magnitude is wrong by more than a factor
-  /// of three, the message names the unit as the probable error.
+  /// Returns `out_of_range` if magnitude_error_ratio() differs from 1.
   Status magnitude_verdict(const MagnitudeState& state) const;
-  /// Returns the error of magnitude_verdict(), if any, and otherwise checks the rates. Returns `out_of_range` if the
-  /// final velocity of the worst pair of rests is wrong by more than its limit.
+  /// Returns the error of magnitude_verdict(), if any. Otherwise returns `out_of_range` if the velocity, integrated
+  /// between two rests, contradicts zero velocity at both rests.
   Status verdict(const State& state) const;
 
  private:

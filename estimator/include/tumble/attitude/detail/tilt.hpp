@@ -9,8 +9,8 @@
 
 namespace tumble {
 
-/// Returns the smallest rotation c with c * up_W = z, for a unit vector up_W. The axis of the rotation c is horizontal,
-/// so the heading is unchanged. If up_W is opposite to z, the rotation c is a half turn about x.
+/// Returns the smallest rotation that turns the unit vector `up_W` to the z axis; the rotation keeps the heading. If
+/// `up_W` is opposite to z, the result is a half turn about x.
 inline Eigen::Quaterniond levelling(const Eigen::Vector3d& up_W) {
   const double w = std::sqrt(std::max(0.0, 0.5 * (1.0 + up_W.z())));
   if (w < 1e-6) return {0.0, 1.0, 0.0, 0.0};

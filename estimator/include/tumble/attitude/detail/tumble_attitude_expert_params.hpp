@@ -9,8 +9,7 @@ namespace tumble {
 struct AttitudeRestParams {
   double velocity_sigma_m_s = 0.005;   ///< standard deviation of the velocity at rest, per node
   double rate_sigma_rad_sqrts = 2e-3;  ///< standard deviation of the rate measured at rest, mean over 1 s
-  /// Maximum difference between mean rate and bias at rest, in standard deviations of the difference. With a known
-  /// bias, a rotation of 0.5 deg/s counts as motion. With an unknown bias, a bias above 1.5 deg/s counts as motion.
+  /// maximum difference between mean rate and bias at rest, in standard deviations of the difference
   double rate_sigmas = 3.0;
 
   template <class Self, class Visitor>
@@ -32,13 +31,14 @@ struct AttitudeRollingParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.velocity_sigma_m_s, {"rolling_velocity_sigma_m_s", "m/s", 1e-12, 10.0,
-                                 "standard deviation of the rolling velocity while gripping, per filter correction"});
+    visit(p.velocity_sigma_m_s,
+          {"rolling_velocity_sigma_m_s", "m/s", 1e-12, 10.0,
+           "standard deviation of the velocity while rolling without slip, per filter correction"});
     visit(p.slip_velocity_m_s,
           {"slip_velocity_m_s", "m/s", 1e-12, 10.0,
-           "a slip starts when the velocity residual exceeds this value, and ends below half of this value"});
-    visit(p.slip_quiet_s,
-          {"slip_quiet_s", "s", 0.0, 10.0, "duration of small velocity residuals after which a slip ends"});
+           "velocity residual of the rolling constraint above which slip starts; slip ends below half of this value"});
+    visit(p.slip_quiet_s, {"slip_quiet_s", "s", 0.0, 10.0,
+                           "duration of small velocity residuals of the rolling constraint after which slip ends"});
     visit(p.slip_timeout_s, {"slip_timeout_s", "s", 1e-12, 1e3,
                              "maximum duration of a slip; the rolling velocity is used again after this time"});
   }
@@ -46,11 +46,11 @@ struct AttitudeRollingParams {
 
 struct AttitudeGapParams {
   double duration_min_s = 0.05;  ///< a longer time between two samples is a gap
-  /// Random walks of the rate and velocity of tumbling bodies during a gap. On hills, stairs and cliffs, the true
-  /// random walks over 0.05 to 0.5 s are 3.0 to 11.4 rad/s and 2.4 to 4.1 m/s per sqrt(s) (docs/figures.md).
+  /// Random walks of the rate and velocity of tumbling bodies during a gap. In simulated falls on hills, stairs and
+  /// cliffs, the true random walks are 3.0 to 11.4 rad/s and 2.4 to 4.1 m/s per sqrt(s) (docs/figures.md).
   double rate_walk_rad_s_sqrts = 7.0, velocity_walk_m_s_sqrts = 3.3;
-  /// Limits of the tilt's standard deviation, per axis. Above lost_tilt_rad, the linearisation of the filter is invalid
-  /// and coarse alignment starts. Below aligned_tilt_rad, the coarse alignment is complete.
+  /// Standard deviations of the tilt, per axis. Coarse alignment starts above `lost_tilt_rad`, where the linearised
+  /// filter is invalid, and ends below `aligned_tilt_rad`.
   double lost_tilt_rad = 0.3, aligned_tilt_rad = 0.4;
 
   template <class Self, class Visitor>
@@ -61,10 +61,11 @@ struct AttitudeGapParams {
           {"gap_rate_walk_rad_s_sqrts", "rad/s/sqrt(s)", 0.0, 1e4, "random walk of the rate during a gap"});
     visit(p.velocity_walk_m_s_sqrts,
           {"gap_velocity_walk_m_s_sqrts", "m/s/sqrt(s)", 0.0, 1e4, "random walk of the velocity during a gap"});
-    visit(p.lost_tilt_rad, {"gap_lost_tilt_rad", "rad", 1e-3, 1e4,
-                            "the tilt is initialised again if its standard deviation after a gap exceeds this value"});
+    visit(p.lost_tilt_rad,
+          {"gap_lost_tilt_rad", "rad", 1e-3, 1e4,
+           "standard deviation of the tilt after a gap, above which TumbleAttitude initialises the tilt again"});
     visit(p.aligned_tilt_rad, {"gap_aligned_tilt_rad", "rad", 1e-3, 1e4,
-                               "the initialisation ends when the standard deviation of the tilt is below this value"});
+                               "standard deviation of the tilt, below which the initialisation after a gap ends"});
   }
 };
 
@@ -73,12 +74,9 @@ struct TumbleAttitudeExpertParams {
   double acceleration_noise_m_s_sqrts = 0.01;  ///< velocity random walk
   double recovered_tau_s = 0.05;               ///< correlation time of the error of a recovered rate
   double node_s = 0.04;                        ///< time between two corrections
-  /// averaging time of the readings, which the thresholds of TumbleAttitude assume; 0: no averaging
+  /// averaging time of the readings; 0: no averaging
   double reading_s = 4e-3;
   double gap_max_s = 1.0;
-  /// The mean rate may differ by 2 deg/s from the bias, and each reading by 2 deg/s from the mean rate. Both limits are
-  /// wide enough for low-cost sensors, and affect only the bias estimate. The mean rate has a time constant of half a
-  /// second, so TumbleAttitude detects rest after one second.
   RestDetector::Params rest = {.rate_max_rad_s = 3.4907e-2,
                                .rate_spread_rad_s = 3.4907e-2,
                                .force_spread_m_s2 = 0.5,

@@ -9,8 +9,7 @@
 namespace tumble {
 
 /// Detects wrong axes that all IMUs share: a flipped axis of the gyros or of the accelerometers, or two swapped axes.
-/// UnitSignCheck compares force differences between IMUs at different positions of one rigid body, summed over a whole
-/// run. See imu_merge.md (I9).
+/// UnitSignCheck compares force differences between IMUs at different positions of one rigid body: imu_merge.md (I9).
 struct UnitSignCheck {
   static constexpr std::size_t kAlternatives =
       12;  ///< gyros, then accelerometers: x, y or z flipped; xy, yz or zx swapped
@@ -20,8 +19,8 @@ struct UnitSignCheck {
 
   std::array<double, kAlternatives> explained_m2_s3{}, effect_m2_s3{};
 
-  /// Cost: O(1), no allocation. The readings cover the time `length_s`, in common axes. `force_m_s2` and `position_m`
-  /// are relative to the mean of all IMUs.
+  /// All inputs are in common axes and cover the time `length_s`. `force_m_s2` and `position_m` are relative to the
+  /// mean of all IMUs. Cost: O(1), no allocation.
   void add(const Eigen::Vector3d& force_m_s2, const Eigen::Vector3d& position_m, const Eigen::Vector3d& rate_rad_s,
            const Eigen::Vector3d& acceleration_rad_s2, double length_s);
 
@@ -29,7 +28,7 @@ struct UnitSignCheck {
     std::size_t sense = 0;
     double share = 0.0;
   };
-  /// Returns the alternative that best explains the force differences, or no value if no alternative reaches
+  /// Returns the flip or swap of axes that best explains the force differences, or no value if none reaches
   /// kExplainedRatioMin.
   std::optional<Detected> detected() const;
 

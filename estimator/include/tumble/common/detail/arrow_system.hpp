@@ -7,10 +7,8 @@
 
 namespace tumble {
 
-/// ArrowSystem contains the normal equations H d = g of a chain of blocks of `State` unknowns. Each block is coupled to
-/// the next block and to a common border of `Border` unknowns (an arrow matrix). The factorisation is in place: a
-/// Cholesky factorisation from block to block, followed by the Schur complement of the border. The cost is O(N) for N
-/// blocks.
+/// Normal equations H d = g of a chain of blocks of `State` unknowns. Each block is coupled to the next block and to a
+/// common border of `Border` unknowns (arrow matrix). The cost of a solution is O(N) for N blocks.
 ///
 ///     | D0  E0          B0 |
 ///     | E0' D1  E1      B1 |
@@ -24,8 +22,8 @@ struct ArrowSystem {
   using BorderMatrix = Eigen::Matrix<double, Border, Border>;
   using BorderVector = Eigen::Matrix<double, Border, 1>;
 
-  /// Before elimination, a block row contains D, E, B and g; after elimination, L^-1, L^-1 E, L^-1 B and L^-1 g, with D
-  /// = L L'.
+  /// Before elimination, a block row contains D, E, B and g of the matrix above. After elimination, the block row
+  /// contains L^-1, L^-1 E, L^-1 B and L^-1 g, with D = L L'.
   struct Block {
     StateMatrix diagonal = StateMatrix::Zero();
     StateMatrix coupling = StateMatrix::Zero();  ///< coupling of this block (rows) to the next block (columns)
@@ -33,15 +31,13 @@ struct ArrowSystem {
     StateVector gradient = StateVector::Zero();
   };
 
-  /// Before elimination, the border block contains C and its gradient; after elimination, the Schur complements of
-  /// both.
+  /// border block C and its gradient; after elimination, the Schur complements of both
   struct Corner {
     BorderMatrix matrix = BorderMatrix::Zero();
     BorderVector gradient = BorderVector::Zero();
   };
 
-  /// distribution of a block for a known border: covariance, and derivative of the block's mean with respect to the
-  /// border
+  /// distribution of a block for a known border: covariance, and derivative of the mean by the border
   struct Conditional {
     StateMatrix state;
     CrossMatrix jacobian_border;
@@ -53,8 +49,8 @@ struct ArrowSystem {
     CrossMatrix cross;
   };
 
-  /// Eliminates `block`, and adds its Schur complement to the corner and to `next` (null for the last block). A sliding
-  /// window calls eliminate() to marginalise its oldest block. Returns false if the block is not positive definite.
+  /// Eliminates `block`, and adds its Schur complement to the corner and to `next` (null for the last block). Returns
+  /// false if the block is not positive definite.
   static bool eliminate(Block& block, Block* next, Corner& corner);
 
   /// Computes the step of the border and its covariance, after all blocks are eliminated. Returns false if the corner
@@ -65,10 +61,10 @@ struct ArrowSystem {
   /// border.
   static StateVector back_substitute(const Block& block, const StateVector* next_step, const BorderVector& border_step);
 
-  /// `next` is the conditional distribution of the next block (null for the last block).
+  /// `next` is null for the last block.
   static Conditional back_conditional(const Block& block, const Conditional* next);
 
-  /// The marginal covariance of a block includes the uncertainty of the border.
+  /// Returns the covariance of a block, including the uncertainty of the border.
   static Marginal marginal(const Conditional& conditional, const BorderMatrix& border_covariance);
 
  private:
@@ -76,8 +72,8 @@ struct ArrowSystem {
   static void subtract_square(const CrossMatrix& border, BorderMatrix& corner);
 };
 
-// Replaces `a` with L^-1, where a = L L' and L is lower triangular. For small blocks, plain loops over columns are
-// several times faster than Eigen's general triangular solvers.
+// Replaces `a` with the inverse of its Cholesky factor. For small blocks, plain loops over columns are several times
+// faster than Eigen's general triangular solvers.
 template <int State, int Border>
 bool ArrowSystem<State, Border>::invert_factor(StateMatrix& a) {
   StateMatrix L = a;
@@ -105,7 +101,7 @@ bool ArrowSystem<State, Border>::invert_factor(StateMatrix& a) {
   return true;
 }
 
-// Subtracts border' border from the corner, computing only one triangle of the symmetric product.
+// Computes only one triangle of the symmetric product.
 template <int State, int Border>
 void ArrowSystem<State, Border>::subtract_square(const CrossMatrix& border, BorderMatrix& corner) {
   constexpr int kHead = Border > 16 ? 12 : Border > 8 ? 8 : Border - 1, kTail = Border - kHead;

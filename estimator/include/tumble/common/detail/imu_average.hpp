@@ -8,10 +8,8 @@
 
 namespace tumble {
 
-/// Averages IMU readings over windows of one length. After averaging, bandwidth and thresholds of a filter do not
-/// depend on the IMU's sample rate. If one reading fills the window, the average equals the reading bit for bit.
-///
-/// ImuAverage neglects coning and sculling within the window.
+/// Averages IMU readings over time windows of one length, so that a filter does not depend on the sample rate of the
+/// IMU. ImuAverage neglects coning and sculling within the window.
 struct ImuAverage {
   ImuSample mean;                ///< time stamp of the last reading, clip flags of all readings
   double length_s = 0.0;         ///< total duration of the readings
@@ -19,7 +17,7 @@ struct ImuAverage {
   double force_peak_m_s2 = 0.0;
   std::int64_t readings = 0;
 
-  /// The reading covers the time `dt_s` before its time stamp.
+  /// `sample` is a mean over the time `dt_s` before its time stamp.
   void add(const ImuSample& sample, double dt_s) {
     length_s += dt_s;
     if (++readings == 1) {
@@ -35,7 +33,7 @@ struct ImuAverage {
     force_peak_m_s2 = std::max(force_peak_m_s2, sample.specific_force_m_s2.cwiseAbs().maxCoeff());
   }
 
-  /// Returns true if the length is closer to `window_s` than with another reading of length `dt_s`.
+  /// Returns true if another reading of length `dt_s` would make the length less close to `window_s`.
   bool full(double window_s, double dt_s) const { return length_s >= window_s - 0.5 * dt_s; }
 
   bool operator==(const ImuAverage& other) const {

@@ -15,19 +15,18 @@ struct ImuNeighbours {
   bool between() const { return share >= 0.0 && share <= 1.0; }
 };
 
-/// Interpolates the readings of one IMU at the time stamps of another IMU. A time stamp is the end of the sample's
-/// averaging window. The linear interpolation of two readings approximates the mean over a window that ends at the time
-/// stamp. ImuInterpolation neglects different window lengths, and rotation within a window.
+/// Interpolates the readings of one IMU linearly at the time stamps of another IMU. ImuInterpolation neglects different
+/// averaging windows of the two IMUs, and rotation within a window.
 class ImuInterpolation {
  public:
-  /// Constructs from at least two samples with increasing time stamps. The samples must outlive the ImuInterpolation.
+  /// The constructor needs at least two samples with increasing time stamps, which must outlive the object.
   explicit ImuInterpolation(std::span<const ImuSample> samples) : samples_(samples) {}
 
   /// Returns the neighbours of `time_ns`, which must not decrease from call to call. Cost: amortised O(1).
   ImuNeighbours around(TimeNs time_ns);
 
-  /// Returns the interpolated reading, with the clip flags of both neighbours. At the time of a sample, at() returns
-  /// the sample bit for bit.
+  /// Returns the interpolated reading, with the clip flags of both neighbours. At the time of a sample, the result
+  /// equals the sample bit for bit.
   ImuSample at(TimeNs time_ns, const ImuNeighbours& neighbours) const;
 
  private:

@@ -11,22 +11,15 @@
 
 namespace tumble {
 
-/// Rejects single outliers among the readings of an IMU. Outliers result from bus faults; a rejected reading counts as
-/// missing.
-///
-/// An outlier is far above or far below two neighbours that agree with each other, and nothing else explains the jump.
-/// A change of the force explains a jump of the gyro, and a change of the rate explains a jump of the accelerometer. A
-/// reading whose time stamp is later than the next time stamp is also an outlier. The equations of OutlierFilter are
-/// outliers.md (O1) to (O6).
+/// Rejects single outliers among the readings of an IMU, as caused by bus faults. An outlier is far from two neighbours
+/// that agree with each other, without a change of the other sensor (gyro or accelerometer): outliers.md (O1) to (O6).
 ///
 /// The filter delays an unexplained jump by one sample, until the next reading confirms or refutes the jump. All other
-/// readings pass without delay, unchanged. Readings beyond kRateMax_rad_s or kForceMax_m_s2 never pass. If the first
-/// reading is an outlier, the reading passes, but the next two readings refute it (first_is_outlier()). Cost: O(1) per
-/// reading, no allocation. OutlierFilter does not detect two outliers in a row, or an outlier during a hard impact.
+/// readings pass without delay, unchanged. OutlierFilter does not detect two outliers in a row, or an outlier during a
+/// hard impact. Cost: O(1) per reading, no allocation.
 class OutlierFilter {
  public:
-  /// No gyro measures rates above kRateMax_rad_s (57 000 deg/s), and no robot's accelerometer measures forces above
-  /// kForceMax_m_s2 (10 000 g).
+  /// implausible readings of a robot's IMU (57 000 deg/s, 10 000 g), which never pass
   static constexpr double kRateMax_rad_s = 1000.0, kForceMax_m_s2 = 1e5;
   /// maximum reading of a device, as a multiple of the range in its data sheet
   static constexpr double kStatedRangesMax = 2.0;
@@ -48,13 +41,12 @@ class OutlierFilter {
 
   explicit OutlierFilter(const Device& device) : device_(device) {}
 
-  /// Compares the delayed sample with `next`, which must be later than all samples that passed. Returns the delayed
-  /// sample if `next` confirms it. Returns empty if the delayed sample is rejected, or if no sample was delayed. After
-  /// the call, no sample is delayed.
+  /// Returns the delayed sample if `next` confirms the delayed sample; empty if the delayed sample is rejected or
+  /// absent. `next` must be later than all samples that passed. After the call, no sample is delayed.
   std::optional<ImuSample> filter_sample(const ImuSample& next, State& state) const;
 
-  /// Returns true if the first sample of a run is an outlier, because the next samples contradict it. The run should
-  /// then restart with the second sample. Call first_is_outlier() before filter_sample().
+  /// Returns true if the next samples show that the first sample of a run is an outlier. The run should then restart
+  /// with the second sample. Call first_is_outlier() before filter_sample().
   bool first_is_outlier(const ImuSample& next, const State& state) const {
     return state.count == 1 && state.delayed && jumps(*state.delayed, state) && confirms(next, state);
   }
@@ -66,7 +58,7 @@ class OutlierFilter {
   /// Call pass() for each sample that filter_sample() returned or for which must_delay() returned false.
   static void pass(const ImuSample& sample, State& state);
 
-  /// No further reading can confirm the delayed sample, so it is rejected.
+  /// Rejects the delayed sample at the end of a run.
   static void finish(State& state);
 
  private:
@@ -81,8 +73,7 @@ class OutlierFilter {
   Device device_;
 };
 
-/// Finds the inliers of a recording whose samples are finite and in time order. Cost: O(N). Element k of the result is
-/// true if sample k passes.
+/// Element k of the result is true if sample k passes. The samples must be finite and in time order. Cost: O(N).
 std::vector<bool> find_inliers(const OutlierFilter& filter, std::span<const ImuSample> samples);
 
 }  // namespace tumble

@@ -5,9 +5,8 @@
 #include <cstddef>
 
 /// A program and the compiled library must use the same memory layout for Eigen's matrices and the standard library's
-/// containers. The CMake targets of the library ensure equal layouts. A program that changes the layout, for example by
-/// EIGEN_MAX_STATIC_ALIGN_BYTES, EIGEN_DONT_VECTORIZE or _GLIBCXX_DEBUG, does not link. The linker then reports
-/// SameCompilerSettings<...>::linked as missing, and the template arguments show the settings of the program.
+/// containers. A program with another layout, for example through EIGEN_MAX_STATIC_ALIGN_BYTES or _GLIBCXX_DEBUG, does
+/// not link. The linker then reports SameCompilerSettings<...>::linked as missing.
 namespace tumble::detail {
 
 #ifdef _GLIBCXX_DEBUG
@@ -34,7 +33,7 @@ using CompiledHere = SameCompilerSettings<EIGEN_MAX_STATIC_ALIGN_BYTES, EIGEN_MA
 template <>
 const char CompiledHere::linked;  // a declaration; src/common/same_compiler_settings.cpp has the definition
 
-/// A separate reference to `linked` in each source file makes the linker check each source file.
+/// One reference per source file makes the linker check each source file.
 [[gnu::used]] static const char* const kSameCompilerSettings = &CompiledHere::linked;
 
 }  // namespace tumble::detail

@@ -6,13 +6,9 @@
 
 namespace tumble {
 
-// The functions in scalar_update.hpp compute the measurement update of a Kalman filter. The function scalar_update()
-// processes one measured number. To process several numbers with independent noise without a matrix inverse, call
-// scalar_update() for each number. The function vector_update() processes a few numbers together, as published filters
-// do. All functions return the correction of the state of N numbers, and update its covariance P (N x N, kept symmetric
-// to rounding). The cost is O(N^2) per measured number, without allocation for fixed N. P must be positive semidefinite
-// and the noise variance positive (Kalman, J. Basic Eng. 82, 1960). The functions do not use Joseph's form, because P
-// is well conditioned.
+// Measurement updates of a Kalman filter (Kalman, Journal of Basic Engineering 82, 1960). All functions return the
+// correction of the state of N numbers, and update its covariance P (N x N, positive semidefinite). The cost is O(N^2)
+// per measured number, without allocation for fixed N.
 
 /// `row` (N numbers) is the derivative of the measurement with respect to the state, and `innovation` is the
 /// measurement minus its prediction.
@@ -28,7 +24,7 @@ Eigen::Matrix<double, N, 1> scalar_update(const Eigen::MatrixBase<Row>& row, dou
   return PHt * (innovation / s);
 }
 
-/// The measurement is component `index` of the state.
+/// The measurement is component `index` of the state vector.
 template <int N>
 Eigen::Matrix<double, N, 1> component_update(Eigen::Index index, double innovation, double variance,
                                              Eigen::Matrix<double, N, N>& P) {
@@ -38,8 +34,7 @@ Eigen::Matrix<double, N, 1> component_update(Eigen::Index index, double innovati
   return column * (innovation / s);
 }
 
-/// The matrix `H` (M x N) is the derivative of the numbers with respect to the state. The matrix `noise` (M x M) is the
-/// noise covariance, which may have correlations. M is at most 4, because the function inverts an M x M matrix.
+/// `H` (M x N) is the derivative of the measured numbers with respect to the state.
 template <int M, int N>
 Eigen::Matrix<double, N, 1> vector_update(const Eigen::Matrix<double, M, N>& H,
                                           const Eigen::Matrix<double, M, 1>& innovation,

@@ -3,7 +3,6 @@
 
 #include "tumble/common/parameters.hpp"
 
-/// Several `Params` structs describe the accuracy of the lidar's mounting and time offset by these parameters.
 namespace tumble::calibration_fields {
 
 inline constexpr Field kMountSigma_rad{

@@ -9,20 +9,18 @@
 namespace tumble {
 
 /// Standard deviations of the errors of inertial integration over kSpan_s, in addition to the uncertainty in RateState.
-/// The errors of inertial integration grow in proportion to time. Choose larger standard deviations if unsure. Smaller
-/// standard deviations constrain the pose more strongly in a world with few features.
+/// Smaller standard deviations constrain the pose more strongly in a world with few features.
 struct InertialNoiseParams {
   static constexpr double kSpan_s = 0.1;  ///< time between two sweeps of most lidars
   double sigma_m = 0.003;
   double sigma_rad = 0.002;
   double sigma_m_s = 0.01;
-  /// rotation error relative to the rotation angle, due to scale, misalignment, and rate changes within a sample
+  /// rotation error relative to the rotation angle
   double rotation_noise_ratio = 0.001;
-  /// velocity error relative to the integral of the specific force, important at impacts
+  /// velocity error relative to the integral of the specific force
   double force_share = 0.03;
-  /// Random walks of velocity and rate over a gap of the IMU, see mapping.md (R43), (R44). For tumbling rigs and gaps
-  /// of 0.05 to 0.5 s, the true velocity walks are 2.4 to 4.1 m/s per sqrt(s). If the rate is known at both ends of the
-  /// gap, the true rate walks are 3 to 11 rad/s per sqrt(s).
+  /// Random walks of velocity and rate over a gap of the IMU: mapping.md (R43), (R44). For tumbling rigs and gaps of
+  /// 0.05 to 0.5 s, the true random walks are 2.4 to 4.1 m/s and 3 to 11 rad/s per sqrt(s).
   double gap_velocity_walk_m_s_sqrt_s = 3.0;
   double gap_rate_walk_rad_s_sqrt_s = 9.0;
   double rate_sigma_max_rad_s = 5.0;  ///< upper bound of the standard deviation in RateState
@@ -47,20 +45,17 @@ struct InertialNoiseParams {
           {"gap_velocity_walk_m_s_sqrt_s", "m/s/sqrt(s)", 0.0, 1e3, "random walk of the velocity during an IMU gap"});
     visit(p.gap_rate_walk_rad_s_sqrt_s,
           {"gap_rate_walk_rad_s_sqrt_s", "rad/s/sqrt(s)", 0.0, 1e3,
-           "random walk of the rate during an IMU gap, about the line between the rates at both ends"});
+           "random walk of the rate during an IMU gap, about a linear interpolation between the rates at both ends"});
     visit(p.rate_sigma_max_rad_s, {"rate_sigma_max_rad_s", "rad/s", 0.0, 100.0,
-                                   "upper limit of the standard deviations reported in RateState"});
+                                   "upper limit of the standard deviation that the rate estimator reports"});
   }
 };
 
-/// Accelerometer readings are saturated if they are at or above `accel_m_s2` or if the device flags them. The standard
-/// deviation of a saturated force reading is `force_sigma_m_s2`.
+/// Accelerometer readings at or above `accel_m_s2`, or flagged by the device, are saturated.
 ///
 /// If `estimate_deficit` is true, the registration estimates the saturation deficit of the rate on clipped axes, at
-/// SweepTrajectory::kKnots knots per sweep. The saturation deficit changes only clipped samples, in proportion to the
-/// reported uncertainty of the rate. The prior standard deviation of the saturation deficit is the reported
-/// uncertainty, but at least deficit_sigma_min_rad_s, correlated over deficit_time_s. If saturation lasts across the
-/// boundary of two sweeps, the saturation deficit is continuous at the boundary.
+/// SweepTrajectory::kKnots support points per sweep. The prior standard deviation of the saturation deficit is the
+/// reported uncertainty of the rate, but at least deficit_sigma_min_rad_s, correlated over deficit_time_s.
 struct SaturatedImuParams {
   double accel_m_s2 = 1e5;
   double force_sigma_m_s2 = 50.0;
@@ -69,18 +64,19 @@ struct SaturatedImuParams {
   double deficit_sigma_min_rad_s = 1.0;
   double deficit_time_s = 0.3;
   double deficit_carry_max = 3.0;  ///< maximum growth factor of the saturation deficit at a sweep boundary
-  /// standard deviation of the change between adjacent knots, relative to the standard deviation of the saturation
-  /// deficit
+  /// standard deviation of the deficit's change between adjacent support points, relative to the deficit's own
   double knot_sigma_ratio = 0.05;
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.accel_m_s2,
-          {"accel_rail_m_s2", "m/s^2", 1e-9, 1e5, "accelerometer readings from this value on count as saturated"});
-    visit(p.force_sigma_m_s2, {"railed_force_m_s2", "m/s^2", 0.0, 1e4, "standard deviation of a saturated force"});
+    visit(p.accel_m_s2, {"accel_rail_m_s2", "m/s^2", 1e-9, 1e5,
+                         "measuring range of the accelerometer; readings at or above this value count as saturated"});
+    visit(p.force_sigma_m_s2,
+          {"railed_force_m_s2", "m/s^2", 0.0, 1e4, "standard deviation of a saturated accelerometer reading"});
     visit(p.rate_sigma_rad_s,
           {"clipped_sigma_rad_s", "rad/s", 0.0, 100.0,
-           "assumed standard deviation of a clipped axis that the rate method did not recover", FieldRank::basic});
+           "standard deviation of the rate about a clipped axis that the rate estimator did not recover",
+           FieldRank::basic});
     visit(p.estimate_deficit, switch_field("estimate_saturation_deficit",
                                            "1: estimate the saturation deficit of clipped axes in the registration"));
     visit(p.deficit_sigma_min_rad_s,
@@ -91,13 +87,13 @@ struct SaturatedImuParams {
     visit(p.deficit_carry_max, {"deficit_carry_max", "1", 0.0, 1e3,
                                 "maximum growth factor of the saturation deficit from one sweep to the next"});
     visit(p.knot_sigma_ratio, {"knot_sigma_ratio", "1", 1e-6, 1.0,
-                               "standard deviation of the difference between neighbouring knots of the saturation "
-                               "deficit, as a share of the deficit's standard deviation"});
+                               "standard deviation of the difference between neighbouring support points of the "
+                               "saturation deficit, as a share of the deficit's standard deviation"});
   }
 };
 
-/// Where the specific force at the centre of mass is below force_m_s2, the force of free flight replaces the
-/// accelerometer's reading. The ballistic arc also bridges a gap of the IMU that begins in flight.
+/// Below force_m_s2 at the centre of mass, the computed force of free flight replaces the accelerometer's reading. A
+/// gap of the IMU that begins in flight is bridged by the ballistic arc of flight_arc().
 struct FlightParams {
   std::optional<FlyingBody> body;  ///< empty: always use the accelerometer
   double force_m_s2 = 4.0;
@@ -106,7 +102,7 @@ struct FlightParams {
   static void fields(Self& p, Visitor& visit) {
     visit(p.force_m_s2,
           {"flight_force_m_s2", "m/s^2", 0.0, 100.0,
-           "with flight_arc: the body is in flight if the force at the centre of mass is below this value"});
+           "specific force at the centre of mass below which the body is in flight; applies only with flight_arc"});
   }
 };
 

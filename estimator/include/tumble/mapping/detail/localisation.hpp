@@ -9,18 +9,10 @@
 
 namespace tumble {
 
-/// Detects tracking failure from the reports of LidarInertialOdometry for each sweep (docs/maths/mapping.md,
-/// heading "Localisation check"). verdict() reports one of two permanent findings. First, the position's standard
-/// deviation exceeded the matching distance, so that a sweep could match any nearby surface. Second, the registered
-/// poses of two or more sweeps are further from the predicted poses than the covariances allow. A single large
-/// correction may come from saturation, if the rate error is larger than its covariance reports. An IMU or a lidar that
-/// does not meet its data sheet causes several large corrections.
-///
-/// Before the first sweep with surfaces, there is no map, so tracking cannot fail. Localisation does not detect a map
-/// of wrong scale (see SweepScale), or errors of clocks or mounting that the calibration explains.
-///
-/// current_verdict() reports findings about the pose of the newest sweep relative to the map. A finding ends when the
-/// position is certain again, or when the sweeps that contradict their predicted poses are older than kMemory_s.
+/// Detects tracking failure from the reports of LidarInertialOdometry for each sweep (docs/maths/mapping.md, heading
+/// "Localisation check"). Tracking has failed if the standard deviation of the position exceeded the matching distance.
+/// Tracking has also failed if the poses of two or more sweeps contradict their predicted poses. Localisation does not
+/// detect a map of wrong scale (see SweepScale), or errors of clocks or mounting that the calibration explains.
 class Localisation {
  public:
   static constexpr double kMemory_s = 30.0;
@@ -31,11 +23,12 @@ class Localisation {
   /// Sweeps must have a pose and be in time order. Cost: O(1).
   void add(const SweepReport& sweep);
 
-  /// Returns `out_of_range` with the finding and the violated limit, or `ok` without a finding.
+  /// Returns `out_of_range` with the violated limit if tracking has ever failed.
   Status verdict() const;
-  /// Returns `out_of_range` with the current finding and the violated limit, or `ok` without a finding.
+  /// Returns `out_of_range` with the violated limit if the position is uncertain, or if sweeps have contradicted their
+  /// predicted poses within kMemory_s.
   Status current_verdict() const;
-  /// Returns the time of the sweep with which the finding of current_verdict() began.
+  /// Returns the time of the first sweep of the current tracking failure.
   std::optional<TimeNs> lost_since_ns() const { return lost_since_ns_ ? lost_since_ns_ : previous_contradicted_ns_; }
 
  private:

@@ -11,8 +11,7 @@
 
 namespace tumble::mapping {
 
-/// Sweeps at a constant attitude scan identical lines of the world, and therefore share line numbers. After a rotation
-/// of the sensor, the scan lines have new numbers.
+/// Numbers the scan lines of sweeps: sweeps at a constant attitude share line numbers.
 class ScanLines {
  public:
   /// Returns the line number of ring 0 of a sweep with the given spin axis, or VoxelMap::kUnknownScanLine if the device
@@ -27,8 +26,8 @@ class ScanLines {
   std::uint32_t attitude_ = 0;                        // number of attitude changes
 };
 
-/// Returns the points of a map, with normals fitted to nearest neighbours. Cost: O(n). Each normal points towards the
-/// position from which the sensor observed the point.
+/// Returns the points of a map, with normals fitted to nearest neighbours and pointing to the observing sensor. Cost:
+/// O(n).
 std::vector<MapPoint> to_map_points(const VoxelMap& map, std::span<const Eigen::Vector3f> seen_from_W_m, int neighbours,
                                     double match_distance_m);
 

@@ -10,11 +10,9 @@
 
 namespace tumble {
 
-/// Odometer readings describe the motion of the robot within a sweep, measured by wheels, legs, a camera or a radar. An
-/// odometer reading is fused with the prediction from the IMU and earlier sweeps, weighted by their covariances. The
-/// registration of the sweep starts from the fused prediction. Times of odometer readings are in the IMU's clock. The
-/// errors of an odometer reading are assumed independent of all other errors. Wheel slip beyond the stated uncertainty
-/// therefore corrupts the estimate.
+/// Odometer readings describe the motion of the robot within a sweep, measured by wheels, legs, a camera or a radar.
+/// Times of odometer readings are in the IMU's clock. The errors of an odometer reading are assumed independent of all
+/// other errors. Wheel slip beyond the stated uncertainty corrupts the estimate.
 
 struct VelocityReading {
   TimeNs time_ns = 0;
@@ -22,8 +20,7 @@ struct VelocityReading {
   double sigma_m_s = 0.0;                                ///< standard deviation of each axis
 };
 
-/// Motion of the IMU between two times, called initial guess by many registration methods. For poses in a drifting
-/// frame O, the motion is T_OI(from)^-1 T_OI(to).
+/// Motion of the IMU between two times. For poses in a drifting frame O, the motion is T_OI(from)^-1 T_OI(to).
 struct MotionReading {
   TimeNs from_ns = 0;
   TimeNs to_ns = 0;
@@ -39,7 +36,6 @@ using OdometerReading = std::variant<VelocityReading, MotionReading>;
 /// covariance is not positive definite, or a rotation is invalid. Returns `time_order` if a motion does not end after
 /// its start.
 Status check_reading(const OdometerReading& reading);
-/// A velocity reading has equal start and end.
 TimeNs reading_start_ns(const OdometerReading& reading);
 TimeNs reading_end_ns(const OdometerReading& reading);
 

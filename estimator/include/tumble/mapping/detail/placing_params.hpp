@@ -12,15 +12,13 @@ struct MatchingParams {
   double distance_m = 1.0;                ///< maximum distance of matched map points
   std::size_t matches_min = 100;          ///< minimum number of matches; sweeps with fewer are rejected
   std::size_t agreeing_matches_min = 30;  ///< minimum number of matches if the result agrees with the prior
-  /// Maximum number of iterations of a registration. The first eight iterations use all points, and further iterations
-  /// use a thousand points.
+  /// see RegistrationStagesParams
   int iterations_max = 30;
   double correction_max_m = 15.0;   ///< a larger correction of the prior is rejected
   double correction_max_rad = 1.1;  ///< a larger correction of the prior is rejected
-  /// Growth rate of a point's standard deviation since the start of the sweep. Late points therefore have less weight.
+  /// growth rate of a point's standard deviation since the start of the sweep
   double skew_sigma_m_s = 0.25;
-  /// A sweep is `degenerate` if the standard deviation of the pose from the sweep's surfaces alone exceeds
-  /// degenerate_sigma_m in some direction. Attitude is converted to displacement by the root-mean-square lever arm.
+  /// standard deviation of the pose from the sweep's points alone, above which a sweep is `degenerate`
   double degenerate_sigma_m = 0.15;
 
   template <class Self, class Visitor>
@@ -31,30 +29,29 @@ struct MatchingParams {
     visit(p.matches_min, {"matches_min", "1", 0, 1e9, "minimum number of matches for an accepted sweep"});
     visit(p.agreeing_matches_min,
           {"matches_agreeing_min", "1", 1, 1e9,
-           "if a sweep has fewer matches: minimum number of matches with which a sweep that agrees with the prior is "
-           "accepted"});
+           "minimum number of matches of an accepted sweep whose registration agrees with the predicted pose; applies "
+           "below matches_min"});
     visit(p.iterations_max,
           {"iterations_max", "1", 1, 200,
-           "maximum number of iterations of a registration; at most eight iterations use all points"});
-    visit(p.correction_max_m, {"correction_max_m", "m", 0.0, 1e6,
-                               "maximum accepted correction of the prior pose; a larger correction is rejected"});
-    visit(p.correction_max_rad, {"correction_max_rad", "rad", 0.0, 3.15,
-                                 "maximum accepted correction of the prior pose; a larger correction is rejected"});
+           "maximum number of iterations of a registration; at most full_iterations of them use all points"});
+    visit(p.correction_max_m,
+          {"correction_max_m", "m", 0.0, 1e6,
+           "maximum correction of the predicted pose; a registration with a larger correction is rejected"});
+    visit(p.correction_max_rad,
+          {"correction_max_rad", "rad", 0.0, 3.15,
+           "maximum correction of the predicted pose; a registration with a larger correction is rejected"});
     visit(p.skew_sigma_m_s,
           {"skew_sigma_m_s", "m/s", 0.0, 1e3,
            "growth of a point's standard deviation with the time since the start of the sweep; 0: no growth"});
     visit(p.degenerate_sigma_m,
           {"degenerate_sigma_m", "m", 1e-6, 1e3,
-           "a sweep counts as degenerate if the surfaces alone determine its pose with a standard deviation above this "
-           "value"});
+           "standard deviation of the pose from the sweep's points alone, above which the sweep counts as degenerate"});
   }
 };
 
-/// Iterations with all points are followed by iterations with a subsample, and by a coarse stage for starting poses far
-/// from the prior.
+/// Numbers of iterations with all points, with a subsample, and from starting poses far from the prior (coarse stage).
 struct RegistrationStagesParams {
   int full_iterations = 8;  ///< number of iterations with all points, before iterations with a subsample
-  /// The iterations with the subsample decide whether a starting pose converges.
   std::size_t subsample_points = 1000;
   int coarse_iterations = 15;           ///< number of iterations for a starting pose far from the prior
   std::size_t coarse_points = 300;      ///< number of points in the coarse stage
@@ -69,45 +66,52 @@ struct RegistrationStagesParams {
   static void fields(Self& p, Visitor& visit) {
     visit(p.full_iterations, {"full_iterations", "1", 1, 200, "maximum number of iterations with all points"});
     visit(p.subsample_points,
-          {"subsample_points", "1", 1, 1e9, "maximum number of points in the remaining iterations"});
-    visit(p.coarse_iterations, {"coarse_iterations", "1", 1, 200, "coarse start: maximum number of iterations"});
-    visit(p.coarse_points, {"coarse_points", "1", 1, 1e9, "coarse start: maximum number of points"});
-    visit(p.coarse_matches_min, {"coarse_matches_min", "1", 0, 1e9, "coarse start: minimum number of matches"});
+          {"subsample_points", "1", 1, 1e9, "maximum number of points in the iterations after full_iterations"});
+    visit(p.coarse_iterations, {"coarse_iterations", "1", 1, 200,
+                                "coarse registration from a distant starting pose: maximum number of iterations"});
+    visit(p.coarse_points,
+          {"coarse_points", "1", 1, 1e9, "coarse registration from a distant starting pose: maximum number of points"});
+    visit(p.coarse_matches_min, {"coarse_matches_min", "1", 0, 1e9,
+                                 "coarse registration from a distant starting pose: minimum number of matches"});
     visit(p.coarse_kernel_min_m,
-          {"coarse_kernel_min_m", "m", 1e-6, 1e3, "coarse start: minimum width of the robust kernel"});
+          {"coarse_kernel_min_m", "m", 1e-6, 1e3,
+           "coarse registration from a distant starting pose: minimum width of the robust kernel"});
     visit(p.coarse_rematch_m, {"coarse_rematch_m", "m", 0.0, 10.0,
-                               "coarse start: distance that a point moves before its plane is searched again"});
-    visit(p.coarse_step_m,
-          {"coarse_step_m", "m", 1e-12, 1.0, "coarse start: position step below which the registration has converged"});
-    visit(p.coarse_step_rad, {"coarse_step_rad", "rad", 1e-12, 1.0,
-                              "coarse start: rotation step below which the registration has converged"});
+                               "coarse registration from a distant starting pose: distance that a point moves before "
+                               "its plane is searched again"});
+    visit(
+        p.coarse_step_m,
+        {"coarse_step_m", "m", 1e-12, 1.0,
+         "coarse registration from a distant starting pose: position step below which the registration has converged"});
+    visit(
+        p.coarse_step_rad,
+        {"coarse_step_rad", "rad", 1e-12, 1.0,
+         "coarse registration from a distant starting pose: rotation step below which the registration has converged"});
     visit(p.coarse_inlier_ratio_min, {"coarse_inlier_ratio_min", "1", 0.0, 1.0,
-                                      "coarse start: minimum share of matches within three standard deviations"});
+                                      "coarse registration from a distant starting pose: minimum share of matches "
+                                      "within three standard deviations"});
   }
 };
 
 struct TrackingParams {
   /// A sweep with too few matches still extends the map, as `degenerate`, up to these standard deviations of its
-  /// inertial prediction. Such sweeps occur because a lidar at rest scans only rings, which give no planes until the
-  /// lidar rotates. LocalMapParams::sigma_max_m excludes points that are too uncertain because of their range and the
-  /// uncertain attitude.
+  /// inertial prediction.
   double extend_sigma_max_m = 0.1;
   double extend_sigma_max_rad = 0.1;
-  /// Maximum number of consecutive sweeps with points but without registration. After lost_sweeps_max consecutive
-  /// sweeps without registration, inertial prediction continues with the verdict `degenerate`.
+  /// maximum number of consecutive unregistered sweeps; further sweeps are `degenerate`
   int lost_sweeps_max = 30;
   /// Minimum fraction of a sweep's matches within three standard deviations that confirms a relocalisation. The
-  /// expected fraction for normal errors is 0.997. A smaller fraction contradicts the relocalisation.
+  /// expected fraction for normal errors is 0.997.
   double confirm_inlier_ratio = 0.9;
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.extend_sigma_max_m, {"extend_sigma_max_m", "m", 0.0, 1e3,
-                                 "a sweep with too few matches still extends the map if the standard deviation of its "
-                                 "prior position is below this value"});
+                                 "maximum standard deviation of the predicted position with which a sweep with too few "
+                                 "matches still extends the map"});
     visit(p.extend_sigma_max_rad, {"extend_sigma_max_rad", "rad", 0.0, 1e3,
-                                   "a sweep with too few matches still extends the map if the standard deviation of "
-                                   "its prior attitude is below this value"});
+                                   "maximum standard deviation of the predicted attitude with which a sweep with too "
+                                   "few matches still extends the map"});
     visit(p.lost_sweeps_max,
           {"lost_sweeps_max", "1", 1, 1e6,
            "number of consecutive unregistered sweeps after which mapping continues with inertial prediction"});
@@ -117,8 +121,8 @@ struct TrackingParams {
   }
 };
 
-/// Starting poses for a sweep that was not registered from its prior, see docs/maths/mapping.md, heading
-/// "Verdicts and relocalisation".
+/// Starting poses for a sweep that was not registered from its prior, see docs/maths/mapping.md, heading "Verdicts and
+/// relocalisation".
 struct RelocalisationParams {
   static constexpr double kShiftMin_m = 0.3, kRotationMin_rad = 0.1;  ///< closer starting poses converge to one pose
   int deficit_tries_max = 5;       ///< number of larger saturation deficits tried per sweep, on all axes together
@@ -130,19 +134,21 @@ struct RelocalisationParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.deficit_tries_max, {"deficit_tries_max", "1", 0, 12,
-                                "number of larger initial saturation deficits that are tried for one sweep"});
-    visit(p.deficit_try_rad_s,
-          {"deficit_try_rad_s", "rad/s", 1e-3, 1e3,
-           "first increase of the initial saturation deficit; later tries use two, three and five times this value"});
-    visit(p.starts_per_sweep, {"starts_per_sweep", "1", 1, 100,
-                               "number of initial poses per sweep after a tracking failure, including the prior pose"});
+    visit(p.deficit_tries_max,
+          {"deficit_tries_max", "1", 0, 12,
+           "number of larger initial saturation deficits with which one sweep is registered again"});
+    visit(p.deficit_try_rad_s, {"deficit_try_rad_s", "rad/s", 1e-3, 1e3,
+                                "smallest increase of the initial saturation deficit; later attempts use two, three "
+                                "and five times this value"});
+    visit(p.starts_per_sweep,
+          {"starts_per_sweep", "1", 1, 100,
+           "number of starting poses per sweep after a tracking failure, including the predicted pose"});
     visit(p.shift_m, {"shift_m", "m", kShiftMin_m, 100.0,
-                      "maximum position offset of the initial poses from the prior pose in the first round"});
+                      "maximum distance of a starting pose from the predicted pose in the first round"});
     visit(p.rotation_rad, {"rotation_rad", "rad", kRotationMin_rad, 3.15,
-                           "maximum rotation offset of the initial poses from the prior pose in the first round"});
+                           "maximum rotation of a starting pose from the predicted pose in the first round"});
     visit(p.rounds, {"rounds", "1", 1, 100,
-                     "number of rounds of initial poses; each round increases the maximum offsets by the same amount"});
+                     "number of rounds of starting poses; each round adds shift_m and rotation_rad to the offsets"});
   }
 };
 

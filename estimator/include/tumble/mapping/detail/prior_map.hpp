@@ -11,12 +11,11 @@
 
 namespace tumble {
 
-/// PriorMap is the map of an earlier run in its frame M, in which a new run localises the robot. The z axis of M is
-/// vertical, as in every map of this library.
+/// Map of an earlier run in its frame M, in which a new run localises the robot. The z axis of M is vertical.
 struct PriorMap {
   std::vector<MapPoint> points = {};  ///< points with normals, in M; to_map_points() computes normals
-  /// Pose of the IMU in M where the new run starts, if known. Only position and heading are used. If empty, the run may
-  /// start anywhere in the map, and the search covers the whole map.
+  /// Pose of the IMU in M where the new run starts, if known; only position and heading are used. Without T_MI, the run
+  /// may start anywhere in the map.
   std::optional<Eigen::Isometry3d> T_MI = std::nullopt;
   double sigma_m = 0.0;    ///< standard deviation of the position of T_MI per axis; 0: exact
   double sigma_rad = 0.0;  ///< standard deviation of the heading of T_MI; 0: exact
@@ -24,16 +23,15 @@ struct PriorMap {
       true;  ///< true: sweeps extend the map and remove points that they see through; false: the map is constant
 };
 
-/// Returns `non_finite`, or `out_of_range` for a negative standard deviation, an invalid normal, or a position beyond
-/// 50 km. A valid normal is zero or has unit length.
+/// Returns `non_finite`, or `out_of_range` for a negative standard deviation, a normal that is neither zero nor a unit
+/// vector, or a position beyond 50 km.
 Status check_map_points(std::span<const MapPoint> points);
 /// Returns `ok`, an error of check_map_points(), or `too_few` if fewer than 100 points have a normal.
 Status check_prior_map(const PriorMap& map);
 
-/// Returns map points with normals for positions, for example of a PCD or PLY file. Planes are fitted like in
-/// LidarInertialOdometry::map(). At most one point per cube of 0.1 m remains, and positions that are not finite are
-/// dropped. The sign of a normal is arbitrary, and `sigma_m` is the standard deviation of each position. Cost:
-/// O(points).
+/// Converts positions, for example of a PCD or PLY file, to map points with normals. At most one point per cube of 0.1
+/// m remains, and positions that are not finite are dropped. The sign of a normal is arbitrary, and `sigma_m` is the
+/// standard deviation of each position. Cost: O(points).
 std::vector<MapPoint> to_map_points(std::span<const Eigen::Vector3f> positions_M_m, float sigma_m = 0.02f);
 
 }  // namespace tumble

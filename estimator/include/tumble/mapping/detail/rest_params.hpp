@@ -5,9 +5,8 @@
 
 namespace tumble {
 
-/// At rest, the rate differs from the bias and from its mean by at most rate_rad_s (`mapper_rest.hpp`). At rest, the
-/// specific force differs from gravity and from its mean by at most force_m_s2. During the initial rest, the mean rate
-/// becomes the estimate of the gyro's bias.
+/// At rest, the rate differs from the bias and from its mean by at most rate_rad_s. The specific force at rest differs
+/// from gravity and from its mean by at most force_m_s2.
 struct RestBoundsParams {
   double levelling_max_s = 0.5;  ///< maximum duration of the initial rest that determines the tilt
   double rate_rad_s = 0.05;
@@ -16,7 +15,7 @@ struct RestBoundsParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.levelling_max_s, {"rest_s", "s", 1e-9, 60.0,
-                              "maximum part of the initial rest that is used to level the attitude", FieldRank::basic});
+                              "maximum duration of the initial rest that determines the tilt", FieldRank::basic});
     visit(p.rate_rad_s,
           {"rest_rate_rad_s", "rad/s", 1e-6, 10.0,
            "at rest: maximum difference between the rate and the bias, and between the rate and its mean, per axis"});
@@ -26,19 +25,18 @@ struct RestBoundsParams {
   }
 };
 
-/// The accuracy of the initial state limits the corrections by the first sweeps.
 struct OdometryStartParams {
-  /// standard deviation of the initial tilt for the registration: five times that of WorldCovarianceParams, for a start
-  /// in motion
+  /// standard deviation of the initial tilt in the registration; larger than in WorldCovarianceParams, for starts in
+  /// motion
   double level_sigma_rad = 0.01;
   double speed_sigma_m_s = 0.05;  ///< standard deviation of the speed of a robot that seems to be at rest
   double bias_rest_s = 0.1;       ///< minimum duration of a rest that determines the gyro's bias
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.level_sigma_rad,
-          {"level_sigma_rad", "rad", 1e-9, 1.0, "standard deviation of corrections to the levelled tilt"});
-    visit(p.speed_sigma_m_s, {"speed_sigma_m_s", "m/s", 1e-9, 100.0, "maximum speed that counts as rest"});
+    visit(p.level_sigma_rad, {"level_sigma_rad", "rad", 1e-9, 1.0, "standard deviation of the initial tilt"});
+    visit(p.speed_sigma_m_s, {"speed_sigma_m_s", "m/s", 1e-9, 100.0,
+                              "standard deviation of the initial speed of a robot that seems to be at rest"});
     visit(p.bias_rest_s,
           {"bias_rest_s", "s", 0.0, 60.0, "minimum duration of an initial rest that calibrates the gyro bias"});
   }
@@ -47,8 +45,8 @@ struct OdometryStartParams {
 struct StandstillParams {
   double start_sigma_m_s = 0.01;  ///< standard deviation of the velocity during the initial rest
   double sigma_m_s = 0.05;        ///< standard deviation of the velocity while the IMU measures only gravity
-  /// Maximum estimated speed of a robot that counts as stationary while the IMU measures only gravity and no surface
-  /// constrains the pose. The zero velocity prevents slow drift in a world without features.
+  /// Maximum estimated speed at which a robot still counts as stationary, which prevents slow drift in a world without
+  /// features. Applies while the IMU measures only gravity and no surface constrains the pose.
   double creep_max_m_s = 0.5;
   int sweeps_min = 3;         ///< minimum number of consecutive sweeps at rest before creep_max_m_s applies
   double noise_share = 0.02;  ///< ratio of the inertial prediction's noise at rest to its noise in motion
@@ -59,11 +57,12 @@ struct StandstillParams {
           {"start_sigma_m_s", "m/s", 1e-9, 100.0, "standard deviation of the velocity during the initial rest"});
     visit(p.sigma_m_s, {"sigma_m_s", "m/s", 1e-9, 100.0,
                         "standard deviation of the velocity at a later rest, when the IMU measures only gravity"});
-    visit(p.creep_max_m_s,
-          {"creep_max_m_s", "m/s", 0.0, 100.0,
-           "if no surface constrains the pose, an IMU that measures only gravity is at rest below this speed"});
+    visit(
+        p.creep_max_m_s,
+        {"creep_max_m_s", "m/s", 0.0, 100.0,
+         "maximum estimated speed of a robot at rest, if no surface constrains the pose and the IMU measures gravity"});
     visit(p.sweeps_min,
-          {"sweeps_min", "1", 1, 1e6, "number of consecutive sweeps at rest after which the rest is accepted"});
+          {"sweeps_min", "1", 1, 1e6, "minimum number of consecutive sweeps at rest before creep_max_m_s applies"});
     visit(p.noise_share,
           {"noise_share", "1", 1e-9, 1.0,
            "standard deviations of the inertial prediction at rest, as a share of the standard deviations in motion"});

@@ -8,13 +8,12 @@
 
 namespace tumble {
 
-/// Maps the integer coordinates of a cube to a number (hash table with open addressing). Single keys cannot be removed.
+/// Hash table from integer coordinates of a cube to a number; single keys cannot be removed.
 class SpatialHash {
  public:
   static constexpr std::uint32_t kAbsent = 0xffffffffu;
   static constexpr int kLimit = 1 << 20;  ///< coordinates must be in [-kLimit, kLimit)
 
-  /// The coordinates must be in [-kLimit, kLimit).
   static std::uint64_t key(const Eigen::Vector3i& cube) {
     const auto part = [](int v) { return static_cast<std::uint64_t>(v + kLimit) & 0x1fffffu; };
     return part(cube.x()) | (part(cube.y()) << 21) | (part(cube.z()) << 42);
@@ -33,13 +32,12 @@ class SpatialHash {
   /// Inserts a key if the key is new, and returns the stored value. Cost: amortised O(1).
   std::uint32_t insert(std::uint64_t key, std::uint32_t value);
 
-  /// Returns true if the key was new. Cost: amortised O(1).
+  /// Returns true if the key was new.
   bool add(std::uint64_t key);
 
   /// Removes all keys and keeps the memory.
   void clear();
   std::size_t size() const { return size_; }
-  /// Returns the memory in use [bytes].
   std::size_t bytes() const {
     return keys_.capacity() * sizeof(std::uint64_t) + values_.capacity() * sizeof(std::uint32_t);
   }
@@ -48,8 +46,7 @@ class SpatialHash {
   static constexpr std::uint64_t kFree = ~std::uint64_t{0};
 
   std::size_t slot_of(std::uint64_t key) const {
-    // One cache line contains the eight cubes of a 2 x 2 x 2 block, because successive queries are usually close
-    // together. Fibonacci hashing distributes the blocks.
+    // The eight cubes of a 2 x 2 x 2 block share a cache line, because successive queries are usually close together.
     constexpr std::uint64_t kInside = 1 | (std::uint64_t{1} << 21) | (std::uint64_t{1} << 42);
     const std::uint64_t block = key & ~kInside;
     const std::uint64_t hash = (block ^ (block >> 29)) * 0x9e3779b97f4a7c15u;

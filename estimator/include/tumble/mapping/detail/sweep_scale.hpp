@@ -15,31 +15,26 @@
 
 namespace tumble {
 
-/// ratio of displacements between sweeps to the displacements that the IMU measured
+/// ratio of displacements measured by the lidar to displacements measured by the IMU
 struct SweepScale {
   double scale = 1.0;
   double sigma = std::numeric_limits<double>::infinity();
   std::size_t changes = 0;  ///< number of compared velocity changes
 
-  /// Returns whether the scale differs from 1 by more than 2 % and by more than five standard deviations.
+  /// Returns true if the scale differs from 1 by more than 2 % and by more than five standard deviations.
   bool is_inconsistent() const;
-  /// Returns `out_of_range` with the scale and the violated limit if is_inconsistent().
   Status verdict() const;
 };
 
-/// Estimates the scale of the lidar's ranges over the sweeps of a run. The mean velocities of two consecutive spans of
-/// 0.4 s are compared. The difference of the two velocities equals the integrated acceleration, from gravity in flight
-/// and from impacts, for any velocity. A robust regression (Huber, 1964) of the lidar's velocity differences on the
-/// IMU's differences has slope 1. Ranges 10 % too long give a slope of 1.1, reduced by the weight of the IMU in the
-/// mapping. Intervals with a saturated accelerometer or with unconstrained sweeps are skipped. The standard deviation
-/// includes the correlation of overlapping changes (Newey and West, 1987). `gravity_m_s2` is the magnitude of gravity.
-/// Without acceleration, the scale is not observable. The standard deviation includes a constant acceleration error of
-/// 0.05 m/s^2, from bias and tilt, which does not average out over changes in one direction. Cost: O(N).
+/// Estimates the scale of the lidar's ranges over the sweeps of a run, by a robust regression (Huber, 1964) of velocity
+/// changes. The velocity changes from the lidar poses, over two consecutive spans of 0.4 s, are compared with the
+/// integrated acceleration of the IMU. Spans with a saturated accelerometer or with unconstrained sweeps are skipped.
+/// Without acceleration, the scale is not observable. The standard deviation includes the correlation of overlapping
+/// spans (Newey and West, 1987), and an acceleration error of 0.05 m/s^2 from bias and tilt. Cost: O(N).
 SweepScale find_sweep_scale(std::span<const ImuSample> samples, std::span<const SweepReport> sweeps,
                             double gravity_m_s2);
 
 /// Estimates the scale of the lidar's ranges live, from at most 1000 velocity changes of the last minute.
-/// find_sweep_scale() is more accurate, because it uses all poses of each sweep.
 class SweepScaleEstimator {
  public:
   /// change of velocity from one time span to the next
@@ -48,13 +43,13 @@ class SweepScaleEstimator {
     Eigen::Vector3d imu_change_m_s = Eigen::Vector3d::Zero(), sweeps_change_m_s = Eigen::Vector3d::Zero();
   };
 
-  /// The buffer for `samples_max` samples should cover two seconds. If more samples arrive between sweeps, the
-  /// estimator skips the comparison.
+  /// The buffer for `samples_max` samples should cover two seconds; with more samples between two sweeps, the sweep is
+  /// skipped.
   SweepScaleEstimator(double gravity_m_s2, std::size_t samples_max);
 
   /// The samples must be in time order, with flags of saturated axes. No memory is allocated.
   void add(const ImuSample& sample);
-  /// All samples up to the end of the sweep must have been added. Cost: O(changes).
+  /// Call add() for all samples up to the end of the sweep first. Cost: O(changes).
   void add(const SweepReport& sweep);
 
   const SweepScale& scale() const { return scale_; }

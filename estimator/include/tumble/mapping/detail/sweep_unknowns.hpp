@@ -9,11 +9,12 @@
 
 namespace tumble {
 
-/// The order of the unknowns is position, attitude (left perturbation in W) and velocity at the start of the
-/// trajectory, saturation deficit of clipped axes, calibration.
+/// Order of the unknowns: position, attitude (left perturbation in W) and velocity at the start of the trajectory,
+/// saturation deficit of clipped axes, calibration.
 struct SweepUnknowns {
-  static constexpr int kMotionSize = 9;              ///< position, attitude, velocity
-  static constexpr int kDeficitStart = kMotionSize;  ///< first unknown of the saturation deficit, knot after knot
+  static constexpr int kMotionSize = 9;  ///< position, attitude, velocity
+  static constexpr int kDeficitStart =
+      kMotionSize;  ///< first unknown of the saturation deficit, one support point after another
   static constexpr int kCalibrationStart =
       kDeficitStart + SweepTrajectory::kDeficitSize;  ///< first unknown of the calibration
   static constexpr int kUnknowns = kCalibrationStart + SweepCalibration::kErrorCount;
@@ -26,14 +27,13 @@ struct SweepUnknowns {
     SweepCalibration calibration;
     Deficit deficit_rad_s = Deficit::Zero();
 
-    /// The errors have the order of the unknowns.
     void add(const Vector& error);
     /// Returns the errors that transform `other` to this estimate, in the order of the unknowns.
     Vector minus(const Estimate& other) const;
   };
 
-  /// Prior is the prior distribution of the unknowns, from the inertial prediction. A variance of 0 fixes the
-  /// saturation deficit or a calibration value.
+  /// Prior distribution of the unknowns, from the inertial prediction. A variance of 0 fixes the saturation deficit or
+  /// a calibration value.
   struct Prior {
     Estimate mean;
     Matrix covariance = Matrix::Zero();
@@ -41,7 +41,7 @@ struct SweepUnknowns {
     std::optional<MotionState> start;               ///< initial value of the motion; empty: the mean
 
     Prior() = default;
-    /// All unknowns other than the motion are fixed.
+    /// The saturation deficit and the calibration are fixed.
     explicit Prior(const MotionState& state) : mean{state, {}, Deficit::Zero()} {
       covariance.topLeftCorner<kMotionSize, kMotionSize>() = state.covariance;
     }

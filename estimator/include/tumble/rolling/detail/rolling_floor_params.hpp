@@ -3,7 +3,6 @@
 
 #include "tumble/common/parameters.hpp"
 
-/// All parameters have unique names without a group prefix.
 namespace tumble {
 
 struct RollingContactParams {
@@ -15,9 +14,9 @@ struct RollingContactParams {
   double rough_radius_walk_m_sqrts = 1e-4;  ///< random walk of the rolling radius on a rough floor
   double slope_sigma = 0.15;                ///< standard deviation of both components of the slope when a slope begins
   double slope_walk_sqrts = 0.02;
-  /// velocity error due to the uncertain timing and direction of an impact, relative to the impact's velocity change
+  /// velocity error of an impact relative to its velocity change, from uncertain timing and direction
   double impact_sigma_ratio = 0.06;
-  /// mean velocity change per node by impacts that the model does not explain, while the sphere stays on the floor
+  /// mean velocity change between two measurement updates by impacts that the rolling model does not explain
   double unexplained_impact_m_s = 0.03;
   double rest_velocity_sigma_m_s = 2e-3;
   double rest_rate_sigma_rad_s = 3e-3;  ///< standard deviation of a node's mean rate at rest
@@ -28,7 +27,8 @@ struct RollingContactParams {
     visit(p.grip_sigma_m_s, {"grip_sigma_m_s", "m/s", 1e-12, 1e3,
                              "standard deviation of the contact velocity while gripping", FieldRank::basic});
     visit(p.grip_sigma_ratio,
-          {"grip_sigma_ratio", "1", 1e-12, 1e3, "additional standard deviation, as a share of the rolling speed"});
+          {"grip_sigma_ratio", "1", 1e-12, 1e3,
+           "additional standard deviation of the contact velocity while gripping, as a share of the rolling speed"});
     visit(p.vertical_sigma_m_s,
           {"vertical_sigma_m_s", "m/s", 1e-12, 1e3, "standard deviation of the vertical velocity while rolling"});
     visit(p.rough_share,
@@ -37,11 +37,13 @@ struct RollingContactParams {
            FieldRank::basic});
     visit(p.rough_radius_walk_m_sqrts, {"rough_radius_walk_m_sqrts", "m/sqrt(s)", 0.0, 1.0,
                                         "random walk of the effective rolling radius on a rough floor"});
-    visit(p.slope_sigma, {"slope_sigma", "1", 0.0, 1e3, "standard deviation of the sines of a slope at its start"});
-    visit(p.slope_walk_sqrts, {"slope_walk_sqrts", "sqrt(s)", 1e-12, 1e3, "random walk of the sines of a slope"});
+    visit(p.slope_sigma, {"slope_sigma", "1", 0.0, 1e3,
+                          "standard deviation of the floor's inclination (sine of the angle) where a slope begins"});
+    visit(p.slope_walk_sqrts, {"slope_walk_sqrts", "sqrt(s)", 1e-12, 1e3,
+                               "random walk of the floor's inclination (sine of the angle) on a slope"});
     visit(p.impact_sigma_ratio,
           {"impact_sigma_ratio", "1", 0.0, 1e3,
-           "standard deviation of an impact's timing and direction, as a share of the impact's velocity change"});
+           "standard deviation of the velocity after an impact, as a share of the impact's velocity change"});
     visit(p.unexplained_impact_m_s, {"unexplained_impact_m_s", "m/s", 1e-12, 1e3,
                                      "mean velocity change by unexplained impacts between two measurement updates, "
                                      "while the sphere stays on the floor"});
@@ -63,8 +65,8 @@ struct RollingModeParams {
   double incline_begins_per_s = 0.001, incline_ends_per_s = 0.1;  ///< rates of change from and to the level floor
   double rough_begins_per_s = 0.02, rough_ends_per_s = 0.1;
   double event_shortest_s = 0.06;  ///< minimum duration of slip or bump
-  /// An event that increases the horizontal standard deviation of the position by more than this value sets
-  /// RollingEstimate::uncertain.
+  /// threshold of RollingEstimate::uncertain: growth of the horizontal standard deviation of the position in slip or
+  /// bump
   double event_sigma_growth_m = 0.03;
 
   template <class Self, class Visitor>
@@ -91,8 +93,8 @@ struct RollingModeParams {
           {"event_shortest_s", "s", 0.0, 10.0, "minimum duration of a slip or bump", FieldRank::basic});
     visit(p.event_sigma_growth_m,
           {"event_sigma_growth_m", "m", 1e-12, 1e3,
-           "growth of the horizontal standard deviation during an event, above which the event is "
-           "reported as uncertain"});
+           "growth of the horizontal standard deviation of the position during slip or bump, above which the "
+           "position is reported as uncertain"});
   }
 };
 

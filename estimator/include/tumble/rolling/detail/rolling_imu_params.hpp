@@ -3,7 +3,6 @@
 
 #include "tumble/common/parameters.hpp"
 
-/// All parameters have unique names without a group prefix.
 namespace tumble {
 
 /// A prior standard deviation of 0 marks an exact quantity.
@@ -15,8 +14,7 @@ struct RollingPriorParams {
   double accel_scale_sigma = 3.5e-3;  ///< each entry of the scale and misalignment matrix
   double gyro_scale_sigma = 2.5e-3;
   double accel_delay_sigma_s = 3e-3;  ///< delay of the accelerometer relative to the gyro
-  /// Minimum rate of the first sample that indicates a start in motion, with a larger initial uncertainty of attitude
-  /// and velocity.
+  /// minimum rate of the first sample for a start in motion, with uncertain attitude and velocity
   double start_rate_rad_s = 0.1;
 
   template <class Self, class Visitor>
@@ -36,8 +34,8 @@ struct RollingPriorParams {
                                "prior standard deviation of each entry of the gyro's scale and misalignment"});
     visit(p.accel_delay_sigma_s, {"accel_delay_sigma_s", "s", 0.0, 1e3,
                                   "prior standard deviation of the accelerometer's delay relative to the gyro"});
-    visit(p.start_rate_rad_s, {"start_rate_rad_s", "rad/s", 1e-12, 10.0,
-                               "the recording starts in motion if the first rate reading exceeds this value"});
+    visit(p.start_rate_rad_s,
+          {"start_rate_rad_s", "rad/s", 1e-12, 10.0, "minimum rate of the first sample for a start in motion"});
   }
 };
 
@@ -67,13 +65,11 @@ struct RollingImuNoiseParams {
 
 struct RollingRailParams {
   double clipped_rate_sigma_rad_s = 5.0;
-  /// Standard deviation of rates that ImuMerge recovered; 0: no rates are recovered. A rate counts as recovered if it
-  /// is beyond the range and has no clip flag.
+  /// standard deviation of rates beyond the gyro's range that ImuMerge recovered; 0: no recovered rates
   double recovered_rate_sigma_rad_s = 0.0;
   double clipped_force_sigma_m_s2 = 4.0;
-  /// Standard deviation of the force deficit due to saturation shorter than a sample, relative to the force. A short
-  /// impact may saturate the accelerometer within a sample although the mean stays below the range. The full standard
-  /// deviation applies above 0.6 of the range; below 0.3 of the range, the standard deviation is zero.
+  /// Standard deviation of the force deficit due to saturation shorter than a sample, relative to the force. The full
+  /// standard deviation applies above 0.6 of the range, and 0 below 0.3 of the range.
   double subsample_saturation_ratio = 0.25;
 
   template <class Self, class Visitor>
@@ -87,12 +83,11 @@ struct RollingRailParams {
                                        "standard deviation of the force beyond the saturation limit"});
     visit(p.subsample_saturation_ratio,
           {"subsample_saturation_ratio", "1", 0.0, 10.0,
-           "standard deviation of the mean force of an impact within one sample, as a share of this force"});
+           "standard deviation of the force deficit due to saturation shorter than a sample, as a share of the force"});
   }
 };
 
-/// If two readings are further apart than gap_min_duration_s, the force between the readings is unknown. The rate is
-/// interpolated linearly, with the uncertainty of an angular acceleration of gap_acceleration_rad_s2.
+/// Without readings for longer than gap_min_duration_s, the rate is interpolated linearly, and the force is unknown.
 struct RollingGapParams {
   double gap_min_duration_s = 0.06;
   double gap_max_s = 1.0;  ///< a longer gap ends the run
@@ -102,12 +97,12 @@ struct RollingGapParams {
   static void fields(Self& p, Visitor& visit) {
     visit(p.gap_min_duration_s,
           {"gap_min_duration_s", "s", 1e-9, 1.0,
-           "if two readings are farther apart than this, the force between the readings is unknown"});
+           "minimum time between two readings that counts as a gap, in which the force is unknown"});
     visit(p.gap_max_s,
           {"gap_max_s", "s", 1e-9, 1.0, "maximum time between two samples; a longer gap ends the run with an error"});
     visit(p.gap_acceleration_rad_s2,
           {"gap_acceleration_rad_s2", "rad/s^2", 1e-12, 1e4,
-           "standard deviation of the angular acceleration during a gap, about a linear change of rate"});
+           "standard deviation of the angular acceleration during a gap, about the linearly interpolated rate"});
   }
 };
 
