@@ -81,7 +81,7 @@ def middle(values: np.ndarray) -> float:
 def page(runs: Runs, recordings: dict[int, Recording], errors: dict, exact: dict, maps: Scores) -> str:
     clipped = len(errors[RAW, ANY])
     everywhere, one_at_a_time = sorted(recordings), draws_with_one(recordings)
-    headline = table("0.2 or 0.3 s")
+    headline = table("0.2/0.3 s")
     rate_rows(headline, "median rate error", errors, ANY, "−83.4 %")
     map_rows(headline, maps, everywhere)
 
@@ -293,35 +293,33 @@ accelerometer. `tools/reproduce papers --only rig` writes this page from {draws}
 `hill` (seeds {first} to {last}).
 
 {headline}
-- The column *paper* shows numbers from the paper. If a cell of the column *paper* has two numbers, the first
-  belongs to the raw gyro and the second to the published method.
+- In the column *paper*, the first of two numbers is for the raw gyro, and the second for the published method.
 - The column *raw gyro* shows the published mapping method with clipped gyro readings (`rate/raw`, `slam/icp_raw`).
 - The column *published* shows the published method with the constants of the authors' launch files (`rate/saave`,
   `slam/published`).
-- The column *threshold 10.0 rad/s* shows the published method with `{threshold}`. The threshold of 10.45 rad/s in
-  the paper fits a gyro that saturates at 10.5 rad/s. Our simulated gyros have different saturation limits. In
-  {unseen} of our clipped samples, no axis exceeds 10.45 rad/s.
-- The column *ours, whole recording* shows the methods `rate/tumble` and `slam/tumble`. The last column shows the
-  methods `rate/tumble_lag` and `slam/tumble_lag`. The lag of a rate is 0.2 s. A final pose has a lag of 0.3 s: 0.2 s
-  and the next sweep.
+- The published method treats gyro readings above a saturation threshold of 10.45 rad/s as clipped. In {unseen} of our
+  clipped samples, no axis exceeds 10.45 rad/s, because our simulated gyros have different saturation limits. The
+  column *threshold 10.0 rad/s* shows the published method with `{threshold}`.
+- The column *ours, whole recording* shows the methods `rate/tumble` and `slam/tumble`. The last column shows
+  `rate/tumble_lag` with a lag of 0.2 s, and `slam/tumble_lag` with a lag of 0.3 s.
 - The gyro clips in {clipping} simulated runs, in {clipped} samples. The highest angular speed is {top_speed} rad/s
   (median over the runs: {speed} rad/s; paper: up to 18.6 rad/s). The highest acceleration is {top_force} m/s² (median
   over the runs: {force} m/s²; paper: up to 157.8 m/s²).
 - The median rate error covers only clipped samples. The end error is the error of the motion from the sixth
   registered sweep to the last sweep, as in the paper.
-- The map overlap is the share of map points within 0.25 m of the reference. A map fails if its overlap is below 85
-  %, as in the paper.
-- A failed run counts as the largest error, an overlap of 0 and a failed map. The paper reports rotation errors
-  above 90° as 90°. Our rotation errors reach 180°.
+- The map overlap is the share of map points within 0.25 m of the true surface. A map fails if its overlap is below
+  85 %, as in the paper.
+- In medians and means, a failed run counts with the largest error and a map overlap of 0. The paper limits rotation
+  errors to 90°, but our rotation errors reach 180°.
 
 ## What is reproduced
 
-- The published rate method reduces the rate error nearly as much as in the paper under three conditions: one
-  sensing element is clipped, the centre of mass is exact, and the threshold is 10.0 rad/s.
+- With an exact centre of mass, one clipped gyro axis and a saturation threshold of 10.0 rad/s, the published rate
+  method reduces the rate error nearly as much as in the paper.
 - The published mapping method reduces the median localisation errors at least as much as in the paper. On the
   simulated runs most similar to the paper, the published method also raises the map overlap as in the paper.
-- With the published recovery, some mapping failures remain in our simulation. Some simulated motions are faster
-  than the motions of the paper.
+- Mapping with the published rate recovery sometimes fails in our simulation, whose fastest motions exceed the motions
+  of the paper.
 
 ## What differs from the paper
 
@@ -343,15 +341,14 @@ accelerometer. `tools/reproduce papers --only rig` writes this page from {draws}
 
 ![rate through a tumble](rig_rate.png)
 
-This figure shows the rate in the simulated run with the most collisions while the gyro clips. Grey areas mark
-contact with the ground.
+The figure shows the simulated run with the most collisions while the gyro clips; grey areas mark ground contact.
 
 ## Rate error with and without recovery
 
 {rates}
-The table shows the median rate error by the number of clipped sensing elements of the gyro. The centre of mass is
-either exact, or inexact by up to 20 mm. One element is clipped in {one} of the clipped samples, and two or three
-elements in {more}. The published method corrects only one axis.
+The table shows the median rate error for samples with one clipped sensing element of the gyro ({one} of the clipped
+samples), and with two or three ({more}). In the rows *inexact*, the assumed centre of mass has an error of up to 20 mm.
+The published method corrects only one axis.
 
 ![distribution of the rate error](rig_rate_errors.png)
 
@@ -361,22 +358,22 @@ elements in {more}. The published method corrects only one axis.
 
 The figure of localisation errors shows a failed run as an error of 10 m and 180°.
 
-The following table covers only the {alike_draws} of {draws} simulated runs that are most similar to the paper. In
-each of the {alike_draws} runs, at most 2 % of the clipped samples have two or three clipped sensing elements.
+The next table covers only the {alike_draws} of {draws} simulated runs that are most similar to the paper: at most 2 %
+of their clipped samples have two or three clipped sensing elements.
 
 {alike}
 ## Map outliers
 
 ![maps coloured by error](rig_maps.png)
 
-The figure shows three maps of seed {worst}: from the raw gyro, the published method, and our method with the whole
-recording. The colour of a map point shows its distance to the true surface.
+The figure shows maps of seed {worst} from the raw gyro, the published method, and our method with the whole recording.
+The colour of a map point shows its distance to the true surface.
 
 ## Angular speed against acceleration
 
 ![angular speed against acceleration](rig_density.png)
 
-According to the paper, other data sets reach at most 4.7 rad/s and 30.7 m/s². A rectangle in the figure marks
-these highest values of other data sets. Two outlines in the figure show the highest angular speed of public data
-sets in steps of 5 m/s²: BROAD (Laidig et al., Data 2021, CC BY 4.0) and AirbrakesV2 (MIT).
+In the figure, a rectangle marks the highest values of other data sets according to the paper: 4.7 rad/s and 30.7 m/s².
+Two outlines show the highest angular speeds, in steps of 5 m/s², of the public data sets BROAD (Laidig et al., Data
+2021, CC BY 4.0) and AirbrakesV2 (MIT).
 """

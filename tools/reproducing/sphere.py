@@ -317,12 +317,12 @@ authors.
 
 ## What is reproduced
 
-- In the paper and in our simulation, the attitude from Madgwick's filter jumps at standstill. The attitude steps
-  of the complementary filter are more than ten times smaller than the steps of Madgwick's filter.
-- At the pace of the paper (scenario `slow_roll`), Autogain and Madgwick's filter have similar errors. The attitude
-  error of Autogain changes more slowly than the error of Madgwick's filter.
-- In the faster scenario `roll`, Autogain has nearly the errors of Madgwick's filter. Above 2.1 rad/s, Autogain
-  corrects the attitude only with the step of Madgwick's filter.
+- At standstill, the attitude of Madgwick's filter jumps by more than ten times the attitude steps of the complementary
+  filter, in the paper and in our simulation.
+- At the pace of the paper (scenario `slow_roll`), Autogain and Madgwick's filter have similar attitude errors, but the
+  attitude error of Autogain changes more slowly.
+- In the faster scenario `roll`, Autogain has nearly the errors of Madgwick's filter, because Autogain applies only
+  Madgwick's correction above 2.1 rad/s.
 
 ## What differs from the paper
 
@@ -340,41 +340,38 @@ authors.
 ## Jitter at standstill: Madgwick against complementary
 
 {jitter}
-A step is the rotation of the estimated attitude between two successive samples (figure 2 of the paper). A step of
-Madgwick's filter is at most twice the gain times the sample time. The largest step of Madgwick's filter is 0.092°
-at our sample time of 4 ms, and 0.229° at 10 ms. Successive attitude steps of Madgwick's filter have a correlation
-of {lag1} in our simulation, and −0.83 in the paper's data. With a correlation near −1, the filter alternates
-between two attitudes.
+An attitude step is the rotation of the estimated attitude between two successive samples (figure 2 of the paper). An
+attitude step of Madgwick's filter is at most twice the gain times the sample time: 0.092° at our sample time of 4 ms,
+and 0.229° at 10 ms. Successive attitude steps of Madgwick's filter have a correlation of {lag1} in our simulation, and
+−0.83 in the paper's data. A correlation near −1 means that Madgwick's filter alternates between two attitudes.
 
 ![steps at standstill](sphere_jitter.png)
 
 ## Autogain against Madgwick: distance to the reference and its derivative
 
-The distance is the angle between estimated and true attitude (figures 5 and 6 of the paper). In the table of
-distances, a step is the change of the distance between samples at 120 Hz. The second difference is the change
-between successive steps. Each cell is a median over the simulated runs. The mean angular rate is {slow} rad/s in
-`slow_roll`, {fast} rad/s in `roll`, and 0.56 rad/s in a log of the paper's authors. The paper's data for the total
-variation cover 20.2 s and include noise of the optical tracker.
+The *distance* is the angle between estimated and true attitude (figures 5 and 6 of the paper). A *step* is the change
+of this angle between samples at 120 Hz, and the *second difference* is the change between successive steps. Each cell
+is a median over the simulated runs. The mean angular rate is {slow} rad/s in `slow_roll`, {fast} rad/s in `roll`, and
+0.56 rad/s in a log of the paper's authors. The total variation in the paper includes noise of the optical tracker.
 
 {distance}
 ![distance to the truth](sphere_distance.png)
 
 The figure of attitude distances shows the first simulated run of the scenario `slow_roll`.
 
-## The L of 1 m × 1 m with slip and with slide
+## The L-shaped path of 1 m × 1 m with slip and with slide
 
 {ways}
-- If a cell of the column *paper* has two lengths, the first is from rotation alone and the second from fusion.
-  Single values in the column *paper* are from fusion.
-- The rows `slip_l` reproduce figure 7 of the paper, and the rows `slide_l` reproduce figure 8. The medians of the
-  true leg lengths are {true_legs}.
+- In the column *paper*, the first of two lengths comes from rotation alone and the second from the published fusion;
+  single values come from the published fusion.
+- The rows `slip_l` reproduce figure 7 of the paper, and the rows `slide_l` reproduce figure 8. The medians
+  of the true lengths of first and second leg are {true_legs}.
 - On slippery patches of the scenario `slip_l`, the sphere spins 1.5 to 2.8 times faster than during rolling
   without slip. On slippery patches of the scenario `slide_l`, a hand slows the rotation to at most 0.7 times the
   rate of rolling without slip.
-- The column *published fusion* uses the radius of the sphere, 0.145 m. The column *published fusion, radius 0.29
-  m* uses the diameter in place of the radius, as the authors' code does. While the velocity from the accelerometer
-  is near zero, the published fusion halves the rolling velocity. The doubled radius partly cancels the halved
-  velocity, and gives nearly the leg lengths of the paper.
+- The column *published fusion* uses the sphere's radius of 0.145 m. The column *published fusion, radius 0.29 m* uses
+  the diameter as radius, as the authors' code does. While the velocity from the accelerometer is near zero, the
+  published fusion halves the rolling velocity, and the doubled radius partly cancels this error.
 
 ![paths with slip](sphere_slip.png)
 
@@ -383,15 +380,13 @@ The figure of attitude distances shows the first simulated run of the scenario `
 ![errors of the legs](sphere_legs.png)
 
 The figures of paths show three simulated runs of `slip_l` and of `slide_l` from above. The figure of leg errors
-also shows the scenario `slip`. In the scenario `slip`, the sphere rolls 1 m in 2 to 5 s. The sphere of the paper
-needs 5 to 9 s.
+also shows the scenario `slip`, in which the sphere rolls 1 m in 2 to 5 s. The paper's sphere rolls 1 m in 5 to 9 s.
 
 ## The map of a room
 
 {rooms}
-The table counts map points more than 0.1 m below the floor. The table covers {rooms_draws} simulated runs of the
-scenario `roll` in a furnished room. The sphere of the paper rolls 4 m in 5 s. The figure shows the map of seed
-{map_seed} from the side.
+The table counts map points more than 0.1 m below the floor, in {rooms_draws} simulated runs of the scenario `roll` in
+a furnished room. The figure shows the map of seed {map_seed} from the side.
 
 ![the map from the side](sphere_map.png)
 """
