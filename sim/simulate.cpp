@@ -35,8 +35,8 @@ Eigen::Isometry3d site_pose(const engine::World& world, const SensorSpec& sensor
   return T_BX;
 }
 
-/// Returns the sensor calibration that an estimator receives: the mounting in the design frame plus the calibration
-/// error. The origin of the design frame is the nominal centre of mass (for a sphere the geometric centre).
+/// Sensor calibration that an estimator receives: the mounting in the design frame plus the calibration error. The
+/// origin of the design frame is the nominal centre of mass (for a sphere the geometric centre).
 Eigen::Isometry3d given_pose(const engine::World& world, const SensorSpec& sensor, const Eigen::Isometry3d& T_BX) {
   const Values& error = sensor.mount_error;
   Eigen::Isometry3d given = T_BX;

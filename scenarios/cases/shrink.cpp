@@ -133,7 +133,7 @@ class Shrinking {
         fails = false;
         outcome.message = one_line(other);
       }
-    } catch (const std::exception& error) {  // the simpler run is invalid, so it does not show the failure
+    } catch (const std::exception& error) {  // an invalid run shows no failure
       outcome.status = OutcomeStatus::rejected;
       outcome.message = one_line(error.what());
     }

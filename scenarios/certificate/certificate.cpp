@@ -32,7 +32,7 @@ std::vector<CertificateEntry> measure_row(const CertificateRow& row, const Certi
     throw;
   } catch (const sim::InvalidSituation&) {
     throw;
-  } catch (const std::exception& error) {  // a failing simulation is a valid result of a measurement
+  } catch (const std::exception& error) {  // a failed simulation is a result
     reason = error.what();
   }
   return {{row.name, "", row.doc, "1", std::nan(""), 0.0, 0.0, reason}};

@@ -10,7 +10,7 @@
 
 namespace tumble::scenarios {
 
-/// Each error is a BadInput with file, member and value. Both constructor arguments must outlive JsonMembers.
+/// JsonMembers reports each error as BadInput with file, member and value.
 class JsonMembers {
  public:
   JsonMembers(const std::filesystem::path& path, const nlohmann::json& object) : path_(path), object_(object) {}

@@ -67,7 +67,6 @@ std::string ends_of(const std::filesystem::path& path, std::size_t most) {
   return text;
 }
 
-/// The start of a long program output usually contains the cause of an error.
 std::string words_of(const std::string& transcript) {
   std::string text = transcript;
   if (text.size() > 2 * kWords) text = text.substr(0, kWords) + " ... " + text.substr(text.size() - kWords);

@@ -22,7 +22,6 @@ std::optional<std::int64_t> parse_time_ns(std::string_view text, int decimals);
 /// ("2011-09-26 13:02:25.964389445").
 std::optional<std::int64_t> parse_stamp_ns(std::string_view text);
 
-/// Appends the shortest text that parses to the same number.
 template <class Number>
 void append_number(std::string& text, Number value) {
   std::array<char, 32> digits;
@@ -36,7 +35,6 @@ inline std::string rounded(double value) {
   return text.data();
 }
 
-/// Appends the time exactly, as seconds with nine decimals.
 inline void append_seconds(std::string& text, std::int64_t time_ns) {
   const std::uint64_t size =
       time_ns < 0 ? 0 - static_cast<std::uint64_t>(time_ns) : static_cast<std::uint64_t>(time_ns);

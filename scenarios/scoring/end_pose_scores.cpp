@@ -14,12 +14,12 @@ namespace tumble::scenarios {
 
 namespace {
 
-// Some methods drop a sweep that the primary IMU covers partly, and others shorten it, so the scores end earlier.
+// The primary IMU may cover the last sweep partly; some methods drop this sweep and others shorten it, so the scores
+// exclude it.
 std::int64_t last_sweep_before_ns(const sim::Sensors& sensors) {
   constexpr std::int64_t kAll = std::numeric_limits<std::int64_t>::max();
   if (sensors.lidars.empty() || sensors.imus.empty() || sensors.imus.front().time_ns.empty()) return kAll;
   const sim::LidarRecord& lidar = sensors.lidars.front();
-  // If the lidar points have no individual times, the sweep has zero length.
   const std::int64_t length_ns = lidar.point_times == sim::PointTimes::measured ? lidar.sweep_period_ns : 0;
   const std::int64_t covered_ns = sensors.imus.front().time_ns.back() - length_ns;
   const auto after = std::upper_bound(lidar.sweep_start_ns.begin(), lidar.sweep_start_ns.end(), covered_ns);
@@ -93,8 +93,8 @@ bool rotation_error_end(const ScoredEstimate& scored, double& value) {
   return true;
 }
 
-// Computes the normalised squared error of the pose at the last sweep, after alignment at the first pose; its mean is 1
-// if the covariance is consistent.
+// Squared error of the last pose over its covariance, after alignment at the first pose; the mean is 1 if the
+// covariance is consistent.
 bool pose_nees(const ScoredEstimate& scored, double& value) {
   if (scored.estimate().sweeps.empty() || scored.estimate().poses.empty()) return false;
   const auto* last_sweep = last_covered(scored);

@@ -18,7 +18,6 @@ struct ScoringInput {
 };
 
 /// ScoredEstimate refers to an estimate and its recording, and caches results that several metrics share.
-/// ScoredEstimate is not thread-safe.
 class ScoredEstimate {
  public:
   ScoredEstimate(const Estimate& estimate, const ScoringInput& input);

@@ -17,7 +17,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr double kTail = 0.025;  // probability of each tail of a 95 % interval
+constexpr double kTail = 0.025;  // tail of a 95 % interval
 
 std::vector<double> numbers_of(std::span<const double> values) {
   std::vector<double> numbers;

@@ -217,7 +217,7 @@ class Comparing {
   const ComparisonOptions& options_;
   Comparison out_;
   std::vector<std::vector<double>> differences_;  ///< one list per row of the metric table
-  std::vector<double> tends_;                     ///< 1: method tends to be worse, -1: better, 0: metric not ranked
+  std::vector<double> tends_;                     ///< 1: worse, -1: better, 0: unranked
   std::map<std::size_t, MedianBootstrap> bootstraps_;
 };
 

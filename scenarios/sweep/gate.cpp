@@ -50,10 +50,9 @@ double badness(const MetricInfo& info, double value) {
 
 struct GatePair {
   std::uint64_t seed = 0;
-  double before = 0.0, now = 0.0;  ///< infinite (worst) if the run was not ok
+  double before = 0.0, now = 0.0;  ///< infinite if not ok
 };
 
-/// `lost` contains the seeds of simulated runs that are ok in both results but have no new value.
 struct GatePairs {
   std::vector<GatePair> pairs;
   std::vector<std::uint64_t> lost;
@@ -101,8 +100,8 @@ void hold_worst_draw(const MetricInfo& info, const std::vector<GatePair>& pairs,
                              three_digits(now.now), now.seed, three_digits(before.before));
 }
 
-/// In a gate, each metric counts as one statistical test: for a two-sided metric, the p-value is twice the smaller
-/// one-sided p-value.
+/// For a two-sided metric, the p-value is twice the smaller one-sided p-value, so that each metric counts as one
+/// statistical test.
 void hold_middle(const std::vector<GatePair>& pairs, const MetricInfo& info, const GatePolicy& policy,
                  std::size_t tests, GateResult& result) {
   result.draws = pairs.size();

@@ -19,7 +19,7 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr std::array kKinds = {Kind::rate, Kind::attitude, Kind::position, Kind::slam};
-constexpr std::size_t kKeyCells = 4;  // cells of the key of a row: scenario, kind, method, metric
+constexpr std::size_t kKeyCells = 4;  // scenario, kind, method, metric
 constexpr const char* kStatusRow = "status";
 
 std::string number_text(double value) {

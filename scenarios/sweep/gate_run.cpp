@@ -12,7 +12,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr std::uint64_t kDrawsMax = 1000;  // limit on runs: the exact tests take cubic time
+constexpr std::uint64_t kDrawsMax = 1000;  // the exact tests take cubic time
 
 MethodRun& method_run(const Outcome& outcome, GateRun& run) {
   for (MethodRun& each : run.methods) {

@@ -24,10 +24,10 @@ bool is_place_note(const std::string& key);
 
 /// Returns the command that repeats a run: `tumble run SCENARIO --seed N --method KIND/NAME`, with `--vary KEY=VALUE`
 /// for a point of a curve. For a recording, the command is `tumble estimate FILE.h5 --method KIND/NAME -o NAME`. Words
-/// are quoted for a POSIX shell; placeholders in capitals replace missing information.
+/// of the command are quoted for a POSIX shell; placeholders in capitals replace missing information.
 std::string command_again(const RunKey& run, const std::map<std::string, std::string>& notes);
 
-/// Parses a point of a curve, for example "world.rock_count=10" or "a.x+b.y=0.5". Throws BadInput for another form.
+/// Parses a point of a curve, for example "world.rock_count=10" or "a.x+b.y=0.5".
 Setting setting_from(const std::string& text);
 
 std::string to_text(const Setting& setting);

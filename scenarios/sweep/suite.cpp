@@ -38,7 +38,7 @@ void read_seeds(const YamlNode& node, Suite& suite) {
 
 std::vector<std::string> keys_of(const std::string& text, const YamlNode& node) {
   std::vector<std::string> keys;
-  std::stringstream stream(text + "+");  // a trailing "+" gives an empty key, which is rejected later
+  std::stringstream stream(text + "+");  // a trailing "+" gives an empty key
   for (std::string key; std::getline(stream, key, '+');) {
     std::erase(key, ' ');
     if (key.empty() || std::find(keys.begin(), keys.end(), key) != keys.end()) {

@@ -20,7 +20,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr char kBetween = '\t';  // separates an input's name from its outcome; names contain no tab
+constexpr char kBetween = '\t';  // names contain no tab
 
 void report_rows(const DataRoot& data, const Scenario& scenario, std::uint64_t seed, const Method& method,
                  const SuiteTriageOptions& options, int fd) {

@@ -52,7 +52,6 @@ void note_descriptions(Results& results, const Suite& suite) {
   }
 }
 
-/// Throws BadInput if the results contain another version of an external method.
 void claim_methods(Results& results, std::span<const MethodPointer> methods) {
   for (const MethodPointer& method : methods) {
     if (method->info.version.empty()) continue;
@@ -127,7 +126,6 @@ class Sweep {
       }
       report();
     }
-    // Messages that a worker sent before it was stopped are stored too.
     for (DrawWorker& worker : workers_) {
       const bool busy = worker.is_busy();
       hear(worker);
@@ -166,7 +164,7 @@ class Sweep {
     } catch (const std::system_error& error) {
       if (workers_.empty())
         throw BadInput(fmt::format("cannot start a worker process for simulated runs: {}", error.what()));
-      return false;  // retry after another process has ended
+      return false;  // retry after a process has ended
     }
     return workers_.back().give(task, deadline_s);
   }
@@ -234,7 +232,7 @@ class Sweep {
     if (outcome.status != OutcomeStatus::ok) ++progress_.failures[outcome.status];
   }
 
-  /// Repeats runs whose kept files are missing, and removes runs that the rule does not select.
+  /// Repeats runs whose kept files are missing, and removes kept runs that are no longer selected.
   void update_kept() {
     updating_kept_ = true;
     const std::set<DrawName> wanted = draws_to_keep(results_, options_.keep);
@@ -299,7 +297,7 @@ class Sweep {
   std::list<DrawWorker> workers_;
   SweepProgress progress_;
   std::uint64_t done_before_ = 0;
-  bool updating_kept_ = false;  ///< runs are repeated only to write their files
+  bool updating_kept_ = false;  ///< only write files
 };
 
 }  // namespace

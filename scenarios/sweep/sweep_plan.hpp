@@ -58,7 +58,6 @@ class SweepPlan {
     bool past_seeds = false;
   };
 
-  /// A suite without a list of runs contains all scenarios and seeds.
   bool is_wanted() const;
   void step();
   void add_missing(const std::vector<MethodPointer>& methods, const std::vector<Outcome>& held, const Setting& setting,

@@ -85,7 +85,7 @@ const AllanPoint& nearest_point(std::span<const AllanPoint> curve, double tau_s)
 }
 
 double degrees_of_freedom(const AllanPoint& point, AllanNoise noise) {
-  const double n = static_cast<double>(point.samples) + 1.0;  // the table of the source counts points of the integral
+  const double n = static_cast<double>(point.samples) + 1.0;  // NIST table counts integral points
   const double m = static_cast<double>(point.cluster);
   double degrees = 0.0;
   switch (noise) {

@@ -30,7 +30,7 @@ struct SweepPoints {
 /// All member functions are const, so several threads may cast sweeps.
 class SweepCaster {
  public:
-  /// The construction takes about 0.07 s for a height field of 400 x 400 cells. Throws InvalidSituation.
+  /// The construction takes about 0.07 s for a height field of 400 x 400 cells.
   SweepCaster(const engine::World& world, const SensorSpec& sensor, const Eigen::Isometry3d& T_BL,
               const MotionTrack& motion, std::uint64_t seed);
 

@@ -24,7 +24,7 @@ class TrackCursor {
   struct Interval {
     std::int64_t start_ns = 0, end_ns = 0;
     double per_ns = 0.0, per_s = 0.0;
-    double angle2 = 0.0;  ///< square of the angle over the whole interval
+    double angle2 = 0.0;  ///< over the whole interval
     Eigen::Vector3d step_m = Eigen::Vector3d::Zero();
     Pose34 start = Pose34::Zero(), turned = Pose34::Zero(), rotated_twice = Pose34::Zero();
 

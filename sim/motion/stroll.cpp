@@ -61,7 +61,7 @@ class Stroll : public Motion {
 
  private:
   double phase_rad(double walked_s) const {
-    const auto begun_s = [this](double t_s) {  // integral of `eased` up to a time within the first `ease_s`
+    const auto begun_s = [this](double t_s) {  // integral of `eased`
       const double u = std::clamp(t_s / ease_s_, 0.0, 1.0);
       return ease_s_ * u * u * u * u * (2.5 + u * (-3.0 + u));
     };
@@ -96,7 +96,7 @@ class Stroll : public Motion {
   double half_length_m_, half_width_m_, phase_rate_rad_s_, ease_s_, walk_s_;
   HoldingHand hand_;
   Eigen::Matrix3d inertia_B_kg_m2_;
-  std::vector<Tremor> rotations_, positions_;  ///< rotations about z, y and x; displacements along x, y and z
+  std::vector<Tremor> rotations_, positions_;  ///< z, y, x; and x, y, z
 };
 
 std::unique_ptr<Motion> make_stroll(const Values& values, const engine::World& world) {

@@ -52,8 +52,8 @@ std::vector<Ball> content(const View& view, double robot_radius_m) {
 }  // namespace
 
 Framing frame(const View& view, double robot_radius_m, double fovy_rad) {
-  constexpr double kMargin = 0.82;     // usable fraction of the picture's half width and height
-  constexpr double kSmallest_m = 1.2;  // minimum size, so that the surroundings stay visible
+  constexpr double kMargin = 0.82;     // of half width and height
+  constexpr double kSmallest_m = 1.2;  // the surroundings stay visible
   constexpr double kOverview_m = 25.0;
   const std::vector<Ball> balls = content(view, robot_radius_m);
 

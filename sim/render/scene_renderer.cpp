@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kRadPerDegree = 0.017453292519943295;
 constexpr int kLargestSide = 4096;
-constexpr int kOversampling = 2;  // renders at twice the size and averages, for smooth edges without multisampling
+constexpr int kOversampling = 2;  // averaged, for smooth edges
 
 struct ContextDeleter {
   void operator()(OSMesaContext context) const { osmesa().destroy_context(context); }

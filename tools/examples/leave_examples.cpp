@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kPollMs = 200;
-/// Time limit for simulation and rendering, in addition to the methods, in time limits of one method
+/// Time limit for simulation and rendering, in multiples of the time limit of one method
 constexpr double kOtherTimeouts = 3.0;
 constexpr const char* kTypical = "The simulated run with the median score of its scenario";
 constexpr const char* kFailed = "The simulated run on which most methods failed";

@@ -21,10 +21,10 @@ namespace {
 
 using Eigen::Isometry3d;
 
-constexpr std::int64_t kStep_ns = 2'000'000;              ///< error at 30 m: at most 1 cm, up to 600 rad/s^2
-constexpr std::size_t kTracksShare = 2, kStripShare = 8;  ///< at most 1/2 of the bytes for tracks, 1/8 for the strip
+constexpr std::int64_t kStep_ns = 2'000'000;              ///< error at 30 m: 1 cm
+constexpr std::size_t kTracksShare = 2, kStripShare = 8;  ///< limits: 1/2 and 1/8
 constexpr std::size_t kPoseBytes = 20, kSampleBytes = 11, kRateBytes = 6, kPointBytes = 10;
-constexpr float kAround_m = 2.5f;  ///< within this distance of the path, the ground has full resolution
+constexpr float kAround_m = 2.5f;  ///< full ground resolution near the path
 
 void require_parallel(const sim::Sensors& sensors) {
   for (const sim::LidarRecord& lidar : sensors.lidars) {

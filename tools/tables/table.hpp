@@ -19,8 +19,8 @@ class Table {
   std::string text() const;
   /// The cells of a table are escaped, so that their content is not interpreted as markup.
   std::string markdown() const;  ///< a GitHub Markdown table
-  std::string csv() const;       ///< RFC 4180; the title is a comment line, "# title"
-  std::string tex() const;       ///< a LaTeX `tabular` with the rules of `booktabs`
+  std::string csv() const;       ///< RFC 4180; comment line "# title"
+  std::string tex() const;       ///< `tabular` with `booktabs`
 
  private:
   std::string title_;

@@ -45,7 +45,6 @@ std::uint64_t seed_of(const scenarios::Scenario& scenario, const std::string& te
 std::function<void(const std::string&)> a_scenario(const Session& session);
 std::function<void(const std::string&)> a_suite(const Session& session);
 
-/// The check for a valid recording runs before CLI11 reports missing options.
 void a_recording(const std::string& file);
 
 int available_processors();

@@ -9,7 +9,6 @@
 
 namespace tumble::tools {
 
-/// Throws BadInput if the method does not exist, or cannot process this recording without the truth.
 scenarios::MethodPointer chosen_method(const std::string& name, const scenarios::Subject& subject);
 
 /// A failure of an external command becomes a BadInput. `on_sweep` is that of scenarios::OracleInput.

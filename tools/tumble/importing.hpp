@@ -23,9 +23,9 @@ struct Repair {
 
 struct OpenRecording {
   ImportOptions options;  ///< options of the user, with the repairs
-  std::string format;     ///< import format, or "recording" for a recording of this program
+  std::string format;     ///< "recording": of this program
   scenarios::Imported content;
-  std::optional<sim::Truth> truth;  ///< reference of an imported recording, for display only
+  std::optional<sim::Truth> truth;  ///< for display only
   std::vector<Repair> repairs;
   scenarios::LidarRotationCheck rotation;
 };

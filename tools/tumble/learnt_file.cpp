@@ -23,7 +23,7 @@ void LearntFile::require_place() const {
 }
 
 std::string LearntFile::caution(const sim::Sensors& sensors) const {
-  constexpr double kLeverArmOff_m = 0.1;  // above the error of any measured mounting
+  constexpr double kLeverArmOff_m = 0.1;  // above mounting errors
   if (!learning_.given || sensors.imus.empty()) return "";
   const Eigen::Vector3d stated = scenarios::bridge::lever_arm_I_m(sensors.imus.front());
   if (stated.isZero(0.0)) return "";  // the recording contains no lever arm

@@ -14,8 +14,7 @@ namespace tumble::tools {
 /// to this file.
 class LearntFile {
  public:
-  /// An empty path disables the option; a missing file contains no calibration yet. Throws BadInput if the file cannot
-  /// be read.
+  /// An empty path disables the option; a missing file contains no calibration yet.
   explicit LearntFile(std::filesystem::path path);
 
   /// Throws BadInput if the file cannot be written; must be called before the run.
@@ -29,7 +28,7 @@ class LearntFile {
 
   scenarios::Method wrap(const scenarios::Method& method);
 
-  /// Without a new calibration, the file is unchanged and a note states the reason. Throws BadInput if writing fails.
+  /// Without a new calibration, the file is unchanged and a note states the reason.
   void keep(const Session& session) const;
 
  private:

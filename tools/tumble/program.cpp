@@ -142,7 +142,7 @@ int dispatch(int argc, const char* const* argv) {
   check_verb(argc, argv);
   try {
     app.parse(argc, argv);
-  } catch (const CLI::Success& done) {  // CLI11 reports --help and --version by this exception
+  } catch (const CLI::Success& done) {  // --help and --version
     return app.exit(done);
   } catch (const CLI::ParseError& error) {
     throw BadInput(usage_line(app, error));
@@ -163,7 +163,6 @@ int run_program(int argc, const char* const* argv) {
   } catch (const std::filesystem::filesystem_error& error) {
     return say("", error.what(), kBadInput);
   } catch (const std::system_error& error) {
-    // A lack of processes, pipes or threads is not a defect of the program.
     return say("", error.what(), kBadInput);
   } catch (const sim::SimulationFailure& error) {
     return say("the simulation rejected the run: ", error.what(), kCheckFailed);

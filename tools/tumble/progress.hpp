@@ -19,7 +19,7 @@ std::string progress_line(const scenarios::SweepProgress& progress, int bar_widt
 
 struct RegistrationProgress {
   std::size_t done = 0, all = 0;
-  double elapsed_s = 0.0;  ///< time since the first sweep of this pass
+  double elapsed_s = 0.0;  ///< since the first sweep
 };
 
 std::string progress_line(const RegistrationProgress& progress, int bar_width);

@@ -126,7 +126,6 @@ std::string data_found(const Session& session) {
 /// Maximum number of simulated runs per scenario for the sensitivity section of a page
 constexpr std::size_t kSensitivityDraws = 2000;
 
-/// A limited number of simulated runs is used, because the complete table of `tumble sensitivity` takes long.
 void add_sensitivity(const Session& session, const std::string& data_found, ReportInput& input) {
   const Summary some = scenarios::at_most_draws(*input.summary, kSensitivityDraws);
   NumbersByScenario numbers;

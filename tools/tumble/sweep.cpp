@@ -34,7 +34,7 @@ struct SweepVerbOptions {
   std::string seeds, shard;
   std::vector<std::string> scenarios, methods, again;
   int jobs = available_processors();
-  std::optional<std::size_t> examples, failures;  ///< default: depends on the size of the sweep
+  std::optional<std::size_t> examples, failures;  ///< default: by the size
   std::filesystem::path database, recordings;
   double memory_mib = scenarios::kWorkerMemoryMib;
   std::string keep = "none";
@@ -268,7 +268,7 @@ int run_sweep(const Session& session, const SweepVerbOptions& options) {
   scenarios::require_sound(suite, how);
   const std::optional<scenarios::Question> question = ask(options, data, suite);
   note_command(scenarios::open_results(data, suite, options.database), options);
-  // The certificate checks the simulation, so recordings need none.
+  // Recordings of real robots need no checks of the simulation.
   if (suite.recordings.empty()) certify(session, data, options.database, interrupt.raised());
   AskedSweep swept;
   if (question) {
@@ -312,7 +312,7 @@ Action declare_sweep(VerbOptions& verb, const Session& session) {
       .filled();  // an empty word would select all
   verb.add("--method", options->methods,
            "runs this method; repeat the option for more methods [default: the methods of the suite]")
-      .one_at_a_time();  // each option takes one word
+      .one_at_a_time();  // one word per option
   verb.add("--jobs", options->jobs, "runs this number of processes in parallel [default: number of processors]")
       .whole(1, 1024)
       .shows_default();

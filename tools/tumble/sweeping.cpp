@@ -21,7 +21,6 @@ scenarios::SweepProgress sum(const scenarios::SweepProgress& before, const scena
   all.elapsed_s += before.elapsed_s;
   all.peak_mib = std::max(all.peak_mib, before.peak_mib);
   if (all.not_kept.empty()) all.not_kept = before.not_kept;
-  // The remaining time follows from the mean time per simulated run.
   if (all.draws_done > 0)
     all.left_s = all.elapsed_s / static_cast<double>(all.draws_done) * static_cast<double>(draws - all.draws_done);
   return all;

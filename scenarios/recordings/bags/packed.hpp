@@ -11,8 +11,7 @@ namespace tumble::scenarios {
 std::string packed_lz4(std::string_view plain);
 
 /// Decompresses any LZ4 frame, or a series of Zstandard frames, to `bytes` bytes. Memory grows with the decompressed
-/// data, so a wrong size in the file cannot exhaust the memory. Throws BadInput, without a location, if the data are
-/// damaged or have another size.
+/// data, so a wrong size in the file cannot exhaust the memory.
 std::string unpacked_lz4(std::string_view packed, std::uint64_t bytes);
 std::string unpacked_zstd(std::string_view packed, std::uint64_t bytes);
 

@@ -58,8 +58,8 @@ class HeaderLines {
 
   std::uint64_t bytes() const { return bytes_; }
 
-  /// Throws BadInput if the points in the header do not fit the remaining file size. One byte of the file gives at most
-  /// `made_of_a_byte` bytes of points.
+  /// Throws BadInput if the number of points in the header does not fit the remaining file size. `made_of_a_byte` is
+  /// the largest number of point bytes that one byte of the file can contain.
   void require_room(const CloudHeader& header, std::uint64_t made_of_a_byte = 1) const {
     if (header.points > kCloudPointsMax) {
       fail(fmt::format("the file states {} points; at most {} can be read", header.points, kCloudPointsMax));
@@ -91,8 +91,8 @@ class HeaderLines {
     }
   }
 
-  /// PCL continues the header up to the first line that starts with no header word. A line of point data that looks
-  /// like a header line would therefore change the header.
+  /// PCL would interpret a line of point data that looks like a header line as part of the header, so such lines are
+  /// rejected.
   void require_end_of_header(std::span<const char* const> words) {
     stream_.clear();
     stream_.seekg(static_cast<std::streamoff>(bytes_));
@@ -136,7 +136,7 @@ void take_property(const HeaderLines& lines, const std::vector<std::string>& wor
 
 using Words = std::vector<std::string>;
 
-/// The header words have the order of the format; the final entry is an alternative name of FIELDS.
+/// Header words in the order of the PCD format; the final entry is an alternative name of FIELDS.
 constexpr std::array<const char*, 11> kPcdWords = {"VERSION", "FIELDS",    "SIZE",   "TYPE", "COUNT",  "WIDTH",
                                                    "HEIGHT",  "VIEWPOINT", "POINTS", "DATA", "COLUMNS"};
 

@@ -19,8 +19,7 @@ namespace tumble::scenarios {
 namespace {
 
 /// The point times of a sweep must cover a fraction of the sweep period between 0.02 (a sector of 7 degrees) and 1.5
-/// (some overlap). Time units differ by factors of 1000, so at most one unit fits. If the times cover a shorter range,
-/// for example because they restart with each packet, still only one unit fits.
+/// (some overlap). Time units differ by factors of 1000, so the times of a sweep fit at most one unit.
 constexpr double kSpanMin = 0.02, kSpanMax = 1.5, kShortSpanMin = kSpanMax / 1000.0;
 /// Times since 1970 in seconds exceed 1e8 if they are later than 1973.
 constexpr double kEpochMin_s = 1e8;
@@ -28,7 +27,7 @@ constexpr double kEpochMin_s = 1e8;
 /// unit.
 constexpr double kPointsThatSpan = 100.0;
 
-/// With at least five clouds, times are absolute if two clouds start more than two periods from time zero.
+/// With at least five clouds, point times are absolute if two clouds start more than two periods from time zero.
 constexpr std::size_t kCloudsToCompare = 5;
 
 using tumble::ros::kTimeUnits, tumble::ros::TimeUnit, tumble::ros::stated_unit;
@@ -167,7 +166,7 @@ PointTimeRule find_point_times(const std::vector<Cloud>& first, std::int64_t per
     const double bound = period_ns > 0 ? 2.0 * period : kEpochMin_s * 1e9;
     if (end >= begin && std::abs(begin) * rule.unit_ns > bound) ++far;
   }
-  rule.absolute = far > (spans.size() >= kCloudsToCompare ? 1 : 0);  // a single cloud among many may be damaged
+  rule.absolute = far > (spans.size() >= kCloudsToCompare ? 1 : 0);  // a single cloud may be damaged
   return rule;
 }
 

@@ -107,7 +107,7 @@ void pass_over(VtkWords& words, std::uint64_t count, std::uint64_t each) {
   for (std::uint64_t i = 0; i < count * each; ++i) words.number();
 }
 
-/// The section has the form "VERTICES lines numbers", followed by this many numbers.
+/// The section has the form "VERTICES lines numbers", followed by the announced count of numbers.
 void pass_vertices(VtkWords& words) {
   words.whole("the number of vertices");
   pass_over(words, words.whole("the vertices' numbers"), 1);

@@ -11,10 +11,10 @@
 
 namespace tumble::scenarios {
 
-/// Empty lines, comments (csv_text.hpp) and an empty field after the last separator of a line are skipped. The header
-/// is the first line that is no comment and contains fewer numbers than other texts. If samples directly follow
-/// comments, the last comment is the header if it has as many fields as a sample ("#timestamp [ns],w_RS_S_x [rad
-/// s^-1],..."). A row of units below the header is appended to the column names, in brackets.
+/// Empty lines, comments and an empty field after the last separator of a line are skipped. The header is the first
+/// line that is no comment and contains fewer numbers than other texts. If samples directly follow comments, the last
+/// comment is the header if it has as many fields as a sample ("#timestamp [ns],w_RS_S_x [rad s^-1],..."). A row of
+/// units below the header is appended to the column names, in brackets.
 class LoggedTable {
  public:
   explicit LoggedTable(const std::filesystem::path& path);
@@ -24,8 +24,8 @@ class LoggedTable {
   const CsvLine& header() const { return header_; }
   bool has_header() const { return has_header_; }
 
-  /// Throws BadInput with file and line for a wrong number of fields, or for a last line without newline. The caller
-  /// can then continue with the next sample.
+  /// Throws BadInput with file and line for a wrong number of fields, or for a last line without newline; the caller
+  /// can then continue.
   bool next(CsvLine& line);
   bool next_sound(CsvLine& line);
   void restart() { text_.back_to(samples_); }

@@ -72,7 +72,6 @@ bool is_one_of(const std::vector<std::string_view>& names, std::string_view name
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// A number in brackets is an axis: "gyro_rad[0]".
 Name split_brackets(std::string_view field) {
   const std::size_t open = field.find_first_of("[(");
   if (open == std::string_view::npos) return {letters(field), ""};
@@ -90,7 +89,7 @@ Name split_suffix(std::string_view field, const UnitNames<Value>& units, const I
   }
   Name name = split_brackets(field);
   if (is_quantity(name.quantity)) return name;
-  constexpr std::size_t kShortest = 2;  // one letter may belong to the quantity: "stamps"
+  constexpr std::size_t kShortest = 2;  // plural "s" in "stamps"
   for (const auto& [unit, value] : units) {
     const std::string_view whole = name.quantity;
     if (unit.size() < kShortest || !whole.ends_with(unit)) continue;
@@ -114,7 +113,6 @@ std::string take_number(std::string_view& text, bool from_end) {
   return digits;
 }
 
-/// The quantity may have the prefix "imu" and a number.
 std::optional<NamedAxis> axis_of(const std::vector<std::string_view>& names, std::string_view quantity) {
   NamedAxis out;
   if (quantity.starts_with("imu")) {

@@ -15,13 +15,13 @@ namespace {
 /// Reference and gyro contradict each other if their rotations differ by more than half of the rotation; they agree
 /// below 30 %.
 constexpr double kContradicts = 0.5, kReferenceAgrees = 0.3;
-/// A rotation difference above 0.15 is a fault of the file if another quaternion convention reduces it to less than 0.4
-/// times its value.
+/// A rotation difference above 0.15 is a fault of the pose file if another quaternion convention reduces the difference
+/// to less than 0.4 times its value.
 constexpr double kExplained = 0.15, kExplanationLeaves = 0.4;
 /// The filters of an IMU cause a delay of about 0.02 s.
 constexpr double kDelayNoted_s = 0.03;
 
-/// The user's choice of the frame is first, so it is kept if the poses fit it.
+/// The user's choice of the frame is the first candidate, so it is kept if the poses fit this frame.
 std::vector<CandidateFrame> candidate_frames(const Eigen::Isometry3d& T_BA, const sim::Sensors& sensors) {
   const Eigen::Quaterniond q_BI(sensors.imus.front().T_BI.linear());
   std::vector<CandidateFrame> out = {{"as stated", Eigen::Quaterniond(T_BA.linear()).conjugate() * q_BI},
