@@ -54,7 +54,6 @@ Recording simulate(const BuiltSituation& built, int threads) {
   // The world is a copy, because the floor's friction changes with the robot's position.
   engine::World world = engine::copy_of(built.world());
   const auto motion = find_motion_type(situation.motion.type).make(situation.motion.values, world);
-  // The sensor mountings are computed before the long simulation, so that an unknown site is reported immediately.
   std::vector<Eigen::Isometry3d> mountings;
   for (const SensorSpec& sensor : situation.sensors) mountings.push_back(site_pose(world, sensor));
 

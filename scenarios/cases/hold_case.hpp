@@ -13,7 +13,6 @@ Scenario named_case_of(const Shrunk& shrunk, const std::string& name, const std:
 
 Failure failure_of(const Expectation& expected);
 
-/// The metric of an expected failure may differ from its accepted value by this factor.
 inline constexpr double kCaseFactor = 2.0;
 
 struct CaseResult {

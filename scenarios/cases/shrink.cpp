@@ -158,7 +158,6 @@ class Shrinking {
       return try_out(shorter, text_of(length_s) + " s");
     };
     const double now_s = shrunk_.scenario.duration_s.numbers.front();
-    // The bisection of the duration is repeated, because a shorter run may fail after details of the run were removed.
     return least_failing_number(now_s, 0.0, kLengthResolution * drawn_s, false, fails).complete;
   }
 

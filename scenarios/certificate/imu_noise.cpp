@@ -79,7 +79,6 @@ struct Stated {
   }
 };
 
-/// The accepted range of an Allan deviation is its statistical confidence interval for three axes.
 CertificateEntry entry(const std::string& row, const std::string& subject, const std::string& law,
                        const sim::AllanPoint& measured, double stated, sim::AllanNoise noise) {
   constexpr double kSigmas = 4.0;  // no false alarm in twenty entries

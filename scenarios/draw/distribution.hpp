@@ -24,7 +24,6 @@ std::string find_problem(const Distribution& distribution);
 
 std::vector<double> support_points(const Distribution& distribution);
 
-/// Draws from a truncated normal distribution by rejection sampling.
 double draw_number(const Distribution& distribution, std::uint64_t seed, std::string_view place);
 
 }  // namespace tumble::scenarios

@@ -42,12 +42,11 @@ ImuSheet imu_sheet(const sim::ImuRecord& record);
 Status check_range(const sim::ImuRecord& record, const Eigen::Vector3d& gyro_rad_s, const Eigen::Vector3d& accel_m_s2);
 
 /// A usable IMU sample is finite, in order of time, and accepted by OutlierFilter. If unusable samples are frequent, or
-/// the arrays of the record differ in length, all samples count as usable. The cost is O(N log N).
+/// the arrays of the record differ in length, all samples count as usable.
 std::vector<bool> find_inliers(const sim::ImuRecord& record);
 
 /// Returns `empty`, `non_finite`, `time_order`, `gap`, or `out_of_range` (a reading, or a time step that differs
-/// 20-fold from the stated sample period). On error, `out` is empty. Throws BadInput if the arrays of the record differ
-/// in length. The cost is O(N).
+/// 20-fold from the stated sample period). On error, `out` is empty.
 Status imu_samples(const sim::ImuRecord& record, std::vector<ImuSample>& out, double gap_max_s = kGapMaxS);
 
 Status primary_imu_samples(const sim::Sensors& sensors, std::vector<ImuSample>& out, double gap_max_s = kGapMaxS);
@@ -75,7 +74,7 @@ inline constexpr std::int64_t kRounding_ns = 1000;
 
 /// A lidar sweep ends after one period, or at the start of the next sweep if this is earlier. Points up to kRounding_ns
 /// after the end of the sweep get the time of the end; later points are dropped. A sweep without a time per point has
-/// zero duration, so its points are not deskewed. The cost is O(points).
+/// zero duration, so its points are not deskewed.
 Sweep sweep(const sim::LidarRecord& record, std::size_t index);
 
 }  // namespace tumble::scenarios::bridge

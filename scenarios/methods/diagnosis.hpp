@@ -29,7 +29,6 @@ struct Saturation {
   double gyro_share = 0.0, accel_share = 0.0;  ///< samples with at least one saturated axis
   double gyro_rad_s = 0.0, accel_m_s2 = 0.0;   ///< smallest saturated reading; 0: none
 };
-/// The cost is O(N log N).
 Saturation saturation_of(const sim::ImuRecord& imu);
 
 std::vector<RecordingFinding> findings_in_readings(const sim::Sensors& sensors);

@@ -48,7 +48,6 @@ Eigen::Vector3d read_vector(const Table& table, const Table::Row& row, std::size
   return {table.number(row, first), table.number(row, first + 1), table.number(row, first + 2)};
 }
 
-// A quaternion may contain NaN, because a diverged method may write NaN.
 Eigen::Quaterniond read_quaternion(const Table& table, const Table::Row& row, std::size_t first, bool normalise) {
   Eigen::Quaterniond q(table.number(row, first + 3), table.number(row, first), table.number(row, first + 1),
                        table.number(row, first + 2));

@@ -84,7 +84,6 @@ std::string digest_of(const std::string& text) {
   return fmt::format("{:016x}", XXH3_64bits(text.data(), text.size()));
 }
 
-/// A command names files with the placeholder {folder}, such as "{folder}/mine", or inside a shell command.
 std::set<std::filesystem::path> own_files(const std::vector<std::string>& command,
                                           const std::filesystem::path& folder) {
   static const std::regex pattern(R"(\{folder\}/([^\s{}"';|&<>()]{1,512}))");
@@ -164,7 +163,6 @@ std::vector<Kind> kinds_found(const std::string& text, const std::regex& pattern
   return found;
 }
 
-/// If the Python file has no function, an assignment such as `slam = ...` determines the kind of the method.
 Kind kind_of_function(const std::string& text, const std::string& file) {
   static const std::regex defined(R"((^|\n)def[ \t]{1,8}(rate|attitude|position|slam)[ \t]{0,8}\()");
   static const std::regex assigned(R"((^|\n)(rate|attitude|position|slam)[ \t]{0,8}=(?!=))");

@@ -275,7 +275,6 @@ std::optional<RotationAgreement> rotation_agreement(const sim::ImuRecord& imu, c
   RotationAgreement out = delayed_error < kDelayConclusive * at_once_error ? delayed : at_once;
   if (out.unit_error > kAgrees) return std::nullopt;
   fit_axes(pairs_at(integral, R_IL, seen, std::llround(1e9 * out.delay_s)), out);
-  // If lidar tracking fails in a tumble, the rotation angles of lidar and gyro may agree by chance.
   if (std::min({out.error_as_read, out.axes_error, out.turned_error}) > kAgrees) return std::nullopt;
   return out;
 }

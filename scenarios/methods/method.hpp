@@ -57,8 +57,7 @@ struct Estimate {
 /// Only methods with `needs_truth` receive the true state and the readings before clipping.
 struct OracleInput {
   const sim::Truth* truth = nullptr;
-  /// A slam method calls this function after each lidar sweep, with the numbers of processed and of all sweeps. In each
-  /// further pass over the recording, the count starts again at 1.
+  /// A slam method calls this function after each lidar sweep, with the numbers of processed and of all sweeps.
   std::function<void(std::size_t done, std::size_t all)> on_sweep = {};
 };
 

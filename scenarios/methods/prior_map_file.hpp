@@ -9,7 +9,6 @@
 
 namespace tumble::scenarios {
 
-/// Name of the map file in the folder of an estimate.
 inline constexpr const char* kPriorMapName = "map.tumblemap";
 
 void write_prior_map(const std::filesystem::path& path, std::span<const MapPoint> points);

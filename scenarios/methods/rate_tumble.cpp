@@ -69,8 +69,8 @@ const CalibratedRig* RigCalibrationUse::found() const {
 
 namespace {
 
-/// Returns false, and adds a health finding, if the saved calibration and a calibration without it cannot belong to one
-/// rig.
+/// Returns false, and adds a health finding, if the saved calibration and the calibration that was estimated without it
+/// cannot belong to one rig.
 bool may_be_of_this_rig(const CalibratedRig& given, const std::optional<CalibratedRig>& fresh, Estimate& result) {
   constexpr double kDistanceMax = 2.0;  // standard deviations
   if (!fresh || fresh->only_rails) return true;

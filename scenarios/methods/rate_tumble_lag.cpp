@@ -52,7 +52,6 @@ RegimeStream::Params stream_params(const sim::Sensors& sensors, const sim::Value
   return params;
 }
 
-/// After a gap in the IMU samples, the stream restarts with its current calibration.
 void restart_after_gap(RegimeStream::Params& params, RegimeStream& joined, RegimeStream::State& all) {
   const RigCalibration calibration = joined.rate().calibration(all.rate);
   if (check_calibration(calibration).ok()) params.rate.model.calibration = calibration;

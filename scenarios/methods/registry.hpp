@@ -19,7 +19,6 @@ namespace tumble::scenarios {
 
 using RunCore = Estimate (*)(const sim::Sensors&, const sim::Values& parameters, const OracleInput& oracle);
 
-/// Parameters that the caller does not set get their defaults.
 Method make_method(MethodInfo info, RunCore run);
 
 Method rate_raw();

@@ -149,7 +149,6 @@ void read_device_errors(const CalibrationReader& reader, const json& object, Cal
   reader.read(kErrorsCovarianceKey, known.covariance);
   known.errors = SensorErrors::from(errors);
   const SensorErrors::Vector deviation = known.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
-  // The entries of the covariance differ by orders of magnitude, so the check normalises them to correlations.
   const SensorErrors::Vector over = deviation.cwiseMax(1e-300).cwiseInverse();
   const SensorErrors::Matrix scaled = over.asDiagonal() * known.covariance * over.asDiagonal();
   if (!scaled.allFinite() || (scaled - scaled.transpose()).cwiseAbs().maxCoeff() > 1e-9 ||

@@ -10,7 +10,6 @@ namespace tumble::scenarios {
 /// Reading restores all numbers bit-exactly.
 void write_rig_calibration(const std::filesystem::path& path, const CalibratedRig& rig);
 
-/// Values that files of earlier versions lack get their defaults.
 CalibratedRig read_rig_calibration(const std::filesystem::path& path);
 
 }  // namespace tumble::scenarios

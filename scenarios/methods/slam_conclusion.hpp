@@ -13,8 +13,7 @@ namespace tumble::scenarios {
 
 void apply_smoothed(std::vector<PoseState> smoothed, LidarInertialOdometry::SweepReport& sweep);
 
-/// Sets the status `too_few` if no sweep was registered. Returns true if the run is complete and its final pose in the
-/// map is plausible.
+/// Returns true if the run is complete and its final pose in the map is plausible.
 bool conclude(const LidarInertialOdometry& odometry, Estimate& estimate);
 
 void report_calibration(const LidarInertialOdometry& odometry, const sim::Sensors& sensors,

@@ -151,14 +151,12 @@ Status replay(const sim::Sensors& sensors, std::span<const ImuSample> samples, b
   for (const ImuSample& sample : samples) {
     const TimeNs gap_ns = last_ns ? sample.time_ns - *last_ns : 0;
     last_ns = sample.time_ns;
-    // In real time, lidar sweeps also arrive during a gap of the IMU.
     while (seconds(gap_ns) > bridge::kGapMaxS && (present || next < sweeps)) {
       if (!present) present = bridge::sweep(lidar, next++);
       if (present->end_ns > sample.time_ns) break;
       if (!add_sweep(*present).ok()) estimate.health["sweeps_without_imu"] += 1.0;
       present.reset();
     }
-    // The estimator rejects the first sample after a gap, until a second sample confirms the time stamp of the first.
     if (Status status = odometry.add_imu(sample); !status.ok() && status.error_code != ErrorCode::gap) return status;
     while (present || next < sweeps) {
       if (!present) present = bridge::sweep(lidar, next++);

@@ -25,12 +25,10 @@ void leave_out_unfinished(Estimate& estimate);
 bool leave_out_before_map(const Status& status, const SweepReport& report, Estimate& estimate);
 
 struct SweepMapper {
-  /// An error of `add` ends the run and becomes the status of the estimate.
   std::function<bool(const bridge::Sweep&)> covers;
   std::function<Status(const bridge::Sweep&, SweepReport&)> add;
 };
 
-/// Returns false if an error ended the run early.
 bool run_over_sweeps(const sim::LidarRecord& lidar, const SweepMapper& mapper, Estimate& estimate);
 
 }  // namespace tumble::scenarios

@@ -64,7 +64,6 @@ Process::Process(const std::function<void(int)>& work, bool own_group) : own_gro
 }
 
 Process::Process(const std::function<void(int, int)>& work, bool own_group) : own_group_(own_group) {
-  // A socket pair serves as pipe, because sending to a closed socket can avoid a signal.
   int ends[2];
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
     throw std::system_error(errno, std::generic_category(), "socketpair");

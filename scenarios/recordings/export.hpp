@@ -24,7 +24,6 @@ void require_own_kind(const std::string& format, const std::filesystem::path& ou
 struct ExportChoices {
   bool truth = false;
   SweepLayout sweeps = own_sweep_layout();
-  /// Adds estimates to the exported bag, if set.
   std::function<void(const sim::Sensors&, BagWriting&)> more = {};
   std::string frame = "body";  ///< for `tum` and `kitti`
 };

@@ -37,7 +37,6 @@ class Group {
   std::int64_t int_attribute(const std::string& name) const;
   std::uint64_t uint_attribute(const std::string& name) const;
 
-  /// `compressed` applies the filters shuffle and deflate.
   template <class Row>
   void write(const std::string& name, const std::vector<Row>& rows, const std::string& unit, const std::string& columns,
              bool compressed) const {

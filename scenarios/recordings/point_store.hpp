@@ -18,7 +18,6 @@ struct PointStore {
       : position_L_m(folder), range_m(folder), intensity(folder), offset_ns(folder), ring(folder) {}
 
   std::size_t size() const { return position_L_m.size(); }
-  /// Moves the points of `record` from memory to the end of the files.
   void take(sim::LidarRecord& record);
 
   ColumnFile<Eigen::Vector3f> position_L_m;

@@ -233,7 +233,6 @@ template <class Imu>
 std::string imu_truth_problem(const Imu& imu) {
   return first_of(
       {pose_problem("T_BI", imu.T_BI),
-       // A reference may contain only poses, or poses and rates.
        optional_length_problem("specific_force_I_m_s2", imu.specific_force_m_s2.size(), imu.rate_rad_s.size()),
        length_problem({{"specific_force_I_m_s2", imu.specific_force_m_s2.size()},
                        {"gyro_unclipped_I_rad_s", imu.gyro_unclipped_rad_s.size()},

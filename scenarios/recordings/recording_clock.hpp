@@ -32,8 +32,7 @@ void start_clock(Imported& recording);
 
 void add_lidar(Imported& recording, BuiltSweeps built);
 
-/// Uses the poses of a frame A, mounted at T_BA on the body, as the truth of a recording. The stamps of the poses are
-/// in the clock of the recording's source.
+/// Uses the poses of a frame A, mounted at T_BA on the body, as the truth of a recording.
 void attach_poses(Imported& recording, std::vector<ReferencePose> poses, const Eigen::Isometry3d& T_BA,
                   const std::string& where);
 

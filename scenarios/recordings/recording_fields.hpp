@@ -9,8 +9,7 @@
 #include "scenarios/recordings/point_store.hpp"
 #include "sim/recording.hpp"
 
-/// Writer, reader and digest visit the same list of fields, so none of them can omit a field. Names, units and columns
-/// of the fields are those of FORMAT.md.
+/// Writer, reader and digest visit the same list of fields, so none of them can omit a field.
 ///
 /// A visitor (archive) has the members value(name, text | double | int64), pose(name, isometry), point(name, vector,
 /// unit), rows(name, vector, unit, columns, storage), texts(name, strings), list(name, records, fields) and group(name,

@@ -49,8 +49,7 @@ std::string digest(const StoredTruth& truth);
 void write_recording(const std::filesystem::path& path, const RecordingInfo& info, const sim::Sensors& sensors,
                      const sim::Truth* truth);
 
-/// Writes a recording whose points are on disk; the file is bit-identical to that for points in memory. Memory contains
-/// the sensors without points, the truth, and some MiB.
+/// Writes a recording whose points are on disk; the file is bit-identical to that for points in memory.
 void write_recording(const std::filesystem::path& path, const RecordingInfo& info, const sim::Sensors& sensors,
                      const std::vector<PointStore>& points, const sim::Truth* truth);
 

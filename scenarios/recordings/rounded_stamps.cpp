@@ -16,7 +16,6 @@ constexpr std::size_t kLeast = 100;  // smallest number of stamps that is tested
 constexpr double kReach_s = 0.5;
 constexpr std::int64_t kStampGap_ns = kLongestStep_ns + 2 * kRaster_ns;  // longer than any regular step
 
-/// StampLine contains prefix sums for fitting lines to a series of stamps.
 class StampLine {
  public:
   explicit StampLine(std::span<const std::int64_t> piece) : piece_(piece) {

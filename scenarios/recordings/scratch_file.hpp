@@ -40,7 +40,6 @@ class ScratchFile {
   std::uint64_t bytes_ = 0;
 };
 
-/// A column without a folder must stay empty.
 template <class Row>
 class ColumnFile {
  public:

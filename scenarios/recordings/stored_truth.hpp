@@ -40,7 +40,6 @@ struct StoredLidarTruth {
 };
 
 struct StoredTruth {
-  /// Returns the body states of the rows `first` to `last` - 1, without sensors and contacts.
   sim::Truth states(std::size_t first, std::size_t last) const;
   std::size_t size() const { return p_WB_m.size(); }
 

@@ -96,7 +96,6 @@ extern "C" void remove_and_end(int number) {
 
 Unfinished::Unfinished(const std::filesystem::path& path, Kind kind) {
   std::error_code ignored;
-  // An absolute path stays valid if the working folder changes.
   const std::string absolute = std::filesystem::absolute(path, ignored).string();
   if (ignored || absolute.size() >= kPathBytes) return;
   for (int place = 0; place < kPlaces; ++place) {

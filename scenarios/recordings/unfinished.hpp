@@ -6,7 +6,6 @@
 namespace tumble::scenarios {
 
 /// Unfinished removes its file or folder if a signal of `remove_unfinished_on_signals` arrives during its lifetime.
-/// Child processes do not remove the file or folder.
 class Unfinished {
  public:
   enum class Kind { file, folder, contents };  ///< contents: keeps the folder itself

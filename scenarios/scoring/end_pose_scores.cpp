@@ -27,7 +27,6 @@ std::int64_t last_sweep_before_ns(const sim::Sensors& sensors) {
   return *(after - 1) + length_ns + lidar.sweep_period_ns / 4;
 }
 
-// The scores of all methods end at the last sweep that the IMU covers and for which the truth is known.
 const LidarInertialOdometry::SweepReport* last_covered(const ScoredEstimate& scored) {
   const Estimate& estimate = scored.estimate();
   const TruthTrack& truth = truth_track(scored);

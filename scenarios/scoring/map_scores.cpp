@@ -22,7 +22,6 @@ constexpr double kSeenRangeM = 100.0;    // farther surfaces are not required
 static_assert(kErrorLimitM > kToleranceM && kErrorLimitM > kFineToleranceM,
               "the limit of map errors must exceed both tolerances of map points");
 
-// Position and yaw of the map are aligned with the true pose at the start.
 std::vector<Eigen::Vector3f> map_in_world(const ScoredEstimate& scored) {
   const Estimate& estimate = scored.estimate();
   const Eigen::Isometry3d to_world = paired_track(scored).alignment.transform();

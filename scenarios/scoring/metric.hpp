@@ -48,7 +48,6 @@ MetricStyle style_of(Unit unit);
 
 std::string sense_text(const MetricInfo& metric);
 
-/// For a metric with a target, the closer value is better; closeness is a ratio if both values are positive.
 bool is_better(const MetricInfo& metric, double a, double b);
 
 /// Returns the badness of a value: the value if lower is better, the negative value if higher is better, or the

@@ -8,7 +8,6 @@
 
 namespace tumble::scenarios {
 
-/// MotionSummary contains statistics of a simulated motion, to compare a scenario with a published experiment.
 struct MotionSummary {
   double moving_s = 0.0;                                 ///< with more than 0.1 m/s or 0.3 rad/s
   double rest_at_end_s = 0.0;                            ///< after the last motion

@@ -133,7 +133,6 @@ void add_pair(const std::string& name, const std::string& doc, std::vector<Metri
                  clipped_error<kError, 90, kAxes>});
 }
 
-/// Metrics that describe the reference instrument and not the method are not ranked.
 template <ErrorOf kError>
 void add_reference(const std::string& name, const std::string& doc, std::vector<Metric>& all) {
   all.push_back({{"rate_" + name + "_median_rad_s", Unit::rad_s, "median " + doc, Sense::none},

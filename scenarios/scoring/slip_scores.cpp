@@ -10,8 +10,6 @@
 #include "scenarios/scoring/beside_truth.hpp"
 #include "scenarios/scoring/families.hpp"
 
-/// The slip metrics compare the slip events that a position method detects with the true slip events.
-///
 /// A slip event is a time interval with the contact labels slip and slide. A slip event may contain up to kBridge_ns of
 /// grip, and up to kHop_ns of air in total, because an unbalanced spinning sphere hops. A true slip event is scored if
 /// it lasts at least kShortest_ns and the contact speed reaches kLeastSpeed_m_s; weaker events cause no position error.

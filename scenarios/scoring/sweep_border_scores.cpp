@@ -24,7 +24,6 @@ Jumps border_jumps(const ScoredEstimate& scored) {
   for (std::size_t k = 1; k < estimate.sweeps.size(); ++k) {
     const auto& before = estimate.sweeps[k - 1].trajectory;
     const auto& after = estimate.sweeps[k].trajectory;
-    // If a sweep is missing between two listed sweeps, the two sweeps have no common boundary.
     if (before.size() < 2 || after.size() < 2) continue;
     if (after.front().time_ns - before.back().time_ns > after[1].time_ns - after[0].time_ns) continue;
     const PoseState poses[4] = {before[before.size() - 2], before.back(), after[0], after[1]};

@@ -11,8 +11,7 @@ namespace tumble::scenarios {
 
 /// MedianBootstrap computes bias-corrected and accelerated (BCa; Efron, JASA 82:171, 1987) bootstrap confidence
 /// intervals of the median, by equations (S1) to (S4) of statistics.md. The ranks of the middle values of a resample do
-/// not depend on the values, so the constructor draws the ranks once. For a given sample size, the random ranks are
-/// equal on every machine.
+/// not depend on the values, so the constructor draws the ranks once.
 class MedianBootstrap {
  public:
   explicit MedianBootstrap(std::size_t size, std::size_t resamples = 4000);

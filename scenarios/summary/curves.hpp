@@ -12,8 +12,7 @@
 
 namespace tumble::scenarios {
 
-/// CurvePoint summarises one method at one x value of a curve, over all simulated runs. Failed runs rank worst, so a
-/// quantile can be infinite.
+/// Failed runs rank worst, so a quantile can be infinite.
 struct CurvePoint {
   double x = 0.0;
   std::string label;  ///< label of a bin: "0.5 – 1"

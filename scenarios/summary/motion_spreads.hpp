@@ -28,7 +28,6 @@ struct Spread {
 inline constexpr const char* kPublishedMotion =
     "the published campaign of the rig (32 tumbles down a hill) and the target of the scenario 'hill'";
 
-/// For a fraction of all clipped samples, each run is weighted by its number of clipped samples.
 std::vector<Spread> motion_spreads(std::span<const DrawValues> draws);
 
 }  // namespace tumble::scenarios

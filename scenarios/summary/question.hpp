@@ -24,7 +24,6 @@ struct Question {
   std::uint64_t first_seed = 1, last_seed = 1;
   std::vector<std::string> scenarios;
 
-  /// Returns the ascending seeds after which the results are analysed.
   std::vector<std::uint64_t> look_seeds() const;
   std::string describe() const;
 };

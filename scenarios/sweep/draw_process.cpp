@@ -176,7 +176,6 @@ std::unique_ptr<MadeDraw> made_draw(const DataRoot& data, const DrawTask& task, 
   return nullptr;
 }
 
-/// The changed sensor data of the previous method are reused if the settings are equal.
 Outcome run_one(const DrawTask& task, const DrawTask::Run& run, const MadeDraw& made, double timeout_s, Given& given,
                 DrawFiles& files) {
   Outcome outcome;

@@ -18,7 +18,6 @@ struct WorkerTerms {
   double timeout_s;                ///< time limit of a method
   double memory_mib;               ///< of the worker and its children
   bool recordings_unseen = false;  ///< see SweepOptions
-  /// A killed worker cannot remove its temporary files, so the parent removes this folder.
   std::filesystem::path temporary = {};
 };
 

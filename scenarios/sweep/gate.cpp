@@ -42,7 +42,6 @@ double difference(const MetricInfo& info, double before, double now) {
   return std::log(now / before);
 }
 
-/// The badness of a fraction is one minus the fraction; that of a signed value is its distance from the target.
 double badness(const MetricInfo& info, double value) {
   if (!by_difference(info)) return value;
   return info.unit == Unit::share ? 1.0 - value : std::abs(value - info.target);
@@ -70,7 +69,6 @@ GatePairs pairs_of(const GateRun& all, const MethodRun& before, const MethodRun&
     GatePair pair{all.seeds[k], value_at(before, info.name, k), value_at(now, info.name, k)};
     if (was_ok && std::isnan(pair.before)) continue;
     if (was_ok && is_ok && std::isnan(pair.now)) out.lost.push_back(pair.seed);
-    // A simulated run that is not ok ranks worst, even if it has a value of the metric.
     if (!was_ok) pair.before = worst_value(info);
     if (!is_ok) pair.now = worst_value(info);
     if (!std::isnan(pair.before) && !std::isnan(pair.now)) out.pairs.push_back(pair);
@@ -169,7 +167,6 @@ GateResult hold_outcomes(const GateRun& all, const MethodRun& before, const Meth
       fault = condemned(now);
     was += was_good ? 0 : 1;
     is += fault.empty() ? 0 : 1;
-    // A missing simulated run is a fault even if the run failed in the accepted results.
     if (result.fault.empty() && !fault.empty() && (was_good || !now.status[k])) {
       result.fault = fault + seed;
       result.seed = all.seeds[k];

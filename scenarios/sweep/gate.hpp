@@ -61,8 +61,7 @@ struct Gate {
 };
 
 std::vector<std::string> gate_names(const DataRoot& data);
-/// Loads the gate of a suite by its name, or from a file if `name` ends in ".yaml". `described` contains the external
-/// methods that may occur in the gate.
+/// `described` contains the external methods that may occur in the gate.
 Gate load_gate(const DataRoot& data, const std::string& name, std::span<const MethodPointer> described = {});
 std::string to_yaml(const Gate& gate);
 std::string to_csv(const GateRun& run);

@@ -27,7 +27,6 @@ struct Keep {
 
 inline constexpr const char* kKeepNote = "keep";
 
-/// Parses "none", "failed", "all", or "worst:N" with N from 1 to 1000.
 Keep parse_keep(const std::string& text);
 std::string to_string(const Keep& keep);
 

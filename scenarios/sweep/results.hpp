@@ -70,8 +70,7 @@ class Results {
   ~Results();
   Results(Results&&) noexcept;
 
-  /// Also removes a rejection of the same scenario and seed. Scores without a name are not stored, because an empty
-  /// name marks an outcome without scores.
+  /// Also removes a rejection of the same scenario and seed.
   void store(const Outcome& outcome);
   bool store(const RejectedDraw& rejected);
   void store(const DrawValues& draw);
@@ -79,9 +78,7 @@ class Results {
   void set_note(const std::string& key, const std::string& text);
   std::string note(const std::string& key) const;
   std::map<std::string, std::string> notes() const;
-  /// Copies all rows of another results database `shard`, with constant memory. Of two rows with the same key, the row
-  /// with the higher-ranked status is kept. Throws BadInput if two scored rows differ in status, digest or a score
-  /// other than cost; with `mixed`, the first row is kept.
+  /// Copies all rows of another results database `shard`, with constant memory.
   void absorb(const Results& shard, bool mixed, MergeCounts& counts);
   void in_one_transaction(const std::function<void()>& work);
 

@@ -27,7 +27,6 @@ struct ShardRow {
   double setting;
 };
 
-/// New row numbers have the order of the old row numbers, so scores are only appended.
 class Joining {
  public:
   Joining(SQLite::Database& into, const SQLite::Database& shard, const std::filesystem::path& path, bool mixed,

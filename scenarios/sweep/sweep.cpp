@@ -232,7 +232,6 @@ class Sweep {
     if (outcome.status != OutcomeStatus::ok) ++progress_.failures[outcome.status];
   }
 
-  /// Repeats runs whose kept files are missing, and removes kept runs that are no longer selected.
   void update_kept() {
     updating_kept_ = true;
     const std::set<DrawName> wanted = draws_to_keep(results_, options_.keep);

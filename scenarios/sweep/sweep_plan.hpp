@@ -35,7 +35,6 @@ class SweepPlan {
   DrawTask next(const Results& results) const;
 
   bool has(const DrawName& draw) const;
-  /// The returned task repeats the completed methods on a scenario and seed, to keep their files.
   DrawTask again(const DrawName& draw, const Results& results) const;
 
   std::string to_line(const DrawTask& task) const;

@@ -41,8 +41,7 @@ struct TriageOptions {
 };
 
 /// Runs a method on the original sensor data, then with each input replaced by its true value, in separate processes.
-/// All runs of the method are scored against the same truth. If no true input prevents a failure, the cause is the
-/// method or the scenario.
+/// If no true input prevents a failure, the cause is the method or the scenario.
 std::vector<TriageRow> triage(const DataRoot& data, const Scenario& scenario, std::uint64_t seed, const Method& method,
                               const TriageOptions& options);
 

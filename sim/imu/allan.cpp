@@ -21,8 +21,6 @@ std::vector<double> integrate(std::span<const double> samples) {
   return sums;
 }
 
-/// The second difference of the integrated samples over `cluster` samples is `cluster` times the difference of two
-/// means.
 double deviation_of(const std::vector<double>& sums, std::size_t cluster) {
   const std::size_t count = sums.size() - 2 * cluster;
   double total = 0.0;

@@ -25,8 +25,7 @@ enum class AllanNoise {
 };
 
 /// Computes the overlapping Allan deviation of `samples`, which are means over consecutive periods (rates, not angles).
-/// The averaging times range from one period to a ninth of the series, with `per_decade` times per decade. Returns
-/// nothing for fewer than nine samples.
+/// The averaging times range from one period to a ninth of the series, with `per_decade` times per decade.
 std::vector<AllanPoint> allan_deviation(std::span<const double> samples, double period_s, int per_decade = 5);
 
 /// Returns the root of the mean Allan variance of several independent series of equal length and period, for example

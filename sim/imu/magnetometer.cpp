@@ -29,7 +29,6 @@ double distance_to_path(std::span<const Eigen::Vector3d> path, const Eigen::Vect
   return nearest;
 }
 
-/// If all random positions of a magnetic source are closer to the path than `nearest_m`, the farthest position is used.
 Eigen::Vector3d draw_position(std::span<const Eigen::Vector3d> path, double nearest_m, double farthest_m,
                               Stream& stream) {
   Eigen::Vector3d best = Eigen::Vector3d::Zero();

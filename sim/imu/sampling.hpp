@@ -24,7 +24,6 @@ class Sampling {
     std::uint8_t railed = 0;  ///< bits of saturated elements
   };
 
-  /// If the device has a separate update rate, the phase of its readings is drawn from `stream`.
   Sampling(const Params& params, double rate_hz, Stream stream);
 
   bool on() const { return !ring_.empty(); }

@@ -16,7 +16,6 @@ namespace tumble::sim {
 /// with a rate error, and samples in the wrong order.
 class TimeStamps {
  public:
-  /// Throws InvalidSituation if six times the jitter is at least the sample period.
   TimeStamps(const Values& values, const std::string& place, std::int64_t period_ns, const Stream& stream);
   /// Call stamp() once for each averaging window.
   std::optional<std::int64_t> stamp(std::int64_t window_end_ns);

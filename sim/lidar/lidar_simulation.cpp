@@ -51,7 +51,6 @@ std::int64_t whole_sweeps(const MotionTrack& motion, std::int64_t sweep_period_n
   return static_cast<std::int64_t>(motion.p_WB_m.size()) * motion.period_ns / sweep_period_ns;
 }
 
-/// The lidar loses all sweeps before its start, and random sweeps.
 class Delivery {
  public:
   Delivery(const SensorSpec& sensor, std::uint64_t seed)

@@ -36,8 +36,7 @@ constexpr const char* kDevice =
     "start_threads=0,set_affinity=0,isa=avx2,frequency_level=simd256,ignore_config_files=1";
 constexpr int kKernelLanes = 8;
 static_assert(kKernelLanes == kShapeLanes && NearestHits::kNone == RTC_INVALID_GEOMETRY_ID);
-/// RayScene recomputes all faces within the factor kReach of the nearest hit that Embree reports, for results with the
-/// precision of double.
+/// RayScene recomputes all faces within the factor kReach of the nearest hit that Embree reports.
 constexpr float kReach = 1.0f + 4e-6f;
 
 struct MeshLabel {
@@ -105,7 +104,6 @@ double meet_face(const MeshLabel& mesh, unsigned int face, const Ray& ray, bool 
   Vector3d a = corner(0), b = corner(1), c = corner(2);
   if (mesh.as_quads) {
     const Vector3d d = corner(3);
-    // For the quad (b, c, d, a) of the triangles (a, b, c) and (a, c, d), corners 1 and 3 are the ends of the diagonal.
     const Vector3d across = b.cross(d);
     const bool beside_first = across.dot(a) >= 0.0, beside_second = across.dot(c) >= 0.0;
     const bool in_second =

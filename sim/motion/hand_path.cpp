@@ -103,7 +103,6 @@ class Schedule {
       constexpr double kLastTau_s = 0.15;  // over the last centimetres
       aim_m_s = std::min({aim_m_s, std::sqrt(1.6 * acceleration_m_s2 * left_m), left_m / kLastTau_s});
       const double change = acceleration_m_s2 * kTick_s;
-      // During a push, only the smoothing of the hand's path limits the acceleration.
       v_m_s = std::clamp(aim_m_s, v_m_s - change, pushed ? aim_m_s : v_m_s + change);
       v_m_s = std::max(v_m_s, 1e-3);
       s_m += v_m_s * kTick_s;

@@ -25,7 +25,6 @@ struct PathPlan {
   double sway_length_m = 4.0;  ///< wavelength of the sway
 };
 
-/// Only the free path draws random numbers from `stream`.
 std::vector<Eigen::Vector2d> plan_path(const PathPlan& plan, Stream& stream);
 
 }  // namespace tumble::sim

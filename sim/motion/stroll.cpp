@@ -35,8 +35,7 @@ constexpr std::array kStrollParameters = {
 
 constexpr double kSwayLow_hz = 0.2, kSwayHigh_hz = 1.2;
 
-/// In the motion Stroll, a walker carries the robot along a horizontal figure of eight, from rest to rest. The robot
-/// faces along the path, with the tremor of a hand.
+/// In the motion Stroll, a walker carries the robot along a horizontal figure of eight, from rest to rest.
 class Stroll : public Motion {
  public:
   Stroll(const Values& values, const engine::World& world)
@@ -79,7 +78,6 @@ class Stroll : public Motion {
 
   HandHeldPose path(double time_s) const {
     const double walked_s = time_s - values_.at("rest_s"), phase = phase_rad(walked_s);
-    // The tremor of the hand starts and ends within a second, with continuous acceleration.
     const double share = eased(walked_s) * eased(walk_s_ - walked_s);
     const double step_rad = 2.0 * std::numbers::pi * values_.at("step_hz") * walked_s;
     const Eigen::Vector3d eight_m(half_length_m_ * std::sin(phase), half_width_m_ * std::sin(2.0 * phase),

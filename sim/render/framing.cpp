@@ -10,8 +10,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Paths are kept in the picture if their distance from the robots is below kNear_m plus a quarter of the robots'
-// extent.
 constexpr double kNear_m = 1.0;
 
 struct Ball {

@@ -90,7 +90,6 @@ void set_look(mjModel& model, int shadow_pixels) {
   }
 }
 
-/// The shadow map is restricted to the visible area, because a smaller area gives sharper shadows.
 void aim_sun(const Framing& framing, mjvScene& scene, mjrContext& engine) {
   const double reach_m = 2.0 + framing.distance_m;
   engine.shadowClip = static_cast<float>(reach_m);
@@ -163,7 +162,6 @@ void SceneRenderer::Impl::add_robots(const View& view, const mjvOption& option, 
   if (world.robot_body < 0) return;
   if (!world.free) {
     for (const Eigen::Isometry3d& T_WB : view.robots_T_WB) {
-      // The joint search starts from the previous pose, because neighbouring poses of a film strip are similar.
       engine::reach(world, T_WB, *data);
       mjv_addGeoms(&model, data.get(), &option, nullptr, mjCAT_DYNAMIC, &scene);
     }

@@ -57,7 +57,6 @@ std::vector<MeshPart> body_mesh(const mjModel& model, const mjData& data, int bo
   for (int geom = 0; geom < model.ngeom; ++geom) {
     if (model.geom_bodyid[geom] != body || model.geom_group[geom] >= kGroupsSeen) continue;
     if (colour_of(model, geom)[3] == 0.0f) continue;
-    // A thin strut (capsule) needs fewer facets about its axis than the shell of a sphere.
     const bool thin = model.geom_type[geom] == mjGEOM_CAPSULE;
     parts.push_back(part_of(model, geom, T_FW * geom_pose(data, geom), thin ? (segments + 2) / 4 * 2 : segments));
   }

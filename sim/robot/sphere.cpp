@@ -27,7 +27,6 @@ constexpr std::array kSphereParameters = {
     Parameter{"contact_damping_ratio", 1.0, 0.05, 1.5, "1", "damping ratio of a contact (MuJoCo solref[1])"},
 };
 
-/// Inertia of shell and inner ball about their common centre of mass, by the parallel axis theorem (Steiner).
 Eigen::Matrix3d inertia(double shell_kg, double radius_m, double inner_kg, double inner_radius_m,
                         const Eigen::Vector3d& d_m) {
   const double own =

@@ -90,7 +90,6 @@ void add_obstacles(mjSpec* spec, engine::World& world, const Values& values) {
     const Eigen::Vector2d ahead(std::cos(yaw_rad), std::sin(yaw_rad));
     Eigen::Vector2d at(value("x_m"), value("y_m"));
     if (kind == 3) at += half_depth_m * ahead;
-    // Half of the obstacle is below the floor, so that its lower face does not coincide with the floor.
     mjsGeom* geom = kind == 1 ? add_bar(spec, world, name, at, yaw_rad, height_m, kWood)
                               : add_surface(spec, world, name, mjGEOM_BOX, {at.x(), at.y(), 0.0},
                                             {half_depth_m, kObstacleHalfWidth_m, height_m}, yaw_rad, kWood);

@@ -69,8 +69,7 @@ void discard_unfinished(const std::filesystem::path& folder);
 
 std::string replay_file(const Example& example);
 
-/// Writes the list of examples, and moves their files from FOLDER/.unfinished to FOLDER. Files that only the previous
-/// list names are removed.
+/// Writes the list of examples, and moves their files from FOLDER/.unfinished to FOLDER.
 void write_examples(const std::filesystem::path& folder, const std::vector<std::string>& examples);
 
 enum class Pictures { read, left_out };
@@ -78,11 +77,8 @@ struct FoundExamples {
   std::vector<Example> examples;        ///< in the order of the list
   std::vector<std::string> unreadable;  ///< path and reason
 };
-/// An unreadable example does not affect other examples.
 FoundExamples read_examples(const std::filesystem::path& folder, Pictures pictures);
 
-/// Copies a damaged list to examples.json.damaged, so that the next list does not overwrite it; returns the path of the
-/// copy.
 std::filesystem::path set_damaged_aside(const std::filesystem::path& folder);
 
 }  // namespace tumble::tools

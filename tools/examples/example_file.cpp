@@ -63,7 +63,6 @@ fs::path list_file(const fs::path& folder) {
   return folder / "examples.json";
 }
 
-/// The "/" in the scenario's name is replaced, so that the file stays in its folder.
 std::string file_of(const Example& example, const std::string& ending) {
   std::string name = example.scenario + "-" + std::to_string(example.seed) + "-" + ending;
   for (char& c : name) {

@@ -13,7 +13,6 @@ std::string escaped(const std::string& text);
 /// Each "<" of the JSON text is escaped, so that the text cannot end a script element in which it is embedded.
 std::string script_json(const std::string& json);
 
-/// Converts a path to a file URL with percent-encoding (RFC 3986).
 std::string file_address(const std::string& path);
 
 std::string png_address(std::span<const std::uint8_t> png);

@@ -20,7 +20,6 @@ struct MovingOptions {
   std::function<void(std::size_t frames)> drawn;  ///< called after each frame
 };
 
-/// Returns the interval of `length_s` in which the body rotates most; the whole moving interval if it is shorter.
 Span liveliest_span(const sim::Truth& truth, double length_s);
 
 std::size_t frame_count(const Span& span, const MovingOptions& options);

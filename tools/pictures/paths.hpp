@@ -33,8 +33,7 @@ Path estimated_path(const scenarios::Estimate& estimate, const sim::Sensors& sen
 /// by at least 1 m.
 Path near_truth(const Path& path, const Path& truth);
 
-/// The interval is widened by `margin_s` on each side and limited to the time of the truth. Without motion, the
-/// interval is the whole truth.
+/// The interval is widened by `margin_s` on each side and limited to the time of the truth.
 struct Span {
   std::int64_t begin_ns = 0, end_ns = 0;
 };

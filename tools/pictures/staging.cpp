@@ -59,7 +59,6 @@ std::vector<sim::DrawnPath> drawn_paths(const Scene& scene) {
   const auto add = [&](const Path& path, Colour colour, double width) {
     if (path.points_W_m.size() > 1) paths.push_back({thinned(path.points_W_m, 1.5 * width_m), colour.rgba(), width});
   };
-  // The true path is slightly thicker, so it is visible behind an estimated path that covers it.
   const Path truth = scene.truth == nullptr ? Path() : true_path(*scene.sensors, *scene.truth, 10);
   add(truth, truth_colour(), 1.5 * width_m);
   for (std::size_t i = 0; i < scene.estimates.size(); ++i) {

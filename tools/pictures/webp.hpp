@@ -9,7 +9,6 @@
 
 namespace tumble::tools {
 
-/// Equal pictures give equal bytes.
 class WebpAnimation {
  public:
   /// Throws std::invalid_argument unless width and height are 1 to 16383 pixels and `quality` is 0 (small file) to 100.

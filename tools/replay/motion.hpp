@@ -33,8 +33,7 @@ class Motion {
 
 Motion true_motion(const sim::Truth& truth, std::int64_t step_ns);
 
-/// The motion is aligned with the truth like the scores, or without a truth (null) with `reference`. The result is
-/// empty without poses, or if the recording lacks the sensor of their frame.
+/// The motion is aligned with the truth like the scores, or without a truth (null) with `reference`.
 Motion estimated_motion(const scenarios::Estimate& estimate, const sim::Sensors& sensors, const sim::Truth* truth,
                         const Motion& reference);
 

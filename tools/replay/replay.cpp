@@ -95,7 +95,6 @@ std::vector<ReplayActor> actors_of(const ReplayInput& input) {
     truth.T_BB_given = true_from_given_body(*input.sensors, *input.truth);
     actors.push_back(std::move(truth));
   }
-  // Estimates with a path come first, so that their colours agree with the pictures of the run.
   const auto with_path = static_cast<std::size_t>(std::ranges::count_if(input.estimates, has_path));
   std::size_t paths = 0, other = with_path;
   for (const ReplayEstimate& given : input.estimates) {

@@ -55,7 +55,6 @@ ContestResult result_of(const MetricComparison& row) {
     out.better = badness(info, row.difference.value) < 0.0;
   }
   const double scale = info.sense == Sense::two_sided ? kNaN : 100.0 / std::abs(row.against_median);
-  // If half of the reference method's runs failed, its median is infinite and the percentage is undefined.
   const bool known = std::isfinite(row.against_median) && row.against_median != 0.0;
   const double factor = known ? scale : kNaN;
   out.percent = std::isfinite(row.difference.value) ? row.difference.value * factor : kNaN;

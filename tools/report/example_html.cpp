@@ -72,8 +72,6 @@ std::string moving_html(const ShownExample& shown) {
   const bool has_picture = !example.pictures.empty();
   const std::string still = has_picture ? html::png_address(example.pictures.front().png) : "";
   std::string out = "<figure class=\"moving\"><picture>";
-  // Without a script, the browser selects the still or the animated picture; if there is no still picture, it shows the
-  // animation.
   if (!example.moving.empty() && has_picture) {
     out += fmt::format("<source media=\"print, (prefers-reduced-motion: reduce)\" srcset=\"{}\">", still);
   }

@@ -150,7 +150,6 @@ std::string contests_html(const std::vector<ContestResult>& results, std::size_t
   return out + "</section>\n";
 }
 
-/// Typical runs precede failed runs, examples of these results precede others, and animations precede still pictures.
 const ShownExample* example_to_show(const std::vector<ShownExample>& examples) {
   const ShownExample* best = nullptr;
   const auto rank = [](const ShownExample& shown) {

@@ -82,8 +82,6 @@ class Boxes {
     }
   }
 
-  /// The axis is logarithmic if values are positive and span more than a decade; otherwise, it starts at 0 if
-  /// `from_zero` is set, or else at the smallest value.
   void put_into(Figure& figure, bool from_zero) {
     json data = json::array();
     for (const auto& [name, trace] : traces_) data.push_back(trace);

@@ -22,7 +22,7 @@ struct Figure {
   bool empty() const { return traces.empty(); }
 };
 
-/// Without traces, the figure stays empty. Invalid UTF-8 in texts is replaced.
+/// Invalid UTF-8 in texts is replaced.
 void set_plot(const nlohmann::json& traces, const nlohmann::json& layout, Figure& figure);
 
 /// Maximum number of runs of a box plot that are drawn as points

@@ -152,14 +152,12 @@ void add_examples(const scenarios::Results& results, const ReportOptions& option
     std::string replay = replay_address(options, example);
     content.examples.push_back({std::move(example), of_these, std::move(replay)});
   }
-  // Errors of the pictures must not hide the scores, so they become warnings.
   for (const std::string& what : found.unreadable)
     content.warnings.push_back(fmt::format("The page cannot show some pictures of single simulated runs: {}", what));
   if (!found.unreadable.empty()) return;
   if (content.examples.empty()) content.warnings.push_back(how_to_get_pictures(results, options));
 }
 
-/// The colours in the examples' pictures are taken first, because pictures cannot be recoloured.
 Palette palette_of(const PageContent& content) {
   Palette palette;
   for (const ShownExample& shown : content.examples) {

@@ -16,7 +16,6 @@ struct BenchPage {
   std::vector<std::string> left_out;  ///< with reasons
 };
 
-/// The cells are medians per method and class of simulated runs; failed runs rank worst.
 std::vector<Table> bench_tables(const scenarios::Suite& suite, const BenchPage& page,
                                 std::span<const scenarios::Outcome> outcomes);
 

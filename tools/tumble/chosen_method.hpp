@@ -11,7 +11,7 @@ namespace tumble::tools {
 
 scenarios::MethodPointer chosen_method(const std::string& name, const scenarios::Subject& subject);
 
-/// A failure of an external command becomes a BadInput. `on_sweep` is that of scenarios::OracleInput.
+/// `on_sweep` is that of scenarios::OracleInput.
 scenarios::Estimate run_method(const scenarios::Method& method, const sim::Sensors& sensors,
                                std::function<void(std::size_t done, std::size_t all)> on_sweep = {});
 

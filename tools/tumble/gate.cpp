@@ -167,7 +167,6 @@ void write_accepted(const fs::path& file, const scenarios::Gate& gate) {
   if (!fs::exists(file)) scenarios::replace_file(file, scenarios::to_yaml(gate));
 }
 
-/// The simulation checks are not measured here, because gates run often.
 std::string certificate_text(const Session& session, const scenarios::DataRoot& data, const fs::path& database) {
   scenarios::Results results(database, scenarios::Results::Mode::create_or_append);
   const auto certificate = scenarios::known_certificate(results, scenarios::CertificateStore(session.cache(), data));

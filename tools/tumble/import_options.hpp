@@ -37,7 +37,6 @@ void declare(VerbOptions& verb, ImportOptions& options);
 
 std::string format_of(const ImportOptions& options);
 
-/// Throws BadInput for options that have no effect for this format.
 void require_fitting(const ImportOptions& options, const std::string& format);
 
 sim::ImuRecord imu_sheet(const Session& session, const ImportOptions& options);

@@ -31,7 +31,7 @@ struct OpenRecording {
 };
 
 /// If an error names an option that would make the recording readable and the user did not set it, the recording is
-/// read again with this option. If a bag has several topics of a kind, faulty topics are skipped.
+/// read again with this option.
 OpenRecording open_recording(const Session& session, ImportOptions options);
 
 }  // namespace tumble::tools

@@ -28,7 +28,6 @@ class LearntFile {
 
   scenarios::Method wrap(const scenarios::Method& method);
 
-  /// Without a new calibration, the file is unchanged and a note states the reason.
   void keep(const Session& session) const;
 
  private:

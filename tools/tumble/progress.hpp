@@ -14,7 +14,6 @@ namespace tumble::tools {
 /// negative or not finite.
 std::string duration_text(double seconds);
 
-/// The progress bar has `bar_width` cells; 0 omits the bar.
 std::string progress_line(const scenarios::SweepProgress& progress, int bar_width);
 
 struct RegistrationProgress {
@@ -24,7 +23,6 @@ struct RegistrationProgress {
 
 std::string progress_line(const RegistrationProgress& progress, int bar_width);
 
-/// A terminal shows one progress line that is overwritten; other outputs get a new line every ten seconds.
 class ProgressDisplay {
  public:
   using Write = std::function<void(std::string_view)>;

@@ -107,7 +107,6 @@ void require_seconds(const ScoreOptions& options, const scenarios::Estimate& est
   }
 }
 
-/// If the trajectory hardly overlaps the truth, all errors would be zero.
 void require_compared(const ScoreOptions& options, const Standing& standing) {
   if (standing.compared >= kComparedMin && standing.spanned() >= kSpannedShareMin) return;
   throw scenarios::BadInput(

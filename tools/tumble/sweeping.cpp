@@ -44,7 +44,6 @@ AskedSweep sweep_until(const Session& session, const scenarios::DataRoot& data, 
   ProgressDisplay shown = ProgressDisplay::on_standard_error();
   AskedSweep out;
   scenarios::Suite part = suite;
-  // The worst simulated runs are known only after the last step of the sweep.
   scenarios::SweepOptions own = options;
   if (options.keep.which == scenarios::Keep::Which::worst) own.keep = {};
   const auto draws_of = [&](std::uint64_t seeds) { return seeds * suite.scenarios.size(); };

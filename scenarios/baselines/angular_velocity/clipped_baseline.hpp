@@ -40,8 +40,7 @@ class ClippedBaseline {
 
   explicit ClippedBaseline(const Params& params);
 
-  /// Writes one estimated angular rate per sample to `out`, in O(N); on error, `out` keeps its content. Possible errors
-  /// are `empty`, `too_few` (fewer than two samples), `non_finite`, `time_order` and `gap`.
+  /// Possible errors are `empty`, `too_few` (fewer than two samples), `non_finite`, `time_order` and `gap`.
   Status estimate(std::span<const ImuSample> samples, std::vector<RateState>& out) const;
 
  private:

@@ -9,10 +9,9 @@
 
 namespace tumble::baselines {
 
-/// Complementary estimates attitude by a complementary filter. The filter integrates the gyro, then applies the
-/// fraction 1 - exp(-dt / tau) of the smallest rotation that aligns the specific force with the vertical (equation (A2)
-/// of attitude.md). An acceleration that lasts longer than the time constant tau causes an attitude error. The filter
-/// does not estimate the gyro bias.
+/// The filter integrates the gyro, then applies the fraction 1 - exp(-dt / tau) of the smallest rotation that aligns
+/// the specific force with the vertical (equation (A2) of attitude.md). An acceleration that lasts longer than the time
+/// constant tau causes an attitude error. The filter does not estimate the gyro bias.
 class Complementary {
  public:
   struct Params {

@@ -37,7 +37,6 @@ class Madgwick {
 
   explicit Madgwick(const Params& params);
 
-  /// The first IMU sample sets roll and pitch from gravity, and yaw to zero.
   Status step(const ImuSample& sample, State& state) const;
 
  private:

@@ -73,8 +73,6 @@ struct BagWriting {
 /// - "/tf_static" contains the pose of each sensor in "body", from the calibration that the estimator uses.
 /// - "/tf" contains the pose of "body" in "world" from the truth, or else from the first track.
 /// - "/clock" is a rosgraph_msgs/Clock, published with the first message after every 10 ms.
-///
-/// Throws BadInput if the output cannot be written.
 void export_ros1_bag(const sim::Sensors& sensors, const BagWriting& writing, const std::filesystem::path& file);
 void export_ros2_bag(const sim::Sensors& sensors, const BagWriting& writing, const std::filesystem::path& folder);
 void export_mcap(const sim::Sensors& sensors, const BagWriting& writing, const std::filesystem::path& file);

@@ -13,7 +13,6 @@ namespace tumble::scenarios {
 
 std::int64_t stamp_of(const ros::Header& header);
 
-/// Each message of a topic has a header stamp (time of measurement) and a record stamp (time of recording).
 class BagStamps {
  public:
   explicit BagStamps(StampSource source) : source_(source) {}

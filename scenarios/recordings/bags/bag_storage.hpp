@@ -20,8 +20,7 @@ struct BagTopic {
 class BagWriter {
  public:
   virtual ~BagWriter() = default;
-  /// Declares these topics before all other topics, in this order. Returns false if a bag of this format declares each
-  /// topic with its first message, so that the order can differ.
+  /// Returns false if a bag of this format declares each topic with its first message, so that the order can differ.
   virtual bool begin_with(const std::vector<BagTopic>& topics) = 0;
   /// Messages must be in order of time, and each topic has one message type.
   virtual void write(const std::string& topic, std::int64_t stamp_ns, const ros::Message& message) = 0;
@@ -49,7 +48,6 @@ std::unique_ptr<BagWriter> make_ros1_writer(const std::filesystem::path& file);
 std::unique_ptr<BagWriter> make_ros2_writer(const std::filesystem::path& folder);
 std::unique_ptr<BagWriter> make_mcap_writer(const std::filesystem::path& file);
 std::unique_ptr<BagWriter> make_ros2_mcap_writer(const std::filesystem::path& folder);
-/// The path is a file, or a folder of files that are parts of one recording and are merged by time.
 std::unique_ptr<BagReader> open_ros1_bag(const std::filesystem::path& path);
 std::unique_ptr<BagReader> open_ros2_bag(const std::filesystem::path& path);
 std::unique_ptr<BagReader> open_mcap(const std::vector<std::filesystem::path>& files);

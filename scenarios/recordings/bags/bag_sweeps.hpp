@@ -23,8 +23,6 @@ struct CloudHeaders {
   std::string remark;
   bool follow_records = true;  ///< record stamps are later, same clock
   std::string frame;
-  /// Point clouds in a world frame are a map or transformed points, not raw sensor data, unless the caller chose the
-  /// topic.
   bool left_out_as_map(const BagReading& reading) const {
     return reading.lidar_topics.empty() && (frame == "world" || frame == "map" || frame == "odom");
   }

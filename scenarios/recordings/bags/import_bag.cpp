@@ -61,7 +61,6 @@ void note_unread_clouds(const OpenedBag& bag, std::vector<std::string>& notes) {
   }
 }
 
-/// Sensors whose recorded times do not overlap have no common clock.
 void require_one_clock(const sim::Sensors& sensors, bool by_headers, const std::filesystem::path& path) {
   struct Span {
     std::string name;

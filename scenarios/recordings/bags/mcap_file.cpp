@@ -153,7 +153,6 @@ void File::read_summary() {
   take_indexed(std::move(chunks));
 }
 
-/// Each offset in the summary of an MCAP file must point to a group of records of one kind.
 void File::check_groups(std::string_view summary, std::string_view groups) const {
   const std::uint64_t groups_at = footer_.summary_offset_start;
   walk(groups, groups_at, [&](const Record& record) {

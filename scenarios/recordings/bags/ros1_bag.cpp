@@ -159,7 +159,6 @@ class Ros1BagWriter : public BagWriter {
   }
 
  private:
-  /// A new subscriber receives the last message of a latched topic.
   boost::shared_ptr<::ros::M_string> connection_of(const std::string& topic, const TypedBytes& message) {
     if (topic != "/tf_static") return nullptr;
     return boost::make_shared<::ros::M_string>(::ros::M_string{{"topic", topic},
@@ -301,7 +300,6 @@ class Ros1BagReader : public BagReader {
     open(unpacked.unfinished());
   }
 
-  /// A full disk affects other programs, so the free disk space is checked before a bag is decompressed.
   static void require_room(const std::filesystem::path& file, const std::filesystem::path& folder) {
     const std::uint64_t needed = bytes_unpacked(file), free = std::filesystem::space(folder).available;
     if (needed <= free) return;

@@ -107,7 +107,7 @@ class Ros2BagWriter : public BagWriter {
     return static_cast<std::int64_t>(place) + 1;
   }
 
-  /// A stored message definition lets programs without ROS read the bag. Readers accept an empty type hash.
+  /// A stored message definition lets programs without ROS read the bag.
   void define(const std::string& type) {
     SQLite::Statement statement(
         *database_,

@@ -26,7 +26,6 @@ class StaticFrames {
 
   const std::vector<std::string>& remarks() const { return remarks_; }
 
-  /// Returns "body" or else "base_link" if the frame exists, or else an empty text.
   std::string body() const;
 
   /// Returns the pose T_AB of frame B in frame A, or nothing if the tree does not connect the frames.

@@ -104,7 +104,6 @@ struct ColumnFit {
   double differ = 0.0;
 };
 
-/// Returns the smallest number of columns whose columns differ about as much as with any other number of columns.
 template <std::size_t kCount>
 ColumnFit best_of(const NumberSample& sample, std::size_t numbers_in_file,
                   const std::array<std::size_t, kCount>& candidates) {

@@ -34,7 +34,6 @@ class HeaderLines {
     bytes_ += line_.size() + 1;
     if (bytes_ > kCloudHeaderMax)
       fail(fmt::format("the header of the point file is longer than the maximum of {} bytes", kCloudHeaderMax));
-    // PCL's reader of points separates words only by blanks and tabs.
     if (line_.find_first_of("\v\f") != std::string::npos)
       fail("the header contains a form feed or a vertical tab, which is not allowed");
     std::istringstream words(line_);
@@ -64,7 +63,6 @@ class HeaderLines {
     if (header.points > kCloudPointsMax) {
       fail(fmt::format("the file states {} points; at most {} can be read", header.points, kCloudPointsMax));
     }
-    // A number in a text needs a digit and a separator; the last number needs no separator.
     const std::uint64_t point_bytes = header.point_bytes > 0 ? header.point_bytes : 2 * header.fields;
     const std::uint64_t slack = header.point_bytes > 0 ? 0 : 1;
     const std::uint64_t rest = bytes_in_file_ - std::min(bytes_, bytes_in_file_) + slack;
@@ -136,7 +134,6 @@ void take_property(const HeaderLines& lines, const std::vector<std::string>& wor
 
 using Words = std::vector<std::string>;
 
-/// Header words in the order of the PCD format; the final entry is an alternative name of FIELDS.
 constexpr std::array<const char*, 11> kPcdWords = {"VERSION", "FIELDS",    "SIZE",   "TYPE", "COUNT",  "WIDTH",
                                                    "HEIGHT",  "VIEWPOINT", "POINTS", "DATA", "COLUMNS"};
 

@@ -141,7 +141,6 @@ PointTimeRule find_point_times(const std::vector<Cloud>& first, std::int64_t per
     largest = std::max({largest, std::abs(begin), std::abs(end)});
   }
   if (rule.field.empty() || spans.empty()) return {};
-  // Times since 1970 replace assumed time stamps, even if all points of a sweep have the same time.
   const bool stamped = period_ns > 0 && !(reading.assumed && largest >= kEpochMin_s);
   if (stamped && std::ranges::max(spans) == 0.0 && upper_median(points) > 1.0) {
     rule.field.clear();

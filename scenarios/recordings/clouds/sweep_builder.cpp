@@ -72,7 +72,6 @@ std::string said(const PointTimeRule& rule) {
                      rule.absolute ? " of the clock" : " after the sweep's time stamp");
 }
 
-/// The median of the point times is robust to single wrong times, whereas the first and last times are not.
 std::int64_t middle_of(const std::vector<std::optional<std::int64_t>>& times_ns) {
   std::vector<std::int64_t> known;
   for (const auto& time : times_ns) {
@@ -176,8 +175,7 @@ void SweepBuilder::read(Waiting& sweep) {
   if (store_) store_->take(record_);
 }
 
-/// Points without times get the start of the sweep. Points with wrong times are removed from `kept`; many wrong times
-/// throw BadInput.
+/// Points with wrong times are removed from `kept`; many wrong times throw BadInput.
 std::vector<std::int64_t> SweepBuilder::point_times(const Waiting& sweep, std::vector<std::size_t>& kept) {
   if (rule_->field.empty() || kept.empty()) {
     if (!sweep.stamp_ns)

@@ -58,7 +58,6 @@ class VtkWords {
     return value;
   }
 
-  /// Lidar drivers write "nan" or "inf" for rays without a return.
   double number() {
     std::string_view word = need("its numbers");
     if (word.starts_with('+')) word.remove_prefix(1);
@@ -78,7 +77,6 @@ class VtkWords {
   int line_ = 1;
 };
 
-/// The announced number of values is compared with the remaining file size before memory is allocated.
 void require_room(const VtkWords& words, std::uint64_t count, std::uint64_t each) {
   if (count > kCloudPointsMax) {
     words.fail(fmt::format("the file states {} points; at most {} can be read", count, kCloudPointsMax));

@@ -9,7 +9,6 @@
 
 namespace tumble::scenarios {
 
-/// The keys of the manifest are documented in dialects/README.md.
 std::string manifest_of(const Dialect& dialect, const SensorFacts& facts, const RecordingInfo& info,
                         std::int64_t origin_ns, const std::vector<std::string>& configuration, bool with_truth);
 

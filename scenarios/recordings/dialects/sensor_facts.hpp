@@ -44,7 +44,7 @@ struct SensorFacts {
   Eigen::Isometry3d T_IL() const { return T_BI.inverse(Eigen::Isometry) * T_BL; }
 };
 
-/// `points` is null if the points are in memory. Only one lidar sweep is in memory at a time.
+/// Only one lidar sweep is in memory at a time.
 SensorFacts facts_of(const sim::Sensors& sensors, const std::vector<PointStore>* points = nullptr);
 
 }  // namespace tumble::scenarios

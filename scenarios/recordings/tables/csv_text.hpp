@@ -9,8 +9,6 @@
 
 namespace tumble::scenarios {
 
-/// `where` is the location "FILE:12" for error messages. A field is a view of the file's text, without surrounding
-/// blanks or quotes.
 struct CsvLine {
   std::string where;
   std::vector<std::string_view> fields;

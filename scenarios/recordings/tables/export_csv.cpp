@@ -20,7 +20,6 @@ void append_all(std::string& text, const Vector& vector) {
   for (const double x : vector) append_number(text += ',', x);
 }
 
-/// The variance of an IMU sample is the squared noise density times the output rate.
 std::string covariance_text(double density_sqrt_hz, std::int64_t period_ns) {
   const double variance = density_sqrt_hz * density_sqrt_hz / (static_cast<double>(period_ns) * 1e-9);
   std::string text = ",[";

@@ -38,7 +38,6 @@ std::optional<std::size_t> find_column(const CsvLine& header, const std::string&
   return found;
 }
 
-/// The name of the quantity follows a point or slash: "/imu/header/stamp", "field.header.stamp".
 std::optional<std::size_t> find_ending(const CsvLine& header, const std::string& name) {
   return find_column(header, name, [&](std::string_view field) {
     std::string parts(field);
@@ -111,7 +110,6 @@ std::optional<ImuColumns> flattened(const CsvLine& header) {
   return columns.complete() ? std::optional(layout) : std::nullopt;
 }
 
-/// Short names are "wx_rad_s" or "wx", "fx_m_s2", "fx" or "ax", and "stamp_s", "sec", "secs" or "s" with "stamp_ns".
 std::optional<ImuColumns> named(const CsvLine& header) {
   ImuColumns layout;
   RequiredColumns columns(header);

@@ -30,9 +30,8 @@ struct ImuColumns {
   std::vector<std::string> left_out;  ///< names of ignored columns
 };
 
-/// Finds the IMU columns by their names, or by their positions if the table has no header. Known names are those of ROS
-/// messages (".../angular_velocity/x"), of the command `export`, their short forms (sec nsec wx.. fx..), and of loggers
-/// (logger_columns.hpp).
+/// Known names are those of ROS messages (".../angular_velocity/x"), of the command `export`, their short forms (sec
+/// nsec wx.. fx..), and of loggers (logger_columns.hpp).
 ImuColumns imu_columns(const LoggedTable& table);
 
 std::int64_t stamp_ns(const CsvLine& line, const ImuColumns& columns);

@@ -30,12 +30,11 @@ std::string leave_out_faulty(const ReadingText& where, const ReadingText& disord
 void finish_readings(const std::string& where, AccelUnit unit, sim::ImuRecord& imu);
 
 /// Returns true if the median norm of the specific force is within 10 % of 1, and a fifth of the norms are within 2 %
-/// of the median (rest). Readings without gravity have no constant norm of the specific force.
+/// of the median (rest).
 bool is_in_g(const sim::ImuRecord& imu);
 
 std::string even_out_stamps(sim::ImuRecord& imu);
 
-/// Describes gaps longer than one second, which no estimator bridges.
 std::string gaps_text(const sim::ImuRecord& imu);
 
 /// RotationWindows selects the time windows in which the rotation of the measured gravity is compared with the gyro. In

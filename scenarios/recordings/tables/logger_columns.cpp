@@ -80,7 +80,6 @@ Name split_brackets(std::string_view field) {
   return {quantity, unit};
 }
 
-/// The unit follows the quantity after an underscore ("time_ms", "gyro_x_deg_s") or directly ("TimeUS").
 template <class Value, class IsQuantity>
 Name split_suffix(std::string_view field, const UnitNames<Value>& units, const IsQuantity& is_quantity) {
   for (std::size_t at = field.find('_'); at != std::string_view::npos; at = field.find('_', at + 1)) {

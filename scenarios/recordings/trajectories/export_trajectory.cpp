@@ -17,7 +17,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Returns true if the pose is known, because the poses of a reference instrument may have gaps.
 bool known(const sim::Truth& truth, std::size_t i) {
   return truth.q_WB[i].coeffs().allFinite() && truth.p_WB_m[i].allFinite();
 }

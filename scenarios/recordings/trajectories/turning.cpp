@@ -88,8 +88,7 @@ std::optional<AttitudePair> pair_from(std::span<const TimedAttitude> attitudes, 
   return out;
 }
 
-/// Pairs of attitudes begin 50 ms apart and may overlap. Pairs with little rotation contain mainly attitude noise, so
-/// they count only if there are few other pairs.
+/// Pairs with little rotation contain mainly attitude noise, so they count only if there are few other pairs.
 std::vector<AttitudePair> pairs_of(std::span<const TimedAttitude> attitudes) {
   std::vector<AttitudePair> out;
   for (std::size_t first = 0; first < attitudes.size();) {
@@ -320,7 +319,6 @@ TurningCheck check_turning(std::span<const TimedAttitude> attitudes, const std::
   compare_with_gravity(comparison, imu, out);
   prefer_upright(comparison, imu, out.reading.undelayed);
   out.reading.delayed = out.reading.undelayed;
-  // A delay at which few pairs of attitudes remain fits by chance.
   const std::size_t least = std::max(kDelayPairsMin, out.pairs / 2);
   if (delay_max_s <= 0.0 || out.pairs < least) return out;
   out.clock_known = clock_shows(comparison, out.stated.difference, least);
