@@ -47,8 +47,7 @@ std::vector<const CertificateRow*> select(const std::vector<std::string>& names)
   }
   for (const std::string& name : names) {
     if (std::find(known.begin(), known.end(), name) == known.end()) {
-      throw BadInput(
-          fmt::format("the certificate of the simulation has no measurement '{}'{}", name, suggestion(name, known)));
+      throw BadInput(fmt::format("no check of the simulation has the name '{}'{}", name, suggestion(name, known)));
     }
   }
   return selected;

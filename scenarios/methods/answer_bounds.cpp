@@ -40,7 +40,7 @@ std::string unit_like(std::string_view unit, double times) {
   for (const auto& [name, length_s] : kUnits) {
     const double share = times * length_s / asked_s;  // covered fraction in this unit
     if (unit != name && share > 1.0 / kFactor && share < kFactor)
-      return fmt::format("; the values seem to be in {}", name);
+      return fmt::format("; the time stamps seem to be in {}", name);
   }
   return "";
 }

@@ -201,7 +201,7 @@ std::string delay_text(const RotationAgreement& found) {
   if (std::abs(found.delay_s) < kDelaySaid_s) return "";
   return fmt::format(
       "caution: the lidar's rotation follows the gyro's rotation {}{}; check that both use one clock and that sweep "
-      "stamps are start times. After removal of this delay, ",
+      "stamps are start times. Result after removal of this delay: ",
       rounded(std::abs(found.delay_s)), found.delay_s > 0.0 ? " s later" : " s earlier");
 }
 
@@ -213,19 +213,18 @@ std::string axes_text(const RotationAgreement& found) {
             ? ": units, signs and axes agree"
             : ": the units agree; this motion does not rotate about all axes, so some axes are not checked");
   }
-  const std::string off =
-      fmt::format("caution: the rotations of lidar and gyro differ{} (difference {}). They would agree if ",
-                  pairs_text(found), percent(found.error_as_read));
   if (found.axes_error <= kAgrees) {
     return fmt::format(
-        "{}the lidar's axes were {} (difference {}). Check the signs and order of the axes, and the mounting", off,
-        found.axes.text(), percent(found.axes_error));
+        "caution: the rotations of lidar and gyro differ{} (difference {}). The rotations would agree if the lidar's "
+        "axes were {} (difference {}). Check the signs and order of the axes, and the mounting",
+        pairs_text(found), percent(found.error_as_read), found.axes.text(), percent(found.axes_error));
   }
   const Eigen::Quaterniond& q = found.turned;
   return fmt::format(
-      "{}the lidar's orientation relative to the IMU were the quaternion x y z w {} {} {} {} (difference {}). Check "
-      "the mounting",
-      off, rounded(q.x()), rounded(q.y()), rounded(q.z()), rounded(q.w()), percent(found.turned_error));
+      "caution: the rotations of lidar and gyro differ{} (difference {}). The rotations would agree if the lidar's "
+      "orientation relative to the IMU were the quaternion x y z w {} {} {} {} (difference {}). Check the mounting",
+      pairs_text(found), percent(found.error_as_read), rounded(q.x()), rounded(q.y()), rounded(q.z()), rounded(q.w()),
+      percent(found.turned_error));
 }
 
 }  // namespace

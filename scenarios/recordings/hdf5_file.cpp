@@ -152,7 +152,7 @@ void Group::fail(const std::string& name, const std::string& what) const {
 Group Group::open(const std::string& name) const {
   if (!has(name)) fail(name, "is missing");
   Handle group(H5Gopen2(group_.get(), name.c_str(), H5P_DEFAULT), H5Gclose);
-  if (!group.valid()) fail(name, fmt::format("the group cannot be read{}", last_error()));
+  if (!group.valid()) fail(name, fmt::format("the HDF5 group with this path cannot be read{}", last_error()));
   return Group(std::move(group), file_, place_ + "/" + name);
 }
 

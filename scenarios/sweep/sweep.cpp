@@ -216,8 +216,9 @@ class Sweep {
 
   // If the worker process of a task dies, each of its remaining methods gets an outcome without scores.
   void account_for_death(const DrawTask& draw, bool late, const Process::End& end) {
-    const std::string what = late ? "the simulated run did not end within its time limit"
-                                  : "the process of the simulated run " + end.describe();
+    const std::string what =
+        late ? "the simulated run did not end within its time limit"
+             : fmt::format("the process that computed the simulated run failed: {}", end.describe());
     if (updating_kept_) {
       progress_.not_kept = what;
       return;

@@ -155,7 +155,7 @@ std::optional<scenarios::Gate> load(const scenarios::DataRoot& data, const GateO
       scenarios::load_gate(data, options.accepted.empty() ? suite : options.accepted.string(), given);
   if (gate.suite != suite) {
     throw scenarios::BadInput(
-        fmt::format("{}: this file contains the gate of suite '{}', but the requested suite is '{}'",
+        fmt::format("{}: this file contains accepted results of suite '{}', but the requested suite is '{}'",
                     options.accepted.string(), gate.suite, suite));
   }
   return gate;

@@ -50,11 +50,10 @@ scenarios::Method LearntFile::wrap(const scenarios::Method& method) {
 void LearntFile::keep(const Session& session) const {
   if (path_.empty()) return;
   if (learning_.found() != nullptr) return scenarios::write_rig_calibration(path_, *learning_.found());
-  session.note(
-      fmt::format("{}: the file {}, because the run produced no calibration of the rig. Possible reasons are too "
-                  "little free flight or "
-                  "contact without an identified saturation limit, a file of another rig, or a failed run",
-                  path_.string(), std::filesystem::exists(path_) ? "is unchanged" : "was not written"));
+  session.note(fmt::format(
+      "{}: the file {}, because the run produced no calibration of the rig. Possible reasons: the run failed, the "
+      "file belongs to another rig, or the motion had little free flight and no gyro saturation",
+      path_.string(), std::filesystem::exists(path_) ? "is unchanged" : "was not written"));
 }
 
 }  // namespace tumble::tools

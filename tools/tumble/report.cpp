@@ -233,7 +233,8 @@ Action declare_report(VerbOptions& verb, const Session& session) {
            "writes this badge, FILE.svg, which shows the suite and in how many scenarios a method is better than the "
            "baseline");
   verb.add_flag("--all", options->all,
-                "prints all metrics and the curves over bins, not only the most important metrics");
+                "prints all metrics, also as functions of the depth and the length of clipping [default: only the most "
+                "important metrics]");
   return [&session, options] { return report(session, *options); };
 }
 

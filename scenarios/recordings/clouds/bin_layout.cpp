@@ -121,7 +121,7 @@ std::string contradiction_of_size(std::span<const char> bytes, const ColumnFit& 
   const std::string size = fmt::format(
       "the .bin file has {} bytes; its size must be a multiple of 16 (float32 x y z intensity)", bytes.size());
   if (floats.columns == 0) return fmt::format("{}; it may be truncated", size);
-  return size + fmt::format("; the numbers match {} columns of float32", floats.columns);
+  return fmt::format("{}; the numbers match {} columns of float32", size, floats.columns);
 }
 
 std::string contradiction_of_numbers(std::span<const char> bytes, double odd) {
@@ -133,7 +133,7 @@ std::string contradiction_of_numbers(std::span<const char> bytes, double odd) {
   const NumberSample doubles = sample_of<double>(bytes);
   const ColumnFit fit = best_of(doubles, bytes.size() / sizeof(double), kDoubles);
   if (odd_share(doubles) > kOddShareMax || fit.columns == 0) return text;
-  return text + fmt::format("; the numbers match {} columns of float64", fit.columns);
+  return fmt::format("{}; the numbers match {} columns of float64", text, fit.columns);
 }
 
 }  // namespace

@@ -94,11 +94,11 @@ void require_no_other_unit(const TimeUnit& stated, double span, double period_ns
   const auto* read = std::find_if(kTimeUnits.begin(), kTimeUnits.end(),
                                   [&](const TimeUnit& each) { return fits(span, each, period_ns); });
   if (read == kTimeUnits.end()) return;
-  std::string line = fmt::format("{}: the point times in field '{}' have the stated unit {} and a range of ", where,
-                                 field, name_of(stated));
-  append_number(line, span);
-  throw BadInput(fmt::format("{} in a sweep: {}, {}; check the unit", line, share_of(span, stated, period_ns),
-                             share_of(span, *read, period_ns)));
+  std::string range;
+  append_number(range, span);
+  throw BadInput(fmt::format(
+      "{}: the point times in field '{}' have the stated unit {} and a range of {} in a sweep: {}, {}; check the unit",
+      where, field, name_of(stated), range, share_of(span, stated, period_ns), share_of(span, *read, period_ns)));
 }
 
 double unit_by_size(double span, double largest, double period_ns, const std::string& field, const std::string& where) {
@@ -107,20 +107,21 @@ double unit_by_size(double span, double largest, double period_ns, const std::st
     if (!(period_ns > 0.0) && largest >= kEpochMin_s * 1e9 / unit.ns && largest < kEpochMin_s * 1e12 / unit.ns)
       return unit.ns;
   }
-  std::string line = fmt::format("{}: the point times in field '{}' have a range of ", where, field);
-  append_number(line, span);
-  line += " in a sweep";
+  std::string range, period;
+  append_number(range, span);
+  append_number(period, period_ns * 1e-6);
   if (!(period_ns > 0.0)) {
-    throw BadInput(fmt::format(
-        "{}, but the point times are not time stamps since 1970; state the times of the sweeps (--times), or "
-        "the duration of one sweep (--sweep-period)",
-        line));
+    throw BadInput(
+        fmt::format("{}: the point times in field '{}' have a range of {} in a sweep, but the point times are not time "
+                    "stamps since 1970; state the times of the sweeps (--times), or the duration of one sweep "
+                    "(--sweep-period)",
+                    where, field, range));
   }
-  line +=
-      ". This range must be 0.15 to 150 % of the sweep period, but is not in any of the units s, ms, us and ns; the "
-      "sweep period is ";
-  append_number(line, period_ns * 1e-6);
-  throw BadInput(fmt::format("{} ms. State the unit (--time-unit)", line));
+  throw BadInput(fmt::format(
+      "{}: the point times in field '{}' have a range of {} in a sweep. This range must be 0.15 to 150 % of the sweep "
+      "period, but is not in any of the units s, ms, us and ns; the sweep period is {} ms. State the unit "
+      "(--time-unit)",
+      where, field, range, period));
 }
 
 }  // namespace

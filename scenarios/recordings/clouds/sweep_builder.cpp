@@ -346,8 +346,11 @@ void SweepBuilder::note_dropped_points(std::vector<std::string>& notes) const {
                     "lidar's axes (first VIEWPOINT: {})",
                     viewpoints_, first_viewpoint_));
   if (record_.point_times == sim::PointTimes::unknown)
-    notes.push_back(fmt::format("the points have no time stamps, so sweeps cannot be deskewed{}",
-                                (names.empty() ? "" : " (set '--time-field' to a field with times):" + names)));
+    notes.push_back(
+        names.empty() ? "the points have no time stamps, so sweeps cannot be deskewed"
+                      : fmt::format("the points have no time stamps, so sweeps cannot be deskewed (set '--time-field' "
+                                    "to a field with times):{}",
+                                    names));
   if (!names.empty()) notes.push_back("ignored fields:" + names);
 }
 

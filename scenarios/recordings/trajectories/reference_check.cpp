@@ -122,8 +122,7 @@ void require_clock(const TurningCheck& check, const std::string& imu, const std:
 
 std::string check_reference(const std::vector<ReferencePose>& poses, const Eigen::Isometry3d& T_BA,
                             const sim::Sensors& sensors, const std::string& where) {
-  const std::string unchecked = "the reference is not checked against a gyro: ";
-  if (sensors.imus.empty()) return fmt::format("{}the recording contains no IMU", unchecked);
+  if (sensors.imus.empty()) return "the reference is not checked against a gyro: the recording has no IMU";
   const sim::ImuRecord& imu = sensors.imus.front();
   std::vector<TimedAttitude> attitudes;
   for (const ReferencePose& pose : poses) attitudes.push_back({pose.time_ns, pose.q_WA});
@@ -131,9 +130,9 @@ std::string check_reference(const std::vector<ReferencePose>& poses, const Eigen
   const TurningCheck check = check_turning(attitudes, frames, imu, kDelaySearched_s);
   if (check.pairs == 0)
     return fmt::format(
-        "{}too few pairs of poses of the reference (0.05 to 1 s apart) rotate by at least 0.02 rad while '{}' has "
-        "readings below its range",
-        unchecked, imu.name);
+        "the reference is not checked against a gyro: too few pairs of poses of the reference (0.05 to 1 s apart) "
+        "rotate by at least 0.02 rad while '{}' has readings below its range",
+        imu.name);
   if (check.upright) {
     throw BadInput(
         fmt::format("{}: the force that '{}' measures should point up on average, but differs from the vertical of the "
