@@ -44,7 +44,7 @@ void add(const Outcome& outcome, GateRun& run) {
 GateRun gate_run(std::span<const Outcome> outcomes, std::uint64_t first, std::uint64_t last) {
   if (last < first || last - first >= kDrawsMax) {
     throw BadInput(
-        fmt::format("a gate compares 1 to {} seeds, but the given range is {} to {}", kDrawsMax, first, last));
+        fmt::format("'tumble gate' compares 1 to {} seeds, but the given range is {} to {}", kDrawsMax, first, last));
   }
   GateRun run;
   for (std::uint64_t seed = first; seed <= last; ++seed) run.seeds.push_back(seed);

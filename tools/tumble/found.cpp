@@ -114,8 +114,8 @@ class Found {
 
   void add_own_body(const Eigen::AlignedBox3d& box, bool stated) {
     add("robot's own returns",
-        fmt::format("returns inside a box from {} to {} m around the lidar are removed", vector_text(box.min()),
-                    vector_text(box.max())),
+        fmt::format("lidar returns from the robot itself are removed: inside a box from {} to {} m in lidar axes",
+                    vector_text(box.min()), vector_text(box.max())),
         stated ? kStated : kAssumed, "--own-body X Y Z X Y Z (two opposite corners)");
   }
 

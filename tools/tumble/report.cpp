@@ -231,7 +231,7 @@ Action declare_report(VerbOptions& verb, const Session& session) {
   verb.add("-o,--output", options->page, "writes this page, FILE.html [default: prints only tables]");
   verb.add("--badge", options->badge,
            "writes this badge, FILE.svg, which shows the suite and in how many scenarios a method is better than the "
-           "baseline");
+           "baseline method");
   verb.add_flag("--all", options->all,
                 "prints all metrics, also as functions of the depth and the length of clipping [default: only the most "
                 "important metrics]");

@@ -239,7 +239,7 @@ Action declare_run(VerbOptions& verb, const Session& session) {
            "sets the seed of the simulated run [default: 1; for a named case, the seed of the case]");
   verb.add("--method", options->methods,
            "runs this method, for example 'saave' or 'rate/saave'; repeat the option for more methods [default: all "
-           "methods that apply; with only a scenario and a seed, the baseline and our method of each kind]")
+           "methods that apply; with only a scenario and a seed, the baseline method and our method of each kind]")
       .one_at_a_time();  // one word per --method
   verb.add("--set", options->parameters,
            "sets a parameter of a method: METHOD.PARAMETER=NUMBER, for example rate/tumble_lag.lag_s=0.5; repeat the "
