@@ -47,7 +47,6 @@ class Values {
   std::map<std::string, double> numbers_;
 };
 
-/// Throws InvalidSituation for an unknown name, NaN, or a value outside its limits.
 Values resolve(const std::string& place, const Values& given, std::span<const Parameter> known);
 
 std::string nearest_name(std::string_view name, std::span<const std::string> known);

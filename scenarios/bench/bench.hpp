@@ -11,7 +11,6 @@
 
 namespace tumble::scenarios {
 
-/// A changed bench suite gets a higher version number in its name, for example "bench_rate_v1".
 std::string bench_suite_name(Kind kind);
 
 /// Only bench results with equal suite digests are comparable.
@@ -25,8 +24,6 @@ void add_published(std::span<const BenchResult> published, Results& results);
 
 void require_of_suite(const BenchResult& result, const Suite& suite);
 
-/// Returns the name of the first simulated run whose recording differs between the bench results `a` and `b`, or an
-/// empty string.
 std::string other_recording(const BenchResult& a, const BenchResult& b);
 
 /// Failed runs and runs without a value of the metric rank worst in the median. A simulated run is skipped if another

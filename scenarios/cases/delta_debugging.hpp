@@ -31,8 +31,6 @@ struct LeastNumber {
   bool complete = false;
 };
 
-/// Bisects between `failing`, a parameter value at which the run fails, and `ideal`, a parameter value at which the run
-/// is assumed to succeed.
 LeastNumber least_failing_number(double failing, double ideal, double resolution, bool whole, const FailsAt& fails);
 
 }  // namespace tumble::scenarios

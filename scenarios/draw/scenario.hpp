@@ -45,7 +45,7 @@ std::vector<std::string> case_names(const DataRoot& data);
 Scenario load_scenario(const DataRoot& data, const std::string& name);
 
 /// Draws all random parameters of the scenario with the random seed `seed`, and adds the numbers of the sensors' data
-/// sheets. Throws BadInput if the scenario contradicts a data sheet or contains a component that this build lacks.
+/// sheets.
 sim::ResolvedSituation draw(const DataRoot& data, const Scenario& scenario, std::uint64_t seed);
 
 /// The conversion of a simulated run's parameters to YAML and back preserves all bits.

@@ -24,7 +24,6 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr std::uintmax_t kLargestFile = 4u << 20;
-/// An identifier becomes part of a file name, which has at most 255 bytes including random seed and extension.
 constexpr std::size_t kIdentifierMax = 100;
 
 /// Some invalid texts cause an endless loop in the YAML parser; each parser event consumes a byte, so a count above the

@@ -8,7 +8,6 @@ namespace tumble::scenarios {
 
 bool has_lidar(const Scenario& scenario);
 
-/// Motion and IMU readings remain bit-identical, because each sensor has a separate random stream.
 sim::ResolvedSituation without_lidars(const sim::ResolvedSituation& situation);
 
 }  // namespace tumble::scenarios

@@ -110,7 +110,6 @@ std::uintmax_t AnswerBounds::map_bytes() const {
 
 void AnswerBounds::require_size(const std::filesystem::path& file, std::uintmax_t bytes) const {
   const std::string name = file.filename().string();
-  // Symbolic links are rejected, because they could lead to files that the external method did not write.
   if (!std::filesystem::is_regular_file(std::filesystem::symlink_status(file)))
     throw BadInput(
         fmt::format("{}: the output path is not a regular file; the method must write a regular file", name));

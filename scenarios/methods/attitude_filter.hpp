@@ -9,7 +9,6 @@
 
 namespace tumble::scenarios {
 
-/// The first error of the filter ends the run, and the estimate keeps the earlier attitudes.
 template <typename Filter>
 Estimate run_attitude_filter(const sim::Sensors& sensors, const typename Filter::Params& params) {
   const Filter filter(params);

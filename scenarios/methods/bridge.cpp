@@ -19,7 +19,6 @@ namespace tumble::scenarios::bridge {
 
 namespace {
 
-// The explicit table makes a change of the clip flags in either library an error.
 constexpr std::array<std::pair<int, ClipFlag>, 6> kClipBits = {
     {{0, kClipGyroX}, {1, kClipGyroY}, {2, kClipGyroZ}, {3, kClipAccelX}, {4, kClipAccelY}, {5, kClipAccelZ}}};
 

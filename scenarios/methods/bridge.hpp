@@ -28,7 +28,6 @@
 /// - In both, a lidar point is in metres in L, with the time offset from the sweep's start [ns].
 namespace tumble::scenarios::bridge {
 
-/// Methods that cannot restart accept a time step between IMU samples of at most 1 s.
 inline constexpr double kGapMaxS = 1.0, kAnyGapS = std::numeric_limits<double>::infinity();
 
 /// Real saturation limits exceed the stated range of a device (MTi-30: by a factor of 1.4), and a tilted saturation

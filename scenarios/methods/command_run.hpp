@@ -14,7 +14,6 @@ std::string without_trailing_folder(std::string text, const std::filesystem::pat
 
 std::string with_output_tail(const std::string& what, const CommandEnd& end);
 
-/// The path of the temporary folder is removed from error messages, so that the messages are equal in each run.
 template <class Work>
 auto without_folder(const std::filesystem::path& scratch, Work&& work) {
   try {

@@ -11,8 +11,7 @@
 /// TUM files have no columns for covariances, so the covariances are in a separate file (see ESTIMATE.md).
 namespace tumble::scenarios {
 
-/// Writes the upper triangle of each covariance, row by row. Writes no file if all covariances are zero, which means
-/// that the method estimated none.
+/// Writes the upper triangle of each covariance, row by row.
 void write_covariances(const std::filesystem::path& path, const std::vector<std::int64_t>& stamps_ns,
                        const std::vector<Eigen::Matrix3d>& covariances);
 

@@ -9,7 +9,6 @@
 #include "scenarios/methods/method.hpp"
 #include "sim/recording.hpp"
 
-/// RecordingFinding is a fault of a recording that increases the error of an estimate.
 namespace tumble::scenarios {
 
 struct RecordingFinding {

@@ -326,7 +326,6 @@ void write_estimate(const std::filesystem::path& folder, const std::string& meth
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw BadInput(fmt::format("{}: the folder cannot be created: {}", folder.string(), error.message()));
-  // Remaining files of an earlier estimate would be read as part of the new estimate.
   for (const char* name : kEstimateFiles) std::filesystem::remove(folder / name, error);
   if (!estimate.rates.empty()) write_rates(folder / "rates.csv", estimate.rates);
   if (!estimate.attitudes.empty()) write_attitudes(folder, estimate.attitudes);

@@ -19,7 +19,6 @@ void add_finding(const HealthFinding& finding, Estimate& estimate);
 void add_findings(const SensorHealth& health, std::span<const std::string> names, Estimate& estimate);
 
 bool has_finding(HealthFinding::Kind kind, const Estimate& estimate, const std::string& sensor = "");
-/// Implausible IMU readings are constant, contradict readings of another IMU, or contradict gravity.
 bool has_implausible_readings(const Estimate& estimate);
 /// The health entry `localised` becomes false if a health finding contradicts the pose in the map.
 bool report_localised(Estimate& estimate);

@@ -9,8 +9,7 @@
 
 namespace tumble::scenarios {
 
-/// Parses parameters of methods such as "rate/tumble_lag.lag_s=0.5"; the kind "rate/" is optional. Throws BadInput for
-/// a malformed text, an unknown method or parameter, a repeated parameter, or an invalid value.
+/// Parses parameters of methods such as "rate/tumble_lag.lag_s=0.5"; the kind "rate/" is optional.
 std::vector<Method> with_parameters(std::span<const MethodPointer> methods, std::span<const std::string> texts);
 
 }  // namespace tumble::scenarios

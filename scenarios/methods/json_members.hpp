@@ -10,7 +10,6 @@
 
 namespace tumble::scenarios {
 
-/// JsonMembers reports each error as BadInput with file, member and value.
 class JsonMembers {
  public:
   JsonMembers(const std::filesystem::path& path, const nlohmann::json& object) : path_(path), object_(object) {}

@@ -65,8 +65,6 @@ void add_rotations(const Estimate& estimate, std::vector<SeenRotation>& out) {
   }
 }
 
-/// Between two lidar sweeps, the body rotates by a few hundredths of a radian, so integrating each gyro axis alone is
-/// accurate.
 class Integral {
  public:
   explicit Integral(const sim::ImuRecord& imu) : imu_(imu) {

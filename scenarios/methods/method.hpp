@@ -28,7 +28,6 @@ std::string full_name(Kind kind, const std::string& method);
 enum class Frame { imu, lidar, body, centre };
 const char* to_string(Frame frame);
 
-/// A method fills in the members for its kind; the other members remain empty.
 struct Estimate {
   Status status;                         ///< error of the whole run, or `ok`
   Frame frame = Frame::imu;              ///< frame of `attitudes` and `poses`

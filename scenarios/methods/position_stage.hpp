@@ -6,8 +6,6 @@
 #include "scenarios/methods/method.hpp"
 #include "scenarios/methods/settings.hpp"
 
-/// A position method for a sphere is the first stage of the sphere's slam method, which has all parameters of the
-/// position method.
 namespace tumble::scenarios {
 
 std::vector<const SettingsTable*> stages_after(std::vector<const SettingsTable*> own, const Method& position);

@@ -11,7 +11,6 @@ namespace tumble::scenarios {
 /// `transcript` receives the printed output of the Python function, even if the function raises an exception.
 Estimate call_python(const ExternalDescription& description, const sim::Sensors& sensors, std::string& transcript);
 
-/// Returns the versions of Python and numpy, and a digest of the method's Python file without its imported modules.
 std::string python_version(const ExternalDescription& description);
 
 }  // namespace tumble::scenarios

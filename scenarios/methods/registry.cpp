@@ -105,7 +105,6 @@ Method make_method(MethodInfo info, RunCore run) {
       std::make_shared<const std::vector<sim::Parameter>>(joined_rows(settings, info.parameters_first));
   info.parameters = *parameters;
   const bool needs_truth = info.needs_truth;
-  // The lambda keeps the parameters alive, because `info` refers to them.
   RunMethod wrapped = [name, settings, parameters, needs_truth, run](
                           const sim::Sensors& sensors, const sim::Values& given, const OracleInput& oracle) {
     if (needs_truth && oracle.truth == nullptr) {

@@ -9,7 +9,6 @@
 
 namespace tumble::scenarios {
 
-/// Reports the saturation limit of each axis, and the plane parameters of tilted limits (ESTIMATE.md, "Rails").
 /// Saturation limits that were copied from another axis or from a data sheet are not reported.
 void report_rails(const SaturationLevels& rails, std::map<std::string, double>& health);
 

@@ -11,7 +11,6 @@
 #include "scenarios/methods/slam_settings.hpp"
 #include "scenarios/methods/sphere_attitude.hpp"
 
-/// The lidar sweeps of a rolling sphere are registered as for the rig, with the rolled distance as an odometer.
 namespace tumble::scenarios {
 
 namespace {
@@ -217,7 +216,6 @@ Estimate register_along(const Estimate& rolled, const sim::Sensors& sensors, std
   return estimate;
 }
 
-/// The first run, with an uncertain odometer, estimates the radius of the sphere for the second run.
 Estimate run_rolling_prior(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
   Estimate estimate;
   estimate.frame = Frame::imu;

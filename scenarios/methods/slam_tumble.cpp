@@ -81,7 +81,6 @@ class Collector {
   void observe(const TumblingOdometry& odometry) {
     PoseState pose;
     if (output_ != Output::live || !odometry.newest(pose).ok()) return;
-    // TumblingOdometry can hold back a sample; the newest pose then belongs to the previous sample.
     if (live_.empty() || pose.time_ns > live_.back().time_ns) live_.push_back(pose);
   }
   void take(TumblingOdometry& odometry) {
@@ -114,7 +113,6 @@ class Collector {
     apply_smoothed(std::move(smoothed), estimate_.sweeps[smoothed_++]);
   }
 
-  /// Sweeps before the first live pose (about 0.3 s after the start) keep their trajectory.
   void replace_by_live() {
     auto next = live_.begin();
     for (SweepReport& sweep : estimate_.sweeps) {

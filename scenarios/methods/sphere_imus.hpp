@@ -16,7 +16,6 @@ struct SphereImus {
   int beyond_range = 0;  ///< dropped readings beyond the range
 };
 
-/// Readings that are not finite, out of order or beyond the device's range are dropped.
 Status sphere_imus(const sim::Sensors& sensors, SphereImus& out);
 
 struct MergedImus {

@@ -20,7 +20,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-// The child process is a copy of a program that may hold locks and open files, so the child does only minimal work.
 [[noreturn]] void run_child(const std::function<void(int)>& work, int fd, pid_t parent, bool own_group) {
   if (own_group) setpgid(0, 0);
   prctl(PR_SET_PDEATHSIG, SIGKILL);

@@ -54,8 +54,8 @@ void export_tum(const StoredTruth& truth, const std::filesystem::path& file, std
 void export_kitti(const sim::Truth& truth, const std::filesystem::path& file, const std::string& frame = "body");
 
 /// The columns of an IMU are those of sensor_msgs/Imu: rate [rad/s] and specific force [m/s^2], each with its
-/// covariance; the attitude is unknown. Other sensors have the columns stamp s, stamp ns, frame, and one column per
-/// quantity. If `truth` is not null, truth.csv contains time, T_WB, v_WB_W, w_WB_B, f_B and contact label.
+/// covariance; the attitude is unknown. If `truth` is not null, truth.csv contains time, T_WB, v_WB_W, w_WB_B, f_B and
+/// contact label.
 void export_csv(const sim::Sensors& sensors, const sim::Truth* truth, const std::filesystem::path& folder,
                 std::int64_t origin_ns = 0);
 

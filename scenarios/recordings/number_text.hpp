@@ -15,7 +15,7 @@ namespace tumble::scenarios {
 bool parse_number(std::string_view text, double& value);
 
 /// Converts a decimal time to nanoseconds exactly, by moving the decimal point by `decimals`: 9 for s, 6 for ms, 3 for
-/// us, 0 for ns. Returns nothing for an invalid text, or a time after the year 2255.
+/// us, 0 for ns.
 std::optional<std::int64_t> parse_time_ns(std::string_view text, int decimals);
 
 /// Parses a stamp since 1970: decimal seconds, an integer of 13, 16 or 19 digits (ms, us, ns), or a date in UTC

@@ -12,7 +12,6 @@
 
 namespace tumble::scenarios {
 
-/// Returns the first and last time of the readings, including the duration of the last sweep.
 std::pair<std::int64_t, std::int64_t> span_of(const sim::Sensors& sensors);
 
 using StampSpan = std::pair<std::int64_t, std::int64_t>;

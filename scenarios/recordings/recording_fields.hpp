@@ -13,9 +13,8 @@
 ///
 /// A visitor (archive) has the members value(name, text | double | int64), pose(name, isometry), point(name, vector,
 /// unit), rows(name, vector, unit, columns, storage), texts(name, strings), list(name, records, fields) and group(name,
-/// record, fields). The members optional_rows, optional_point, optional_list and point_times visit fields that later
-/// versions of the recording format added. A field that a later version added is neither stored nor hashed while it is
-/// empty, zero or "measured", so older files keep their digests.
+/// record, fields). A field that a later version added is neither stored nor hashed while it is empty, zero or
+/// "measured", so older files keep their digests.
 namespace tumble::scenarios {
 
 /// Rows are compressed by deflate only if measurements showed a smaller file; lidar points are not compressed

@@ -12,7 +12,6 @@
 
 namespace tumble::scenarios {
 
-/// Returns the nearest existing parent folder of an output path, so that temporary data are on the disk of the output.
 std::filesystem::path scratch_folder_of(const std::filesystem::path& output);
 
 /// ScratchFile is an unnamed temporary file that disappears with the object or the process.

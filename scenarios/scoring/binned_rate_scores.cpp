@@ -14,7 +14,6 @@
 #include "scenarios/scoring/families.hpp"
 #include "scenarios/statistics/statistics.hpp"
 
-/// The bins group clipped samples by clipping depth, clipping duration or number of clipped axes.
 namespace tumble::scenarios {
 
 namespace {

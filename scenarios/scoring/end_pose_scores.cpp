@@ -105,7 +105,6 @@ bool pose_nees(const ScoredEstimate& scored, double& value) {
   const PoseState true_pose = truth_track(scored).pose(last.time_ns);
   Eigen::Matrix<double, 6, 1> error;
   error << true_pose.p_WA_m - aligned.p_WA_m, so3::log((true_pose.q_WA * aligned.q_WA.conjugate()).normalized());
-  // The covariance is in axes of the estimate's world, so the pose error is rotated to these axes.
   const Eigen::Matrix3d back = alignment.transform().linear().transpose();
   error << Eigen::Vector3d(back * error.head<3>()), Eigen::Vector3d(back * error.tail<3>());
   const Eigen::LLT<Eigen::Matrix<double, 6, 6>> factor(last.covariance);

@@ -79,7 +79,6 @@ bool counts(const SlipSpan& span, const sim::Truth& truth) {
   return false;
 }
 
-/// A contact label of the estimate applies until the time of the next label.
 std::vector<SlipSpan> claimed_spans(const Estimate& estimate) {
   if (estimate.contacts.size() != estimate.poses.size()) {
     throw BadInput(fmt::format("the estimate has {} contact labels for {} poses; the two numbers must be equal",

@@ -16,7 +16,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Ranks are doubled, because twice the mean of several ranks is an integer.
 struct SignedRanks {
   std::vector<std::size_t> doubled;
   std::size_t total = 0, positive = 0;  ///< sums of the doubled ranks

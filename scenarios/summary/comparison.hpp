@@ -44,8 +44,7 @@ inline bool one_section(const Contest& a, const Contest& b) {
   return a.scenario == b.scenario && a.kind == b.kind && a.against == b.against;
 }
 
-/// MetricComparison compares one metric over the simulated runs on which both methods have a value. A failed run has
-/// the worst value; if both runs failed or have equal values, neither method is better.
+/// A failed run has the worst value; if both runs failed or have equal values, neither method is better.
 struct MetricComparison {
   Contest contest;
   std::string metric;

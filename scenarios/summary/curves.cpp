@@ -104,7 +104,6 @@ PickedRuns all_of(const Runs& runs) {
   return all;
 }
 
-/// If no method has a value of the metric on a simulated run, failures on this run do not count.
 bool is_scored(const PickedRuns& runs, const std::string* metric, std::uint64_t seed) {
   return std::any_of(runs.begin(), runs.end(), [&](const auto& entry) {
     const auto& own = entry.second;

@@ -28,8 +28,6 @@ struct CurveLine {
 };
 
 struct Curve {
-  /// The x axis of a curve is a parameter that the suite varies, a quantity of binned samples, or a quantity of whole
-  /// simulated runs.
   enum class Source { set, samples, draws };
   Source source = Source::set;
   std::string axis;  ///< ends in the unit

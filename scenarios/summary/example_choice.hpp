@@ -24,8 +24,6 @@ struct ExampleDraw {
 
 bool typical_seed(const Summary& summary, const std::string& scenario, std::uint64_t& seed);
 
-/// Returns at most `count` typical simulated runs: first one scenario of each robot, then a second scenario of each
-/// robot, and so on.
 std::vector<ExampleDraw> choose_examples(const Summary& summary, std::span<const ExampleCandidate> candidates,
                                          std::size_t count);
 

@@ -36,8 +36,6 @@ struct Influence {
   double strength() const;
 };
 
-/// Sensitivity contains the influence of all random parameters on one metric of one method in one scenario. For the
-/// influence on failures, `metric` is "not ok".
 struct Sensitivity {
   std::string scenario;
   Kind kind = Kind::rate;

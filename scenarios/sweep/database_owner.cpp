@@ -26,7 +26,6 @@ namespace fs = std::filesystem;
   throw BadInput(path.string() + ": cannot be locked: " + std::generic_category().message(error));
 }
 
-/// Symbolic links to the database are followed, so each database has exactly one lock file.
 fs::path lock_of(const fs::path& database) {
   std::error_code error;
   fs::path place = fs::weakly_canonical(database, error);

@@ -24,7 +24,6 @@ struct Keeping {
   bool lidars = false;           ///< a method of the run reads lidars
 };
 
-/// A write error in the kept files of a simulated run does not change the outcomes of the run.
 class DrawFiles {
  public:
   explicit DrawFiles(const Keeping& keeping);

@@ -208,7 +208,6 @@ Outcome run_isolated(const Method& method, const SimulatedDraw& draw, const Simu
                      const sim::Surface* surface, double timeout_s, const std::filesystem::path& folder,
                      std::string* not_kept) {
   const double before_mib = resident_mib();
-  // A killed child process cannot remove its temporary files, so the parent removes them.
   const ScratchFolder temporary("run");
   Process process(
       [&](int fd) {

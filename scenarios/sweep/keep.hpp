@@ -50,7 +50,6 @@ class KeptDraws {
   bool holds(const DrawName& draw, std::span<const Outcome> estimated) const;
   std::vector<DrawName> found() const;
   void remove(const DrawName& draw) const;
-  /// Removes incomplete files that a killed process has left; no other process may write to the folder during the call.
   void discard_unfinished() const;
   /// Copies a kept run, or only its missing estimates, with hard links where possible; returns false if `from` does not
   /// contain the run.

@@ -62,7 +62,6 @@ bool is_method_note(const std::string& key);
 /// of store is one transaction, so completed results survive the end of the process.
 class Results {
  public:
-  /// The mode `join` does not check that each score has an outcome.
   enum class Mode { create_or_append, join, read_only };
   /// Throws BadInput for a file that is no results database, an incomplete schema, another build (except read_only), or
   /// lack of space.
@@ -70,7 +69,6 @@ class Results {
   ~Results();
   Results(Results&&) noexcept;
 
-  /// Also removes a rejection of the same scenario and seed.
   void store(const Outcome& outcome);
   bool store(const RejectedDraw& rejected);
   void store(const DrawValues& draw);

@@ -26,7 +26,6 @@ bool is_place_note(const std::string& key);
 /// information.
 std::string command_again(const RunKey& run, const std::map<std::string, std::string>& notes);
 
-/// Parses a point of a curve, for example "world.rock_count=10" or "a.x+b.y=0.5".
 Setting setting_from(const std::string& text);
 
 std::string to_text(const Setting& setting);

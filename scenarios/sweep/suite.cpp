@@ -164,7 +164,6 @@ void read_draws(const DataRoot& data, const YamlNode& root, const std::map<std::
   read_scenarios(data, fields.at("scenarios"), suite);
 }
 
-/// Returns the path of an external method relative to the folder of the suite, or the name of a built-in method.
 std::string method_name(const std::string& text, const std::filesystem::path& folder) {
   return is_method_file(text) ? (folder / text).string() : text;
 }

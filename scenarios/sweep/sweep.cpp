@@ -41,8 +41,6 @@ void claim(Results& results, const DataRoot& data, const Suite& suite, const std
   if (!suite.recordings.empty()) results.set_note("source", kRecordingsSource);
 }
 
-/// The descriptions of external methods are stored with absolute paths, so that each run can be repeated from any
-/// folder.
 void note_descriptions(Results& results, const Suite& suite) {
   for (const std::string& name : suite.methods) {
     if (!is_method_file(name)) continue;

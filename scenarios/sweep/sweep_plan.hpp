@@ -14,7 +14,6 @@
 
 namespace tumble::scenarios {
 
-/// SweepPlan iterates over the scenarios and seeds of a suite, with the methods to run on each, in constant memory.
 class SweepPlan {
  public:
   SweepPlan(const DataRoot& data, const Suite& suite, const SweepOptions& options,
@@ -69,8 +68,6 @@ class SweepPlan {
   const Suite& suite_;
   const SweepOptions& options_;
   KeptDraws kept_;
-  /// `simulated_` contains the settings that need a separate simulation; `shared_` contains those that reuse the
-  /// unmodified simulation.
   std::vector<Setting> simulated_ = {Setting{}}, shared_;
   std::vector<MethodPointer> methods_;
   std::vector<Planned> scenarios_;

@@ -89,7 +89,6 @@ void simulate_lidar(const engine::World& world, const SensorSpec& sensor, const 
   record.sweep_first.push_back(0);
   if (sweeps > 0) reserve(caster.firings(0) * static_cast<std::size_t>(sweeps), record, truth);
 
-  // Only a few sweeps are cast at a time, so that intermediate results need little memory.
   const auto allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
   threads = std::clamp(threads, 1, static_cast<int>(allowed));  // oneTBB warns above
   const std::int64_t at_once = 2 * threads;

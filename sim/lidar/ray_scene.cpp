@@ -51,7 +51,6 @@ struct MeshLabel {
   }
 };
 
-/// Embree passes only the address of the first member to callback functions.
 struct CastContext {
   RTCIntersectContext embree;
   const std::vector<MeshLabel>* meshes;
@@ -223,7 +222,6 @@ void RayScene::Impl::add_shapes() {
 
 RayScene::RayScene(const SceneGeometry& geometry) : impl_(std::make_unique<Impl>()) {
   impl_->device.reset(rtcNewDevice(kDevice));
-  // A lack of memory must not be reported as a missing CPU feature.
   if (!impl_->device && rtcGetDeviceError(nullptr) == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
   if (!impl_->device)
     throw std::runtime_error("lidar: the ray-tracing library Embree cannot start; the CPU must have AVX2 and FMA");

@@ -27,7 +27,6 @@ struct SweepPoints {
   void make_room(std::size_t points);
 };
 
-/// All member functions are const, so several threads may cast sweeps.
 class SweepCaster {
  public:
   /// The construction takes about 0.07 s for a height field of 400 x 400 cells.

@@ -78,7 +78,6 @@ class TrackCursor {
     now_.step_m = motion_.p_WB_m[i + 1] - motion_.p_WB_m[i];
     Eigen::Quaterniond relative = motion_.q_WB[i].conjugate() * motion_.q_WB[i + 1];
     if (relative.w() < 0.0) relative.coeffs() = -relative.coeffs();
-    // Unlike acos, atan2 is precise at small angles.
     const double sine = relative.vec().norm();
     const Eigen::Vector3d rotation_rad =
         sine > 0.0 ? Eigen::Vector3d(relative.vec() * (2.0 * std::atan2(sine, relative.w()) / sine))

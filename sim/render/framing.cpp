@@ -36,8 +36,6 @@ std::vector<Ball> content(const View& view, double robot_radius_m) {
       if (near.isEmpty() || near.contains(p)) balls.push_back({p, path.width_m});
     }
   }
-  // Maps (point clouds) are much larger than the motion, so the camera frames them only in a view without robots and
-  // paths.
   if (balls.empty()) {
     for (const DrawnPoints& cloud : view.points) {
       for (const Vector3d& p : cloud.points_W_m) balls.push_back({p, cloud.radius_m});

@@ -54,7 +54,6 @@ class Scene {
   mjvScene scene_;
 };
 
-/// The picture is flipped vertically, because OpenGL's rows start at the bottom.
 Picture averaged(const std::vector<std::uint8_t>& large, int width, int height) {
   Picture picture{width, height,
                   std::vector<std::uint8_t>(3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height))};

@@ -13,7 +13,6 @@ namespace tumble::tools {
 
 std::vector<std::size_t> drawn_of(const std::vector<bool>& first);
 
-/// Paths of methods with access to the truth would hide the true path and are omitted.
 struct RunPaths {
   std::vector<std::string> methods;  ///< for example "slam/icp"
   std::vector<Path> paths;           ///< parallel to `methods`

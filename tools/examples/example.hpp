@@ -62,14 +62,12 @@ std::filesystem::path examples_folder(const std::filesystem::path& database);
 
 std::string to_json(const Example& example);
 
-/// Writes pictures, animation and replay to FOLDER/.unfinished; `write_examples` later moves the files to FOLDER.
 void write_pictures(const std::filesystem::path& folder, const Example& example);
 
 void discard_unfinished(const std::filesystem::path& folder);
 
 std::string replay_file(const Example& example);
 
-/// Writes the list of examples, and moves their files from FOLDER/.unfinished to FOLDER.
 void write_examples(const std::filesystem::path& folder, const std::vector<std::string>& examples);
 
 enum class Pictures { read, left_out };

@@ -107,7 +107,6 @@ std::vector<Making> plan(const scenarios::DataRoot& data, const scenarios::Suite
   return makings;
 }
 
-/// Examples of scenarios outside the suite come from other sweeps in this database and are kept.
 std::vector<std::string> keep_known(const scenarios::DataRoot& data, const fs::path& folder,
                                     const scenarios::Suite& suite, const LeaveOptions& options,
                                     std::vector<Making>& makings) {

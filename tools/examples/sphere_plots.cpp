@@ -41,8 +41,6 @@ struct ShownPath {
   Path path;
 };
 
-/// For each value of MethodInfo::source, only the path of the first position method without truth is shown, because
-/// more paths would hide each other.
 std::vector<ShownPath> shown_paths(const scenarios::RunResult& run) {
   const sim::Recording& recording = run.recording;
   std::vector<ShownPath> all = {{"truth", kTruthColour, 3.5, true_path(recording.sensors, recording.truth, 4)}};

@@ -30,7 +30,6 @@ ErrorMap map_by_error(const std::string& name, const scenarios::Estimate& estima
 
 std::array<std::uint8_t, 3> error_colour(float error_m);
 
-/// Draws maps next to each other from one viewpoint, limited to the surroundings of the true path.
 sim::Picture map_picture(const std::vector<ErrorMap>& maps, const sim::Truth& truth, int width, int height);
 
 }  // namespace tumble::tools

@@ -12,7 +12,6 @@ namespace tumble::tools {
 
 namespace {
 
-/// The camera looks at the robot's mean position over kFollow_s, so the camera does not shake at impacts.
 constexpr double kFollow_s = 0.4;
 constexpr int kFollowSamples = 9;
 constexpr int kPause_ms = 700;

@@ -18,8 +18,6 @@ double line_width_m(const Scene& scene) {
   return is_sphere(scene) ? 0.012 : 0.03;
 }
 
-/// Points closer than `spacing_m` to the preceding point are dropped, because a drawn line is a chain of bodies, and
-/// thousands of bodies are slow.
 std::vector<Vector3d> thinned(const std::vector<Vector3d>& points, double spacing_m) {
   std::vector<Vector3d> out;
   for (const Vector3d& point : points) {

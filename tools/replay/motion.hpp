@@ -16,7 +16,6 @@ namespace tumble::tools {
 class Motion {
  public:
   Motion() = default;
-  /// Poses that are not finite, not later than the preceding pose, or farther than 10 km from the first are dropped.
   Motion(const std::vector<std::int64_t>& time_ns, const std::vector<Eigen::Isometry3d>& T_WB);
 
   bool empty() const { return time_ns_.empty(); }

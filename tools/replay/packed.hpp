@@ -15,8 +15,7 @@ struct PackedReplay {
 };
 
 /// Packs a replay as integers with scales: int16 for positions of world and points, attitudes and rates; uint32
-/// microseconds for times; uint8 for errors (255: unknown). Positions of tracks are float32, relative to the origin in
-/// the head.
+/// microseconds for times; uint8 for errors (255: unknown).
 PackedReplay packed(const Replay& replay);
 
 }  // namespace tumble::tools

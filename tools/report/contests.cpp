@@ -96,7 +96,6 @@ Tally tally(const std::vector<ContestResult>& results) {
     out.won += result.won();
     out.lost += result.lost();
     out.open += !result.won() && !result.lost();
-    // Few runs give no interval, but a difference with the same sign on all runs indicates which method is better.
     const bool on_every_draw = result.certainty == Certainty::open && result.row.better == result.row.pairs;
     if (result.better && (on_every_draw || result.certainty == Certainty::interval)) {
       const std::string& method = result.row.contest.method;

@@ -52,7 +52,7 @@ struct PageContent {
 };
 
 /// Returns one self-contained page with styles, plots, pictures and the Plotly bundle inside. The Content Security
-/// Policy of the page forbids network access. Texts are embedded as data, never as markup.
+/// Policy of the page forbids network access.
 std::string page_html(const PageContent& content, const std::string& plotly_bundle);
 
 }  // namespace tumble::tools

@@ -104,7 +104,6 @@ class Boxes {
   };
 
   void add_values(json& trace, const std::string& group, const std::vector<double>& values, std::size_t failed) {
-    // If not all runs are drawn, the drawn ones keep the ratio of successful to failed runs.
     const std::size_t all = values.size() + failed;
     const std::size_t shown_failed = all <= kBoxPoints ? failed : (failed * kBoxPoints + all - 1) / all;
     for (const double value : at_most(values, std::max<std::size_t>(2, std::min(all, kBoxPoints) - shown_failed))) {

@@ -22,7 +22,6 @@ struct Figure {
   bool empty() const { return traces.empty(); }
 };
 
-/// Invalid UTF-8 in texts is replaced.
 void set_plot(const nlohmann::json& traces, const nlohmann::json& layout, Figure& figure);
 
 /// Maximum number of runs of a box plot that are drawn as points
@@ -34,7 +33,6 @@ double five_digits(double value);
 /// Plotly interprets some tags in texts, so the characters & < > are escaped.
 std::string plot_text(const std::string& text);
 
-/// Reduces a list to `most` (at least 2) sorted values: the smallest, the largest, and values at equal steps of rank.
 std::vector<double> at_most(std::vector<double> values, std::size_t most);
 
 /// Palette assigns one colour index to each method of a page, in the order of `add`; methods of different kinds with

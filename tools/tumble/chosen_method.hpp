@@ -15,7 +15,6 @@ scenarios::MethodPointer chosen_method(const std::string& name, const scenarios:
 scenarios::Estimate run_method(const scenarios::Method& method, const sim::Sensors& sensors,
                                std::function<void(std::size_t done, std::size_t all)> on_sweep = {});
 
-/// If the recording lacks sensors, the message names the required sensors.
 std::string failure_reason(const Status& status, const sim::Sensors& sensors);
 
 }  // namespace tumble::tools

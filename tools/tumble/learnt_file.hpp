@@ -20,8 +20,6 @@ class LearntFile {
   /// Throws BadInput if the file cannot be written; must be called before the run.
   void require_place() const;
 
-  /// Returns a warning if the lever arms of file and recording differ, because the file probably belongs to another
-  /// rig.
   std::string caution(const sim::Sensors& sensors) const;
 
   static std::string learning_methods();

@@ -27,7 +27,6 @@ namespace {
 
 using scenarios::BadInput;
 
-/// CLI11 would report an unknown verb as a superfluous argument, so the verb is checked first.
 void check_verb(int argc, const char* const* argv) {
   std::vector<std::string> known;
   for (const Verb& verb : verbs()) known.emplace_back(verb.name);

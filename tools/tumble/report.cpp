@@ -114,7 +114,6 @@ std::string read_text(const std::filesystem::path& path) {
   return text;
 }
 
-/// A report does not need the data, so missing data give an empty digest.
 std::string data_found(const Session& session) {
   try {
     return scenarios::data_digest(session.data());

@@ -80,7 +80,6 @@ RunOptions first_run(RunOptions options, const scenarios::Scenario& scenario) {
   return options;
 }
 
-/// The verb `sweep` accepts only scenarios of the catalogue; a suite may have the name of a scenario.
 void say_what_next(const Session& session, const RunOptions& options, const scenarios::RunResult& result,
                    bool in_catalogue) {
   const std::string folder = options.folder.string();

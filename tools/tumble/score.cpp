@@ -33,7 +33,6 @@ struct ScoreOptions {
   std::string frame, kind;
 };
 
-/// Estimate and recording are accepted in either order, because other verbs take the recording first.
 void order(ScoreOptions& options) {
   const auto is_recording = [](const std::filesystem::path& file) {
     return file.extension() == ".h5" || file.extension() == ".hdf5";
@@ -90,7 +89,6 @@ Standing standing_of(const scenarios::Estimate& estimate, const sim::Truth& trut
   return out;
 }
 
-/// With a wrong time unit, only the first few poses would overlap the recording.
 void require_seconds(const ScoreOptions& options, const scenarios::Estimate& estimate, const Standing& standing) {
   constexpr double kNear = 1.5, kLeastStep_s = 0.1;
   if (estimate.poses.size() < 2 || !(standing.end_s > 0.0)) return;

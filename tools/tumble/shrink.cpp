@@ -119,7 +119,6 @@ std::string name_of(const std::filesystem::path& file) {
                   file.string()));
 }
 
-/// A case can be named in place of a scenario or a suite, so its name must differ from theirs.
 void require_own_name(const scenarios::DataRoot& data, const std::string& name) {
   for (const std::vector<std::string>& known : {scenarios::scenario_names(data), scenarios::suite_names(data)}) {
     if (std::find(known.begin(), known.end(), name) != known.end())

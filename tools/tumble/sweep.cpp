@@ -263,7 +263,6 @@ int run_sweep(const Session& session, const SweepVerbOptions& options) {
   scenarios::require_sound(suite, how);
   const std::optional<scenarios::Question> question = ask(options, data, suite);
   note_command(scenarios::open_results(data, suite, options.database), options);
-  // Recordings of real robots need no checks of the simulation.
   if (suite.recordings.empty()) certify(session, data, options.database, interrupt.raised());
   AskedSweep swept;
   if (question) {

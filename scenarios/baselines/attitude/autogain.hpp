@@ -30,8 +30,8 @@ class Autogain {
  public:
   struct Params {
     AutogainProfile profile = AutogainProfile::paper;
-    double gain_rad_s = 0.2;   ///< gain at full rate
-    double tau_s = 0.396;      ///< 0.02 per sample at 125 Hz
+    double gain_rad_s = 0.2;  ///< gain at full rate
+    double tau_s = 0.396;
     double lower_rad_s = 0.1;  ///< unused by code2021
     double upper_rad_s = 2.1;  ///< above lower_rad_s; unused by code2021
     /// If true, the filter repeats an error in the authors' code of 2021: roll is never corrected.

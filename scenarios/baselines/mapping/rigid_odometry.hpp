@@ -16,9 +16,8 @@
 
 namespace tumble::baselines {
 
-/// RigidOdometry registers sweeps to a map, with a motion prediction from the caller. RigidOdometry deskews each sweep
-/// once with the predicted motion and corrects only the pose at the end of the sweep. RigidOdometry neglects mounting
-/// errors and clock offsets, and does not recover after a tracking failure.
+/// RigidOdometry deskews each sweep once with the predicted motion and corrects only the pose at the end of the sweep.
+/// RigidOdometry neglects mounting errors and clock offsets, and does not recover after a tracking failure.
 class RigidOdometry {
  public:
   struct Params {

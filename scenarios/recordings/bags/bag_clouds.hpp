@@ -14,7 +14,6 @@ bool is_livox_type(const std::string& type);
 
 Cloud cloud_of(const ros::PointCloud2& message, const std::string& where);
 
-/// The cloud has the columns x y z reflectivity tag line, and offset_time_ns since the header's stamp.
 Cloud cloud_of(const ros::LivoxCustomMsg& message, const std::string& where);
 
 /// Point clouds with equal digests are duplicate messages.

@@ -8,7 +8,6 @@ namespace tumble::scenarios {
 
 enum class PointQuantity { x_m, y_m, z_m, intensity, ring, time };
 
-/// Values of integer fields are rounded and limited to the range of the type.
 enum class NumberType { uint8, uint16, uint32, float32, float64 };
 
 struct PointColumn {
@@ -27,7 +26,6 @@ struct SweepLayout {
   bool in_time_order = false;  ///< true: points sorted by time
 };
 
-/// The columns are those of Velodyne's driver, x y z intensity ring time, and the time in whole nanoseconds, offset_ns.
 SweepLayout own_sweep_layout();
 SweepLayout livox_sweep_layout();
 

@@ -22,13 +22,11 @@ class BagStamps {
   const std::vector<std::int64_t>& times_ns() const { return source_ == StampSource::header ? header_ns_ : record_ns_; }
   std::string disorder(std::size_t k) const;
 
-  /// A message with the header stamp of the previous message is a duplicate if the contents are also equal.
   bool repeats(std::int64_t header_ns) const {
     return source_ == StampSource::header && !header_ns_.empty() && header_ns_.back() == header_ns;
   }
 
-  /// Describes the delay from header stamps to record stamps; empty if the delay is always below one millisecond. The
-  /// description is a warning if the delay reaches a second, is negative, or changes.
+  /// Describes the delay from header stamps to record stamps; empty if the delay is always below one millisecond.
   std::string remark() const;
   /// Returns true if header stamps are later than record stamps, or at least a second earlier.
   bool other_clock() const;

@@ -13,7 +13,6 @@
 
 namespace tumble::scenarios {
 
-/// A first pass over the messages reads the headers without points.
 struct CloudHeaders {
   std::vector<std::int64_t> stamps;  ///< sweep starts, in order
   std::int64_t period_ns = 0;        ///< from the user, or median step

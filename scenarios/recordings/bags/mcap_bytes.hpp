@@ -90,7 +90,6 @@ std::string to_bytes(Record record, std::string_view tail = {}) {
   return std::move(out.bytes.append(content.bytes).append(tail));
 }
 
-/// Additional fields of later versions of MCAP are ignored.
 template <class Record>
 Record from_bytes(std::string_view content) {
   Record record;

@@ -26,7 +26,6 @@ bool is_ros1(const Channel& channel, const Schema& schema) {
   return channel.message_encoding == "ros1" && schema.encoding == "ros1msg";
 }
 
-/// Memory contains one chunk, and the chunks that overlap this chunk in time.
 class TopicWalk {
  public:
   TopicWalk(File& file, std::set<std::uint16_t> channels, const BagReader::Take& take)

@@ -7,9 +7,7 @@
 #include <utility>
 #include <vector>
 
-/// MCAP records have the field order of the specification (mcap.dev/spec, version 0), with little-endian numbers. A
-/// text is preceded by its length (32 bits), and a list or map by its size in bytes. An MCAP record consists of its
-/// kind (8 bits), its length (64 bits) and its content.
+/// MCAP records have the field order of the specification (mcap.dev/spec, version 0), with little-endian numbers.
 namespace tumble::scenarios::mcap {
 
 enum Op : std::uint8_t {

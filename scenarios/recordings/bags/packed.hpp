@@ -7,7 +7,6 @@
 
 namespace tumble::scenarios {
 
-/// The blocks of the LZ4 frame are independent, have at most 4 MiB, and have no checksums.
 std::string packed_lz4(std::string_view plain);
 
 /// Memory grows with the decompressed data, so a wrong size in the file cannot exhaust the memory.

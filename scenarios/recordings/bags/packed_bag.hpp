@@ -17,7 +17,6 @@ std::unique_ptr<BagReader> open_packed_files(
     const std::vector<std::filesystem::path>& files,
     const std::function<std::unique_ptr<BagReader>(const std::vector<std::filesystem::path>&)>& open);
 
-/// A decompressed message may have at most 64 MiB and 200 times its compressed size.
 std::unique_ptr<BagReader> with_packed_messages(std::unique_ptr<BagReader> bag, std::string place);
 
 }  // namespace tumble::scenarios

@@ -196,7 +196,6 @@ class Ros1BagWriter : public BagWriter {
   std::unique_ptr<rosbag::Bag> bag_;
 };
 
-/// Two bag files that are more than a minute apart in time are separate recordings.
 constexpr double kPartsApart_s = 60.0;
 
 class Ros1BagReader : public BagReader {

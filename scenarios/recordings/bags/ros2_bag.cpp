@@ -107,7 +107,6 @@ class Ros2BagWriter : public BagWriter {
     return static_cast<std::int64_t>(place) + 1;
   }
 
-  /// A stored message definition lets programs without ROS read the bag.
   void define(const std::string& type) {
     SQLite::Statement statement(
         *database_,
@@ -166,7 +165,6 @@ std::string packed_by(const YAML::Node& root, const path& metadata) {
   return mode;
 }
 
-/// The metadata.yaml of a bag may lack a file whose name differs from a listed file only by a number.
 void add_unlisted(const path& folder, StoredBag& bag) {
   const auto stem = [](const path& file) { return stem_of(file.extension() == ".zstd" ? file.stem() : file); };
   const path& listed = bag.files.front();
@@ -185,7 +183,6 @@ void add_unlisted(const path& folder, StoredBag& bag) {
   bag.files.insert(bag.files.end(), found.begin(), found.end());
 }
 
-/// Without metadata.yaml, files belong to one bag only if their names differ only by a number.
 StoredBag parts_in(const path& folder) {
   std::set<path> parts;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {

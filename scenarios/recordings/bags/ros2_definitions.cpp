@@ -13,7 +13,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Message definitions of github.com/ros2/common_interfaces and rcl_interfaces, one type and name per line.
 const std::map<std::string, std::string>& definitions() {
   static const std::map<std::string, std::string> all = {
       {"builtin_interfaces/Time", "int32 sec\nuint32 nanosec\n"},

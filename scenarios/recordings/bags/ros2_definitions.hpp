@@ -8,8 +8,6 @@ namespace tumble::scenarios {
 std::string ros2_type(const std::string& type);
 std::string ros1_type(std::string type);
 
-/// Returns the definition of a message type (by its ROS 1 name) and of its nested messages, in rosbag2's encoding
-/// "ros2msg".
 std::string ros2_definition(const std::string& type);
 
 /// Quality of service of a topic as YAML for rosbag2; /tf_static is transient local, so that new subscribers receive

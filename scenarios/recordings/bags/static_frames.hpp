@@ -28,7 +28,6 @@ class StaticFrames {
 
   std::string body() const;
 
-  /// Returns the pose T_AB of frame B in frame A, or nothing if the tree does not connect the frames.
   std::optional<Eigen::Isometry3d> pose(const std::string& frame_A, const std::string& frame_B,
                                         const std::string& where) const;
 

@@ -8,8 +8,7 @@
 
 namespace tumble::scenarios {
 
-/// Cloud contains the points of a file or message as named columns of numbers. A 64-bit integer keeps 53 bits, so a
-/// time stamp in nanoseconds since 1970 is accurate to 256 ns.
+/// A 64-bit integer keeps 53 bits, so a time stamp in nanoseconds since 1970 is accurate to 256 ns.
 struct Cloud {
   std::vector<std::string> names;            ///< without CloudCompare's prefix "scalar_"
   std::vector<std::vector<double>> columns;  ///< parallel to `names`, one number per point

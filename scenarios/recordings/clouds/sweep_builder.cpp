@@ -301,7 +301,6 @@ double SweepBuilder::range_max_m() const {
   return reading_.range_max_m > 0.0 ? reading_.range_max_m : kFarthest_m;
 }
 
-/// If most points are beyond the range of the lidar, the coordinates are probably in mm.
 void SweepBuilder::require_range(const std::string& where) const {
   const std::size_t all = points() + far_;
   if (2 * beyond_ <= all) return;

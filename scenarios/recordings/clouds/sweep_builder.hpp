@@ -52,8 +52,7 @@ struct BuiltSweeps {
   std::vector<std::optional<std::int64_t>> last_point_ns = {};
 };
 
-/// SweepBuilder builds a lidar record from clouds in order of time. Memory contains the first ten clouds; with points
-/// on disk, memory then contains one cloud at a time.
+/// Memory contains the first ten clouds; with points on disk, memory then contains one cloud at a time.
 ///
 /// A point counts as a ray without return if it is not finite, farther than 1000 km, or at the origin. Intensities
 /// above 1 are divided by 255, or by their maximum if it exceeds 255. A sweep starts at its time stamp, or at its first
@@ -64,7 +63,6 @@ struct BuiltSweeps {
 /// to be the time of the first point.
 class SweepBuilder {
  public:
-  /// `period_ns` is the sweep period of the device, or the median step of the stamps.
   SweepBuilder(SweepReading reading, std::int64_t period_ns, LeftOut left_out = LeftOut("clouds"))
       : reading_(std::move(reading)), period_ns_(period_ns), left_out_(std::move(left_out)) {
     if (!reading_.scratch.empty()) store_.emplace(reading_.scratch);

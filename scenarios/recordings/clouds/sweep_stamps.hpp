@@ -21,8 +21,8 @@ std::string stem_of(const std::filesystem::path& file);
 /// file names contain only numbers like "000012".
 std::vector<std::int64_t> stamps_in_names(const std::vector<std::filesystem::path>& files);
 
-/// Reads one time stamp per line; '#' starts a comment. A time stamp is decimal seconds, an integer of 13, 16 or 19
-/// digits (ms, us, ns), or a date in UTC, as in KITTI's raw data.
+/// A time stamp is decimal seconds, an integer of 13, 16 or 19 digits (ms, us, ns), or a date in UTC, as in KITTI's raw
+/// data.
 std::vector<std::int64_t> read_stamps(const std::filesystem::path& file, std::vector<std::string>* disorder = nullptr);
 
 std::int64_t median_step_ns(const std::vector<std::int64_t>& times_ns);

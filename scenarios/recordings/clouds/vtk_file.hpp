@@ -7,8 +7,8 @@
 
 namespace tumble::scenarios {
 
-/// Reads the points of a legacy VTK text file with polygonal data, the format of libpointmatcher. The section POINTS,
-/// and each section SCALARS with one number per point, become named columns; other sections are skipped.
+/// The section POINTS, and each section SCALARS with one number per point, become named columns; other sections are
+/// skipped.
 ///
 /// The number of points must be at most 2^26 and fit the file size.
 Cloud read_vtk(const std::filesystem::path& path);

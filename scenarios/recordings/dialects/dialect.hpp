@@ -10,7 +10,7 @@
 #include "scenarios/recordings/dialects/sensor_facts.hpp"
 
 /// A dialect is the recording format that a published estimator expects: a bag, and templates of the configuration
-/// files. Each file NAME.yaml of this folder contains one dialect.
+/// files.
 namespace tumble::scenarios {
 
 struct Source {
@@ -21,8 +21,6 @@ struct ConfigurationFile {
   std::string name, text;
 };
 
-/// The driver of a Livox lidar publishes the message CustomMsg, so topics and configuration file differ from those of
-/// other lidars.
 struct LivoxDialect {
   std::string imu_topic, points_topic, file;
 };

@@ -69,8 +69,6 @@ std::uint32_t middle_of(const std::vector<std::uint64_t>& counts, std::uint64_t 
   return value;
 }
 
-/// To save memory, the median comes from two histograms: of the upper 16 bits of the steps, and of the lower 16 bits
-/// within the median bin.
 int columns_of(const Sweeps& sweeps) {
   constexpr std::uint32_t kHalf_bits = 16, kLower = 0xffff;
   std::vector<std::uint64_t> counts(std::size_t{1} << kHalf_bits, 0);

@@ -44,7 +44,6 @@ struct SensorFacts {
   Eigen::Isometry3d T_IL() const { return T_BI.inverse(Eigen::Isometry) * T_BL; }
 };
 
-/// Only one lidar sweep is in memory at a time.
 SensorFacts facts_of(const sim::Sensors& sensors, const std::vector<PointStore>* points = nullptr);
 
 }  // namespace tumble::scenarios

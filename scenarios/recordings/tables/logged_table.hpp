@@ -13,8 +13,7 @@ namespace tumble::scenarios {
 
 /// Empty lines, comments and an empty field after the last separator of a line are skipped. The header is the first
 /// line that is no comment and contains fewer numbers than other texts. If samples directly follow comments, the last
-/// comment is the header if it has as many fields as a sample ("#timestamp [ns],w_RS_S_x [rad s^-1],..."). A row of
-/// units below the header is appended to the column names, in brackets.
+/// comment is the header if it has as many fields as a sample ("#timestamp [ns],w_RS_S_x [rad s^-1],...").
 class LoggedTable {
  public:
   explicit LoggedTable(const std::filesystem::path& path);
@@ -29,7 +28,6 @@ class LoggedTable {
   bool next(CsvLine& line);
   bool next_sound(CsvLine& line);
   void restart() { text_.back_to(samples_); }
-  /// After this call, `next` returns only samples with the text `value` in this column.
   void keep(std::size_t column, const std::string& value) { kept_ = {column, value}; }
 
  private:

@@ -18,7 +18,7 @@ namespace tumble::scenarios {
 std::optional<ImuColumns> logger_columns(const CsvLine& header);
 
 /// The list of columns has the form "time=t,gyro=gx,gy,gz,accel=ax,ay,az". A word that is no column name is the
-/// position of a column, from 0. Two time columns contain seconds and nanoseconds.
+/// position of a column, from 0.
 ImuColumns chosen_columns(const LoggedTable& table, const std::string& choice);
 
 }  // namespace tumble::scenarios

@@ -23,15 +23,13 @@ inline constexpr double kReferenceNormTolerance = 1e-2;
 /// Optical systems and the command `export` write unknown poses with NaN in all numbers; readers skip these poses.
 bool is_unknown(const ReferencePose& pose);
 
-/// Normalises the quaternion of a valid pose, and returns an empty text. A pose is invalid if it has non-finite
-/// numbers, a quaternion norm that differs from 1 by more than 1 %, or a stamp that is not later than the stamp of
-/// `before`.
+/// A pose is invalid if it has non-finite numbers, a quaternion norm that differs from 1 by more than 1 %, or a stamp
+/// that is not later than the stamp of `before`.
 std::string problem_of(ReferencePose& pose, const ReferencePose* before);
 
 /// If `sorted` is true, sorts the poses by time and keeps the first of several poses with equal stamps.
 void finish_poses(const std::filesystem::path& file, bool sorted, std::vector<ReferencePose>& poses);
 
-/// Returns "tum" if the first line has 8 numbers, "kitti" if it has 12, "odometry" for the header of a table of poses.
 std::string pose_format(const std::filesystem::path& file);
 
 /// A line of a TUM file is "t x y z qx qy qz qw", t in seconds; '#' starts a comment, and blanks or commas separate

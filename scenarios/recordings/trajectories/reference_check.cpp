@@ -21,7 +21,6 @@ constexpr double kExplained = 0.15, kExplanationLeaves = 0.4;
 /// The filters of an IMU cause a delay of about 0.02 s.
 constexpr double kDelayNoted_s = 0.03;
 
-/// The user's choice of the frame is the first candidate, so it is kept if the poses fit this frame.
 std::vector<CandidateFrame> candidate_frames(const Eigen::Isometry3d& T_BA, const sim::Sensors& sensors) {
   const Eigen::Quaterniond q_BI(sensors.imus.front().T_BI.linear());
   std::vector<CandidateFrame> out = {{"as stated", Eigen::Quaterniond(T_BA.linear()).conjugate() * q_BI},

@@ -69,8 +69,6 @@ Eigen::Vector3d rotation_vector(const Eigen::Quaterniond& q) {
   return turn.angle() * turn.axis();
 }
 
-/// Velocity and rate are central differences over `reach` samples on each side, and unknown if one of these samples is
-/// unknown.
 void differentiate(sim::Truth& truth, std::size_t reach) {
   const Eigen::Vector3d unknown = Eigen::Vector3d::Constant(kNaN);
   const std::size_t count = truth.q_WB.size();
