@@ -31,7 +31,7 @@ enum class GyroUnit { rad_s, deg_s };
 /// - ROS names as written by `rostopic echo -p` and bagpy: ".../header/stamp" [s], ".../angular_velocity/x",
 ///   ".../linear_acceleration/x", and y and z,
 /// - names of loggers and data sets (tables/logger_columns.hpp): "time,gyro_x,...,accel_x,...", "#timestamp
-/// [ns],w_RS_S_x [rad s^-1],..."
+///   [ns],w_RS_S_x [rad s^-1],..."
 ///
 /// Without a unit in the name of the time column, the unit is inferred from the time steps, with a note. Without a
 /// header, the columns have fixed positions from 0: 0 stamp s, 1 stamp ns, 8-10 rate, 12-14 specific force.

@@ -27,8 +27,8 @@ struct ComparisonOptions {
   std::string against;               ///< empty: the section's reference method
   std::vector<std::string> metrics;  ///< empty: the headline metrics
   std::optional<Margin> margin;      ///< empty: no non-inferiority test
-  double risk = 0.05;                ///< of any false result in a table
-  double power = 0.8;                ///< for `pairs_needed`
+  double risk = 0.05;                ///< probability of any false result
+  double power = 0.8;                ///< power for `pairs_needed`
 };
 
 enum class Finding { undecided, better, worse };

@@ -22,7 +22,7 @@
 ///   differences. A metric with a target is tested on both sides, so a covariance that becomes too small also fails.
 /// - Median over all scenarios of a method: detects shifts that are too small to detect in one scenario.
 /// - Worst run: no value may be worse than `worst` times the worst accepted value, because tests of the median cannot
-/// detect a single bad run.
+///   detect a single bad run.
 ///
 /// If the new results are not worse, the probability that any test of a median fails is at most `risk` (Bonferroni).
 namespace tumble::scenarios {

@@ -11,7 +11,7 @@ namespace tumble::sim {
 /// Bias simulates the bias of a triad, independent for each axis, as the sum of three parts:
 /// - a turn-on value (normal, drawn once),
 /// - in-run instability: flicker noise over three decades, from four first-order Gauss-Markov processes of equal size,
-/// with correlation times a factor of ten apart (Keshner, "1/f noise", Proceedings of the IEEE 70, 1982),
+///   with correlation times a factor of ten apart (Keshner, "1/f noise", Proceedings of the IEEE 70, 1982),
 /// - a random walk.
 ///
 /// The Allan deviation of the in-run instability is flat at `in_run` within 5 % for averaging times from 1/200 to 1/2

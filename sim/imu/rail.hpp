@@ -14,15 +14,15 @@ namespace tumble::sim {
 /// - `plateau`: the level differs between axes and signs, and between clipping events.
 /// - `wrap`: a reading beyond the level appears with the opposite sign, as when a 16-bit word overflows.
 /// - `slow_recovery`: a clipped axis accumulates an offset with the sign of the signal, up to `recovery_share` of the
-/// level, with time constant `recovery_s`.
+///   level, with time constant `recovery_s`.
 ///
 /// The saturation model excludes levels that depend on temperature, and devices that stop after saturation.
 class Rail {
  public:
   struct Params {
     double level = 0.0;         ///< [unit of the signal]; 0: none
-    double axis_spread = 0.0;   ///< truncated at three standard deviations
-    double event_spread = 0.0;  ///< truncated at three standard deviations
+    double axis_spread = 0.0;   ///< standard deviation [unit of the signal]
+    double event_spread = 0.0;  ///< standard deviation [unit of the signal]
     bool wrap = false;
     double recovery_s = 0.0;      ///< time constant; 0: no offset
     double recovery_share = 0.0;  ///< fraction of the level

@@ -69,7 +69,7 @@ struct BagWriting {
 ///   within 0.1 s), and offset_ns contains the same time in whole nanoseconds. Points without times have neither of the
 ///   two time fields.
 /// - "/truth" is a nav_msgs/Odometry of "body" in "world", at most every 5 ms. "/TRACK" and "/TRACK/points" contain
-/// estimates. Unknown values have the variance -1, as in sensor_msgs/Imu; an unknown twist is zero.
+///   estimates. Unknown values have the variance -1, as in sensor_msgs/Imu; an unknown twist is zero.
 /// - "/tf_static" contains the pose of each sensor in "body", from the calibration that the estimator uses.
 /// - "/tf" contains the pose of "body" in "world" from the truth, or else from the first track.
 /// - "/clock" is a rosgraph_msgs/Clock, published with the first message after every 10 ms.

@@ -13,7 +13,7 @@
 /// - ros1_only(uint32) handles a field that ROS 2 removed.
 /// - count(number of entries, minimum bytes of an entry) handles the length before a list, and returns the stored
 /// length
-/// when decoding.
+///   when decoding.
 /// - raw(first byte, bytes) handles a block of bytes.
 namespace tumble::scenarios::ros {
 

@@ -49,7 +49,7 @@ bool is_pose_table(const std::filesystem::path& file);
 /// the header identify the columns, in any order:
 /// - ground truth of EuRoC and TUM VI ("#timestamp [ns],p_RS_R_x [m],...,q_RS_w [],..."),
 /// - messages nav_msgs/Odometry, PoseStamped, TransformStamped ("header.stamp.sec", "pose.pose.position.x",
-/// "field.transform.translation.x"),
+///   "field.transform.translation.x"),
 /// - truth.csv of the command `export`, and short names ("timestamp tx ty tz qx qy qz qw").
 ///
 /// A time without a unit is in decimal seconds, or in ms, us or ns since 1970 according to its number of digits.
