@@ -226,11 +226,10 @@ std::vector<GateResult> hold_to_gate(const GateRun& run, const Gate& gate) {
     throw BadInput(
         fmt::format("suite {} has no accepted results; run 'tumble gate SUITE --accept' to create them", gate.suite));
   if (run.seeds != gate.accepted.seeds) {
-    throw BadInput(
-        fmt::format("the accepted results of suite {} contain {} simulated runs with other seeds than the {} simulated "
-                    "runs of this "
-                    "comparison; use the same seeds, or run 'tumble gate {} --accept' to accept the new results",
-                    gate.suite, gate.accepted.seeds.size(), run.seeds.size(), gate.suite));
+    throw BadInput(fmt::format(
+        "the accepted results of suite {} contain {} simulated runs with other seeds than the {} simulated "
+        "runs of this comparison; use the same seeds, or run 'tumble gate {} --accept' to accept the new results",
+        gate.suite, gate.accepted.seeds.size(), run.seeds.size(), gate.suite));
   }
   std::vector<Pooled> all = pooled_metrics(gate.accepted);
   std::size_t tests = all.size();
