@@ -20,7 +20,8 @@ struct RestReadings {
   std::vector<Eigen::Vector3d> gyro, accel;
 };
 
-/// The check omits filters and all sensor errors except noise and bias, because the other errors are constant at rest.
+/// The noise check omits filters and all sensor errors except noise and bias, because the other errors are constant at
+/// rest.
 sim::SensorSpec resting(const DataSheet& sheet) {
   sim::SensorSpec sensor = imu_of_sheet(sheet);
   for (const char* off :

@@ -25,10 +25,10 @@ class AnswerBounds {
 
   void require_size(const std::filesystem::path& file, std::uintmax_t bytes) const;
 
-  /// Throws BadInput with location, value and limit if a result value is outside its limits. Time stamps must be within
-  /// 10 s of the recording. Positions [m] must be finite and within 1e7 m of the origin, which allows Earth-centred
-  /// coordinates. Quaternions must have norm 1 within 1 %. Rates [rad/s] must be finite and below 1e6, with finite
-  /// covariances.
+  /// Throws BadInput with location, value and limit if a result value is outside its limits. Time stamps of a result
+  /// must be within 10 s of the recording. Positions of a result [m] must be finite and within 1e7 m of the origin,
+  /// which allows Earth-centred coordinates. Quaternions of a result must have norm 1 within 1 %. Rates of a result
+  /// [rad/s] must be finite and below 1e6, with finite covariances.
   void require_rates(const std::vector<RateState>& rates, const Place& place) const;
   void require_poses(const std::vector<PoseState>& poses, const Place& place) const;
   void require_attitudes(const std::vector<AttitudeState>& attitudes, const Place& place) const;

@@ -115,8 +115,8 @@ Estimate run_attitude_tumble_batch(const sim::Sensors& sensors, const sim::Value
   }
   if (!estimate.status.ok()) return estimate;
   report_unknown_attitude(estimate);
-  // The checks use the input of the attitude smoother, because the output of the smoother always agrees with gravity at
-  // rest.
+  // The health checks use the input of the attitude smoother, because the output of the smoother always agrees with
+  // gravity at rest.
   (void)check_imu(sensors, samples, rates_of(recovered), carried_share(recovered.report), estimate);
   return estimate;
 }

@@ -40,10 +40,10 @@ class RefusedAnswer : public BadInput {
 };
 
 /// An external command receives the sensor data in a temporary folder, and writes its result to a file (EXTERNAL.md).
-/// The command runs in a separate process with limits of time and memory. External programs never receive the true
-/// motion.
+/// An external command runs in a separate process with limits of time and memory. External programs never receive the
+/// true motion.
 ///
-/// The time limit is the smaller one of the description's limit and `time_limit_s`.
+/// The time limit of an external method is the smaller one of the description's limit and `time_limit_s`.
 Method external_method(const std::filesystem::path& file,
                        double time_limit_s = std::numeric_limits<double>::infinity());
 

@@ -82,7 +82,8 @@ struct MethodInfo {
   bool applies_to(const Subject& subject) const { return why_not(subject).empty(); }
   /// true: the method is the reference method of its kind, without treatment of saturation or slip.
   bool baseline = false;
-  /// true: the method can start from a saved calibration of the rig, and saves its new calibration.
+  /// true: the method can start from a saved calibration of the rig (lever arm, biases, inertia ratios), and saves its
+  /// new calibration.
   bool calibrates_rig = false;
   std::string version;  ///< for external methods
 };

@@ -5,8 +5,9 @@
 #include "scenarios/processes/shared_memory.hpp"
 
 /// The shared memory between the program and a Python function contains the length of a JSON text (uint64, little
-/// endian), the text, and arrays. The first array starts at the next multiple of 64 bytes. The JSON text describes each
-/// array as {"dtype": "<f8", "shape": [N, 3], "offset": bytes after the start of the first array}.
+/// endian), the text, and arrays. The first array in the shared memory starts at the first multiple of 64 bytes after
+/// the JSON text. The JSON text describes each array as {"dtype": "<f8", "shape": [N, 3], "offset": bytes after the
+/// start of the first array}.
 namespace tumble::scenarios {
 
 /// The arrays have the names of the Python package (python/src/tumble/recordings.py).

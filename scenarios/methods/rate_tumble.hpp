@@ -51,9 +51,9 @@ struct RigCalibrationUse {
   const CalibratedRig* found() const;
 };
 
-/// The returned method starts with the calibration in `learning` and updates it; `learning` must outlive the method. If
-/// `learning` contains a calibration, the method also runs without it; if the two results differ, the new calibration
-/// is not saved.
+/// The returned method starts with the rig calibration in `learning` and updates it; `learning` must outlive the
+/// method. If `learning` contains a rig calibration, the method also runs without this calibration; if the two results
+/// differ, the new calibration is not saved.
 Method calibrating_method(const Method& method, RigCalibrationUse& learning);
 
 Method rate_tumble_lag();

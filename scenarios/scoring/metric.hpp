@@ -51,8 +51,8 @@ std::string sense_text(const MetricInfo& metric);
 bool is_better(const MetricInfo& metric, double a, double b);
 
 /// Returns the badness of a value: the value if lower is better, the negative value if higher is better, or the
-/// distance from the target. If value and target are positive, the distance is a difference of logarithms. For an
-/// unranked metric, the badness is NaN.
+/// distance from the target. If value and target of a metric are positive, the distance from the target is a difference
+/// of logarithms. For an unranked metric, the badness is NaN.
 double how_bad(const MetricInfo& metric, double value);
 
 /// Value of a failed run: infinity, or minus infinity if higher is better; NaN for two-sided and unranked metrics.

@@ -17,8 +17,8 @@ class MedianBootstrap {
   explicit MedianBootstrap(std::size_t size, std::size_t resamples = 4000);
 
   /// Returns the median of `values` with its confidence interval of level 1 - `risk`. Infinite values rank like finite
-  /// values, so an end of the interval can be infinite. With fewer than six values, both ends of the interval are
-  /// infinite.
+  /// values, so an end of the confidence interval can be infinite. With fewer than six values, both ends of the
+  /// confidence interval are infinite.
   Interval interval(std::span<const double> values, double risk = 0.05) const;
 
  private:

@@ -20,7 +20,8 @@ struct Correlation {
 };
 
 /// Computes Spearman's rank correlation with its confidence interval (Bonett and Wright, Psychometrika 65:23, 2000;
-/// equation (S16) of statistics.md). For fewer than four pairs or a constant variable, the interval is [-1, 1].
+/// equation (S16) of statistics.md). For fewer than four pairs or a constant variable, the confidence interval of the
+/// correlation is [-1, 1].
 Correlation rank_correlation(std::span<const double> x, std::span<const double> y);
 
 struct FirstOrder {
@@ -48,8 +49,8 @@ struct DependenceClass {
 inline constexpr std::size_t kDependenceClassesMax = 8, kDependenceDrawsMin = 12;
 
 /// Computes the partial dependence of y on x: a statistic of y per class of x, equations (S22) and (S23) of
-/// statistics.md. The data must come from simulated runs with independent random numbers. There are at most
-/// `kDependenceClassesMax` equally large classes of x, with at least `kDependenceDrawsMin` runs each.
+/// statistics.md. The data of a partial dependence must come from simulated runs with independent random numbers. There
+/// are at most `kDependenceClassesMax` equally large classes of x, with at least `kDependenceDrawsMin` runs each.
 std::vector<DependenceClass> partial_dependence(std::span<const double> x, std::span<const double> y, Centre centre);
 
 }  // namespace tumble::scenarios

@@ -26,7 +26,7 @@ double median_of(const std::vector<Row>& rows, double Row::*member) {
 }
 
 /// Returns the median with its distribution-free confidence interval from order statistics (binomial). With too few
-/// values, the ends of the interval are infinite.
+/// values, the ends of the confidence interval of the median are infinite.
 Interval median_interval(std::span<const double> values);
 
 /// Returns the fraction of successes with its exact confidence interval (Clopper and Pearson).

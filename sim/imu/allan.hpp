@@ -5,8 +5,9 @@
 #include <span>
 #include <vector>
 
-/// The source is Riley, "Handbook of Frequency Stability Analysis", NIST Special Publication 1065 (2008), sections
-/// 5.2.5, 5.3.2 and table 5. The names of the noises of a gyroscope are from IEEE Std 952-1997, annex C.
+/// The equations of the Allan deviation are from Riley, "Handbook of Frequency Stability Analysis", NIST Special
+/// Publication 1065 (2008), sections 5.2.5, 5.3.2 and table 5. The names of the noises of a gyroscope are from IEEE Std
+/// 952-1997, annex C.
 namespace tumble::sim {
 
 struct AllanPoint {
@@ -25,7 +26,8 @@ enum class AllanNoise {
 };
 
 /// Computes the overlapping Allan deviation of `samples`, which are means over consecutive periods (rates, not angles).
-/// The averaging times range from one period to a ninth of the series, with `per_decade` times per decade.
+/// The averaging times of the Allan deviation range from one period to a ninth of the series, with `per_decade` times
+/// per decade.
 std::vector<AllanPoint> allan_deviation(std::span<const double> samples, double period_s, int per_decade = 5);
 
 /// Returns the root of the mean Allan variance of several independent series of equal length and period, for example

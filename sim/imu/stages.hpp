@@ -15,8 +15,8 @@ Eigen::Vector3d normals(Stream& stream, double sigma);
 /// The normally distributed number is truncated at three standard deviations; for `sigma` 0, no random number is drawn.
 double bounded_normal(Stream& stream, double sigma);
 
-/// DelayLine delays a signal by `delay_s`; until the delay has passed, the output is the first value. Values between
-/// samples are interpolated linearly, which preserves the integral of the signal.
+/// DelayLine delays a signal by `delay_s`; until the delay has passed, the output is the first value. DelayLine
+/// interpolates linearly between samples, which preserves the integral of the signal.
 class DelayLine {
  public:
   DelayLine(double delay_s, double rate_hz);

@@ -25,8 +25,8 @@ struct RayPacket {
 
 inline constexpr std::int32_t kNothing = -1;
 
-/// Several threads may call const members. The coordinates are float: at 50 m from the origin, a hit is accurate to
-/// about 1e-5 m. The hits are bit-identical on every x86-64 CPU with AVX2 and FMA.
+/// Several threads may call const members of RayScene. RayScene uses float coordinates: at 50 m from the origin, a hit
+/// is accurate to about 1e-5 m. The hits are bit-identical on every x86-64 CPU with AVX2 and FMA.
 class RayScene {
  public:
   explicit RayScene(const SceneGeometry& geometry);

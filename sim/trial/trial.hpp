@@ -21,7 +21,7 @@ struct TrialOptions {
 };
 
 /// Trial simulates a robot in its world step by step for measurements, with the model and engine of simulate(). The
-/// robot starts without settling; the motion and sensors of the situation are ignored.
+/// robot of a Trial starts without settling; the motion and sensors of the situation are ignored.
 class Trial {
  public:
   explicit Trial(const BuiltSituation& built, const TrialOptions& options = {});

@@ -15,7 +15,7 @@ inline constexpr double kDipDepth_m = 0.01;
 inline constexpr double kDip_s = 0.05;
 
 /// Checks that a sensor stays above the ground, because runs with a wedged robot are useless for judging estimators.
-/// The check covers only height fields, not planes, rocks, trunks and walls.
+/// The check for a wedged robot covers only height fields, not planes, rocks, trunks and walls.
 void require_above_ground(const engine::World& world, const Truth& truth, const std::string& sensor,
                           const Eigen::Vector3d& p_BX_m);
 

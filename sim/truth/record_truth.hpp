@@ -27,8 +27,8 @@ Eigen::Vector3d mean_rate_B(const BodyState& before, const BodyState& after);
 /// - `slip`: the rotation is too fast for the motion of the geometric centre.
 /// - `slide`: the rotation is too slow for the motion of the geometric centre.
 ///
-/// The labels show touchdown 10 ms too early and take-off 10 ms too late. For a body other than a sphere, the labels
-/// refer to the centre of mass instead of the geometric centre.
+/// The contact labels show touchdown 10 ms too early and take-off 10 ms too late. For a body other than a sphere, the
+/// labels refer to the centre of mass instead of the geometric centre.
 std::vector<ContactLabel> label_contacts(const Truth& truth);
 
 }  // namespace tumble::sim

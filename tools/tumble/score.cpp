@@ -58,7 +58,7 @@ void require_common_time(const ScoreOptions& options, const scenarios::Estimate&
 }
 
 constexpr double kHoleShare = 0.2;  // longer gaps are a divergence
-// With fewer poses or a shorter overlap, little more than the aligned pose would be compared.
+// With fewer poses within the truth, little more than the aligned first pose would be compared.
 constexpr std::size_t kComparedMin = 2;
 constexpr double kSpannedShareMin = 0.01;
 

@@ -24,8 +24,8 @@ struct AutogainGains {
 };
 
 /// Autogain estimates attitude with the published filter for a rolling sphere (Zevering et al., IEEE MFI 2021, eqs
-/// 2-5). The filter combines Madgwick's correction, whose gain grows with the angular rate, with a complementary
-/// correction, whose weight falls with the angular rate. The filter estimates neither gyro bias nor heading.
+/// 2-5). Autogain combines Madgwick's correction, whose gain grows with the angular rate, with a complementary
+/// correction, whose weight falls with the angular rate. Autogain estimates neither gyro bias nor heading.
 class Autogain {
  public:
   struct Params {
@@ -74,7 +74,7 @@ class Autogain {
 
   explicit Autogain(const Params& params);
 
-  /// If the specific force is below 1e-6 m/s^2, the filter only integrates the gyro.
+  /// If the specific force is below 1e-6 m/s^2, Autogain only integrates the gyro.
   Status step(const ImuSample& sample, State& state) const;
 
   AutogainGains gains(const Eigen::Vector3d& w_I_rad_s, double dt_s) const;

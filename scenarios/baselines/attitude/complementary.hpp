@@ -9,9 +9,9 @@
 
 namespace tumble::baselines {
 
-/// The filter integrates the gyro, then applies the fraction 1 - exp(-dt / tau) of the smallest rotation that aligns
+/// Complementary integrates the gyro, then applies the fraction 1 - exp(-dt / tau) of the smallest rotation that aligns
 /// the specific force with the vertical (equation (A2) of attitude.md). An acceleration that lasts longer than the time
-/// constant tau causes an attitude error. The filter does not estimate the gyro bias.
+/// constant tau causes an attitude error. Complementary does not estimate the gyro bias.
 class Complementary {
  public:
   struct Params {
@@ -37,7 +37,7 @@ class Complementary {
 
   explicit Complementary(const Params& params);
 
-  /// If the specific force is below 1e-6 m/s^2, the filter only integrates the gyro.
+  /// If the specific force is below 1e-6 m/s^2, Complementary only integrates the gyro.
   Status step(const ImuSample& sample, State& state) const;
 
  private:

@@ -82,8 +82,8 @@ class PublishedChain {
     std::span<const LidarPoint> points;
   };
 
-  /// `rates` contains one angular rate per IMU sample, which replaces the gyro reading. The data of `samples` must
-  /// outlive the PublishedChain.
+  /// `rates` contains one angular rate per IMU sample, which replaces the gyro reading of the sample. The data of
+  /// `samples` must outlive the PublishedChain.
   PublishedChain(const Params& params, std::span<const ImuSample> samples, std::span<const RateState> rates);
 
   bool covers(const Sweep& sweep) const;

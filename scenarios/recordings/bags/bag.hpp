@@ -40,7 +40,7 @@ struct BagTrack {
   std::string name;  ///< letters, digits and _
   std::vector<Pose> poses;
   std::vector<std::int64_t> cloud_time_ns = {};  ///< times of point clouds along the track
-  /// Creates one cloud at a time, so only one cloud is in memory; clouds without points are omitted.
+  /// The function creates one point cloud at a time, so only one cloud is in memory; clouds without points are omitted.
   std::function<BagCloud(const BagTrack&, std::size_t)> cloud = {};
 };
 

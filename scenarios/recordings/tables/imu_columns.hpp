@@ -37,8 +37,8 @@ ImuColumns imu_columns(const LoggedTable& table);
 std::int64_t stamp_ns(const CsvLine& line, const ImuColumns& columns);
 
 /// Infers the unit of the time stamps from up to a thousand steps at the start of the table, and returns the number of
-/// decimals of the unit. The unit is that of s, ms, us and ns that gives 10 to 1000 samples per second, which at most
-/// one unit can give.
+/// decimals of the unit. The inferred unit is that of s, ms, us and ns that gives 10 to 1000 samples per second, which
+/// at most one unit can give.
 int decimals_by_step(LoggedTable& table, std::size_t stamp, const std::string& file);
 
 }  // namespace tumble::scenarios

@@ -105,7 +105,7 @@ constexpr int kLeastWindows = 10;
 constexpr double kLeastCorrelation = 0.8;
 constexpr double kBriskRotation = 0.25;
 
-/// Within a burst of readings, a time step is at most 0.2 times the mean step. In a recording with bursts, at least
+/// Within a burst of IMU readings, a time step is at most 0.2 times the mean step. In a recording with bursts, at least
 /// half of the time steps are within a burst.
 constexpr double kBurstStep = 0.2, kBurstShare = 0.5;
 constexpr std::size_t kLeastBursts = 10;

@@ -11,9 +11,9 @@
 
 namespace tumble::scenarios {
 
-/// Empty lines, comments and an empty field after the last separator of a line are skipped. The header is the first
-/// line that is no comment and contains fewer numbers than other texts. If samples directly follow comments, the last
-/// comment is the header if it has as many fields as a sample ("#timestamp [ns],w_RS_S_x [rad s^-1],...").
+/// Empty lines, comments and an empty field after the last separator of a line are skipped. The header of a table is
+/// the first line that is no comment and contains fewer numbers than other texts. If samples directly follow comments,
+/// the last comment is the header if it has as many fields as a sample ("#timestamp [ns],w_RS_S_x [rad s^-1],...").
 class LoggedTable {
  public:
   explicit LoggedTable(const std::filesystem::path& path);

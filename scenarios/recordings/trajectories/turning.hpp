@@ -72,12 +72,13 @@ std::string delay_text(double delay_s);
 std::string delay_remedy(double delay_s);
 
 /// Compares the rotations between pairs of attitudes (0.05 to 1 s and 0.02 to 2.5 rad apart) with the rotations from
-/// unsaturated gyro samples without a gap above 0.1 s. At most 400 pairs are used, spread evenly over the recording.
-/// Fewer than 6 pairs of attitudes give no result.
+/// unsaturated gyro samples without a gap above 0.1 s. At most 400 pairs of attitudes are used, spread evenly over the
+/// recording. Fewer than 6 pairs of attitudes give no result.
 ///
 /// @param frames       Frames to which the attitudes may belong; the first is the user's choice.
 /// @param delay_max_s  Largest delay in either direction, searched in steps of 20 ms, then of 2 ms. With fewer than 20
-/// pairs, or for 0, no delay is searched. The cost is O(N log N + pairs x delays): half a second for up to 5 s.
+/// pairs of attitudes, or for `delay_max_s` = 0, no delay is searched. The cost of the comparison is O(N log N + pairs
+/// x delays): half a second for delays of up to 5 s.
 TurningCheck check_turning(std::span<const TimedAttitude> attitudes, const std::vector<CandidateFrame>& frames,
                            const sim::ImuRecord& imu, double delay_max_s);
 
