@@ -7,8 +7,8 @@
 
 namespace tumble::scenarios {
 
-/// BadInput is the exception for wrong use or bad input, for example an unknown name, a truncated file, or a value
-/// outside its limits. The program then prints the one-line message and exits with status 2.
+/// BadInput is the exception for wrong use or invalid input, for example an unknown name, a truncated file, or a value
+/// outside its limits. On BadInput, the program prints the message and exits with status 2.
 class BadInput : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -12,11 +12,10 @@ namespace engine {
 struct World;
 }
 
-/// The model is constant; copies of a BuiltSituation share it, also between threads.
+/// The model is constant; copies of a BuiltSituation share the model, also between threads.
 class BuiltSituation {
  public:
-  /// The construction takes milliseconds for a floor and tenths of a second for a hill. Throws InvalidSituation with
-  /// the message of MuJoCo's model compiler.
+  /// The construction of a BuiltSituation takes milliseconds for a floor and tenths of a second for a hill.
   BuiltSituation(ResolvedSituation situation, const std::filesystem::path& models);
 
   const ResolvedSituation& situation() const;

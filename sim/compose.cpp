@@ -89,7 +89,7 @@ bool moves_freely(const mjModel& model) {
 void spare_work(mjModel& model) {
   model.opt.enableflags |= mjENBL_SLEEP;
   std::fill(model.tree_sleep_policy, model.tree_sleep_policy + model.ntree, static_cast<int>(mjSLEEP_NEVER));
-  model.opt.disableflags |= mjDSBL_ISLAND;  // the robot is a single island of connected bodies
+  model.opt.disableflags |= mjDSBL_ISLAND;  // the robot is a single island
   // Height fields are below every strut (capsule of the robot's cage), so tests of their bounding boxes are disabled.
   for (int i = 0; i < model.ngeom; ++i) {
     if (model.geom_type[i] == mjGEOM_HFIELD)

@@ -7,7 +7,6 @@
 
 namespace tumble::sim::engine {
 
-/// Throws InvalidSituation with the message of MuJoCo's model compiler.
 World compose(const ResolvedSituation& situation, const std::filesystem::path& models);
 
 }  // namespace tumble::sim::engine

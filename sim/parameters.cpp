@@ -40,7 +40,6 @@ double Values::at(std::string_view name) const {
 
 std::string nearest_name(std::string_view name, std::span<const std::string> known) {
   std::string best;
-  // A suggested name differs from the unknown name in at most half of its letters.
   std::size_t best_distance = std::max<std::size_t>(2, name.size() / 2) + 1;
   for (const std::string& candidate : known) {
     const std::size_t distance = edit_distance(name, candidate);

@@ -13,7 +13,7 @@ namespace tumble::sim {
 
 /// Parameter describes a number that a component of a situation uses; a switch is 0 (off) or 1 (on).
 struct Parameter {
-  std::string_view name;  ///< ends in its unit if it has one: slope_rad, mass_kg
+  std::string_view name;  ///< ends in its unit: slope_rad
   double default_value;
   double low;
   double high;
@@ -47,8 +47,6 @@ class Values {
   std::map<std::string, double> numbers_;
 };
 
-/// Throws InvalidSituation, with a message that starts with `place`, for an unknown name, NaN, or a value outside its
-/// limits.
 Values resolve(const std::string& place, const Values& given, std::span<const Parameter> known);
 
 std::string nearest_name(std::string_view name, std::span<const std::string> known);

@@ -27,9 +27,9 @@ struct ContactTruth {
 struct ImuTruth {
   std::string name;
   Eigen::Isometry3d T_BI = Eigen::Isometry3d::Identity();  ///< true mounting
-  std::vector<Eigen::Vector3d> rate_rad_s;                 ///< exact: rotation over the window divided by its duration
-  std::vector<Eigen::Vector3d> specific_force_m_s2;        ///< exact: velocity change minus gravity, in axes halfway
-  std::vector<Eigen::Vector3d> gyro_unclipped_rad_s;       ///< readings with all errors except saturation
+  std::vector<Eigen::Vector3d> rate_rad_s;                 ///< rotation over the window / duration
+  std::vector<Eigen::Vector3d> specific_force_m_s2;        ///< velocity change minus gravity, axes halfway
+  std::vector<Eigen::Vector3d> gyro_unclipped_rad_s;       ///< all errors except saturation
   std::vector<Eigen::Vector3d> accel_unclipped_m_s2;
   std::vector<Eigen::Vector3d> gyro_bias_rad_s;  ///< bias at each sample
   std::vector<Eigen::Vector3d> accel_bias_m_s2;
@@ -38,20 +38,20 @@ struct ImuTruth {
   std::vector<Eigen::Vector3d> gyro_elements, accel_elements;
   Eigen::Vector3d gyro_element_offset_rad_s = Eigen::Vector3d::Zero();
   Eigen::Vector3d accel_element_offset_m_s2 = Eigen::Vector3d::Zero();
-  std::vector<Eigen::Vector3d> magnetic_field_t;  ///< true mean over the window, disturbances included
+  std::vector<Eigen::Vector3d> magnetic_field_t;  ///< true mean, disturbances included
 };
 
 struct LidarTruth {
   std::string name;
   Eigen::Isometry3d T_BL = Eigen::Isometry3d::Identity();
   std::vector<Eigen::Vector3f> hit_W_m;
-  std::vector<std::int32_t> surface_id;  ///< index into Truth::surfaces; -2 is the robot's own cage
+  std::vector<std::int32_t> surface_id;  ///< into Truth::surfaces; -2: own cage
 };
 
 struct QuantityTruth {
   std::string name;
   std::string unit;
-  std::vector<double> values;  ///< exact means over the windows of the readings
+  std::vector<double> values;  ///< exact means over the windows
 };
 
 struct SeriesTruth {
@@ -66,9 +66,9 @@ struct Truth {
   std::vector<Eigen::Quaterniond> q_WB;
   std::vector<Eigen::Vector3d> v_WB_m_s;
   std::vector<Eigen::Vector3d> w_WB_B_rad_s;
-  std::vector<Eigen::Vector3d> f_B_m_s2;  ///< specific force at the centre of mass, mean over the step that ends here
+  std::vector<Eigen::Vector3d> f_B_m_s2;  ///< at the centre of mass, step mean
   std::vector<ContactLabel> label;
-  std::vector<ContactTruth> contacts;                ///< in time order; any number per physics sample
+  std::vector<ContactTruth> contacts;                ///< any number per physics sample
   Eigen::Vector3d p_BG_m = Eigen::Vector3d::Zero();  ///< geometric centre in B (sphere)
   std::vector<std::string> surfaces;                 ///< name of surface id i: "terrain", "rock_3", "trunk_7"
   std::vector<ImuTruth> imus;                        ///< in the order of Sensors::imus

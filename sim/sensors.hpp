@@ -7,24 +7,24 @@
 #include <string>
 #include <vector>
 
-/// The sensor data are the complete input of an estimator. Frames and units are as in docs/design.md: B body at the
-/// centre of mass, I an IMU, L the lidar, X any other sensor; SI units; int64 nanoseconds from the start.
+/// The sensor data are the complete input of an estimator, with frames and units as in docs/design.md. Frames: B body
+/// at the centre of mass, I an IMU, L the lidar, X any other sensor; SI units; int64 nanoseconds from the start.
 namespace tumble::sim {
 
 struct ImuRecord {
-  std::string name;    ///< name of the sensor in the situation: "imu"
+  std::string name;
   std::string device;  ///< for example "mti30"
   std::int64_t period_ns = 0;
-  double stated_gyro_range_rad_s = 0.0;  ///< range of the data sheet; the saturation limit may differ
+  double stated_gyro_range_rad_s = 0.0;  ///< the saturation limit may differ
   double stated_accel_range_m_s2 = 0.0;
-  double gyro_noise_rad_s_sqrt_hz = 0.0;  ///< noise densities of the data sheet
+  double gyro_noise_rad_s_sqrt_hz = 0.0;  ///< from the data sheet
   double accel_noise_m_s2_sqrt_hz = 0.0;
-  Eigen::Isometry3d T_BI = Eigen::Isometry3d::Identity();  ///< calibration that an estimator receives, errors included
+  Eigen::Isometry3d T_BI = Eigen::Isometry3d::Identity();  ///< for the estimator, with errors
   std::vector<std::int64_t> time_ns;                       ///< end of each sample's window
   std::vector<Eigen::Vector3d> gyro_rad_s;
   std::vector<Eigen::Vector3d> accel_m_s2;        ///< specific force
-  std::vector<std::uint8_t> clip_flags;           ///< bits gyro x y z, accel x y z; zero for devices without flags
-  std::vector<Eigen::Vector3d> magnetic_field_t;  ///< flux density in I, one per sample; empty without magnetometer
+  std::vector<std::uint8_t> clip_flags;           ///< gyro x y z, accel x y z
+  std::vector<Eigen::Vector3d> magnetic_field_t;  ///< in I, one per sample
   /// Undisturbed field of the Earth, from a map; 0: unknown
   Eigen::Vector3d earth_field_W_t = Eigen::Vector3d::Zero();
 };
@@ -33,29 +33,29 @@ enum class PointTimes : std::uint8_t {
   measured,  ///< each point has its own time in offset_ns
   /// All points belong to the start of the sweep, because the lidar is a flash or the sweep is deskewed; offset_ns is 0
   not_skewed,
-  unknown  ///< the motion distortion of the sweep is unknown; offset_ns is 0
+  unknown  ///< unknown motion distortion; offset_ns is 0
 };
 
 /// A lidar firing without a hit gives no point.
 struct LidarRecord {
   std::string name;
   std::string device;
-  Eigen::Isometry3d T_BL = Eigen::Isometry3d::Identity();  ///< calibration that an estimator receives, errors included
+  Eigen::Isometry3d T_BL = Eigen::Isometry3d::Identity();  ///< for the estimator, with errors
   std::int64_t sweep_period_ns = 0;
   PointTimes point_times = PointTimes::measured;
   std::vector<std::int64_t> sweep_start_ns;
-  std::vector<std::uint64_t> sweep_first;  ///< index of each sweep's first point, followed by the number of points
+  std::vector<std::uint64_t> sweep_first;  ///< first points, then point count
   std::vector<Eigen::Vector3f> position_L_m;
   std::vector<float> range_m;
   std::vector<float> intensity;          ///< 0..1
-  std::vector<std::uint32_t> offset_ns;  ///< time of the firing since the start of the sweep
+  std::vector<std::uint32_t> offset_ns;  ///< firing since the sweep's start
   std::vector<std::uint16_t> ring;
 };
 
 struct Quantity {
   std::string name;            ///< ends in its unit: "pressure_pa"
   std::string unit;            ///< for example "Pa"
-  double noise = 0.0;          ///< standard deviation of a reading by the data sheet; 0: not stated
+  double noise = 0.0;          ///< data sheet's deviation; 0: not stated
   std::vector<double> values;  ///< one per time stamp of the sensor
 };
 
@@ -69,19 +69,19 @@ struct SeriesRecord {
   std::string kind;  ///< kind of sensor: "barometer"
   std::string device;
   std::int64_t period_ns = 0;
-  Eigen::Isometry3d T_BX = Eigen::Isometry3d::Identity();  ///< calibration that an estimator receives, errors included
+  Eigen::Isometry3d T_BX = Eigen::Isometry3d::Identity();  ///< for the estimator, with errors
   std::vector<std::int64_t> time_ns;                       ///< end of each sample's window
   std::vector<Quantity> quantities;
   std::vector<Constant> constants;  ///< needed to interpret the readings
 };
 
 struct Sensors {
-  std::string robot;           ///< "rig", "sphere", "pendulum"; empty if the robot is unknown
-  double sphere_radius_m = 0;  ///< 0 if the robot is not a sphere
+  std::string robot;           ///< "rig", "sphere", "pendulum" or empty
+  double sphere_radius_m = 0;  ///< 0: no sphere
   double gravity_m_s2 = 9.80665;
-  std::vector<ImuRecord> imus;  ///< the first is the primary IMU; `imu_reference`, if any, is for comparison only
+  std::vector<ImuRecord> imus;  ///< primary IMU first; `imu_reference`: comparison
   std::vector<LidarRecord> lidars;
-  std::vector<SeriesRecord> series;  ///< all sensors that are neither IMU nor lidar
+  std::vector<SeriesRecord> series;  ///< neither IMU nor lidar
 };
 
 }  // namespace tumble::sim

@@ -35,8 +35,8 @@ Eigen::Isometry3d site_pose(const engine::World& world, const SensorSpec& sensor
   return T_BX;
 }
 
-/// Returns the sensor calibration that an estimator receives: the mounting in the design frame plus the calibration
-/// error. The origin of the design frame is the nominal centre of mass (for a sphere the geometric centre).
+/// Sensor calibration that an estimator receives: the mounting in the design frame plus the calibration error. The
+/// origin of the design frame is the nominal centre of mass (for a sphere the geometric centre).
 Eigen::Isometry3d given_pose(const engine::World& world, const SensorSpec& sensor, const Eigen::Isometry3d& T_BX) {
   const Values& error = sensor.mount_error;
   Eigen::Isometry3d given = T_BX;
@@ -54,7 +54,6 @@ Recording simulate(const BuiltSituation& built, int threads) {
   // The world is a copy, because the floor's friction changes with the robot's position.
   engine::World world = engine::copy_of(built.world());
   const auto motion = find_motion_type(situation.motion.type).make(situation.motion.values, world);
-  // The sensor mountings are computed before the long simulation, so that an unknown site is reported immediately.
   std::vector<Eigen::Isometry3d> mountings;
   for (const SensorSpec& sensor : situation.sensors) mountings.push_back(site_pose(world, sensor));
 

@@ -14,12 +14,10 @@ class SimulationFailure : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The recording is independent of `threads`, the number of threads for the lidar. Throws InvalidSituation if the robot
-/// lacks a sensor's site, or if the motion is impossible in the world. Throws SimulationFailure for a rejected run.
+/// The recording is independent of `threads`, the number of threads for the lidar.
 Recording simulate(const BuiltSituation& built, int threads = 1);
 
-/// Returns the initial pose of the robot's body frame, before the body settles into its contacts. Throws
-/// InvalidSituation if the motion is impossible in the situation's world.
+/// Initial pose of the robot's body frame, before the body settles into its contacts.
 Eigen::Isometry3d start_pose(const BuiltSituation& built);
 
 }  // namespace tumble::sim

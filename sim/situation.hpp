@@ -13,20 +13,20 @@
 namespace tumble::sim {
 
 struct SensorSpec {
-  std::string name;    ///< unique in the situation: "imu", "imu_reference", "lidar"
+  std::string name;    ///< unique: "imu", "imu_reference", "lidar"
   std::string kind;    ///< registry entry: "imu", "spinning_lidar", "barometer"
-  std::string device;  ///< data sheet from which the values come ("mti30"); for information
-  std::string site;    ///< site of the robot's MJCF at which the sensor is mounted
-  Values values;       ///< numbers of the device (data sheet with the scenario's changes)
-  /// Error of the sensor's mounting in the calibration that an estimator receives: x_m y_m z_m (B axes), roll_rad
-  /// pitch_rad yaw_rad (small angles, I axes)
+  std::string device;  ///< source of the values ("mti30")
+  std::string site;    ///< of the robot's MJCF
+  Values values;       ///< data sheet with the scenario's changes
+  /// Calibration error of the sensor's mounting: x_m y_m z_m (B axes), roll_rad pitch_rad yaw_rad (small angles, I
+  /// axes)
   Values mount_error;
   bool operator==(const SensorSpec&) const = default;
 };
 
 /// Situation is one simulated case with every number fixed; equal situations give bit-identical recordings.
 struct Situation {
-  std::string scenario;  ///< name of the scenario from which it was drawn
+  std::string scenario;
   std::uint64_t seed = 0;
   double duration_s = 10.0;
   Component world;
@@ -42,7 +42,7 @@ std::span<const ComponentType> motion_types();
 std::span<const ComponentType> sensor_types();
 std::span<const Parameter> mount_error_parameters();
 
-/// Only resolve() creates a ResolvedSituation, so it is complete and checked.
+/// Only resolve() creates a ResolvedSituation, so each ResolvedSituation is complete and checked.
 class ResolvedSituation {
  public:
   const Situation* operator->() const { return &situation_; }

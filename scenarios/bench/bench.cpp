@@ -41,7 +41,6 @@ std::optional<double> value_of(const BenchDraw& draw, const std::string& metric)
   return it->second;
 }
 
-/// Returns true if a method completed the simulated run with status `ok` but without a value of the metric.
 bool has_nothing(const BenchDraw& draw, const std::string& metric, std::span<const BenchResult> beside) {
   const auto says_so = [&](const BenchDraw* each) {
     return each != nullptr && each->status == OutcomeStatus::ok && !each->values.contains(metric);

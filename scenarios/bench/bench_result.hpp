@@ -19,11 +19,10 @@ struct BenchDraw {
   std::string group;      ///< class of runs in the suite: "mild"
   std::string recording;  ///< digest of the recording
   OutcomeStatus status = OutcomeStatus::failed;
-  std::map<std::string, double> values;  ///< gate metrics, metrics of the suite, and computing cost; all finite
+  std::map<std::string, double> values;  ///< all finite
   bool is(const BenchDraw& other) const { return scenario == other.scenario && seed == other.seed; }
 };
 
-/// BenchResult is the result of one method on a bench suite, published as one line of JSON (schema: README.md).
 struct BenchResult {
   std::string suite, suite_digest;  ///< see bench.hpp
   Kind kind = Kind::rate;

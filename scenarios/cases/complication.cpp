@@ -88,7 +88,6 @@ std::span<const ComplicationLine> of_motion() {
   return kLines;
 }
 
-// The saturation limits are so large that no reading of a tumbling robot is clipped.
 constexpr double kBeyondRates_rad_s = 100.0, kBeyondForces_m_s2 = 1000.0;
 
 std::span<const ComplicationLine> of_imu() {

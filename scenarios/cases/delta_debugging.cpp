@@ -50,7 +50,7 @@ LeastSet least_failing_set(std::size_t count, const FailsWith& fails) {
       if (!still) return out;
       if (*still) {
         out.kept = without(out.kept, first, chunk);
-        out.needed.clear();  // items were needed in the larger set only
+        out.needed.clear();
         removed = true;
         continue;
       }

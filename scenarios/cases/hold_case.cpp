@@ -39,7 +39,7 @@ std::string doc_of(const Shrunk& shrunk, const std::string& method, const std::s
       "The method {} fails ({}) on a simplified form of the simulated run with seed {} of scenario {}. Removing any of "
       "these parts removes the failure: {}",
       method, shrunk.failure, seed, scenario, needed.empty() ? "none" : needed);
-  if (not_tried > 0) doc += fmt::format(". The number of parts whose removal was not tried is {}", not_tried);
+  if (not_tried > 0) doc = fmt::format("{}. The number of parts whose removal was not tried is {}", doc, not_tried);
   return doc + ".";
 }
 

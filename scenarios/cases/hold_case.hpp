@@ -13,7 +13,6 @@ Scenario named_case_of(const Shrunk& shrunk, const std::string& name, const std:
 
 Failure failure_of(const Expectation& expected);
 
-/// The metric of an expected failure may differ from the accepted value by this factor.
 inline constexpr double kCaseFactor = 2.0;
 
 struct CaseResult {
@@ -22,12 +21,13 @@ struct CaseResult {
   OutcomeStatus status = OutcomeStatus::ok;
   std::optional<double> value;  ///< value of the metric that the expectation names
   bool fails = false;
-  bool better = false;  ///< the method passes, or its error is below half of the accepted value; update the expectation
-  std::string fault;    ///< why the check fails; empty if the check passes
+  bool better = false;  ///< success, or half the accepted error
+  std::string fault;    ///< reason if the check fails
 };
 
-/// An expected failure must have the accepted status, and a metric within the factor `kCaseFactor` of the accepted
-/// value. An improvement also fails the check, so that the developer updates the accepted value.
+/// An expected failure must have the accepted status, and its metric must be within the factor `kCaseFactor` of the
+/// accepted value. An improvement also fails the check of an expected failure, so that the developer updates the
+/// accepted value.
 CaseResult hold_case(const std::string& name, const Expectation& expected, const Outcome& outcome);
 
 Expectation accepted(const Expectation& expected, const Outcome& outcome);

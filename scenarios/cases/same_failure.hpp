@@ -7,9 +7,8 @@
 
 namespace tumble::scenarios {
 
-/// SameFailure describes how an outcome failed: by its status, by the metric that the caller chose, or by a pass-fail
-/// metric (`map_failed`). A run without the metric passes, for example because a run without clipping has no error at
-/// clipped samples.
+/// A run for which the failure's metric has no value counts as a success, for example a run without clipping for an
+/// error at clipped samples.
 class SameFailure {
  public:
   SameFailure(const Failure& failure, const Outcome& outcome);

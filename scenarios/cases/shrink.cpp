@@ -133,7 +133,7 @@ class Shrinking {
         fails = false;
         outcome.message = one_line(other);
       }
-    } catch (const std::exception& error) {  // the simpler run is invalid, so it does not show the failure
+    } catch (const std::exception& error) {  // an invalid run shows no failure
       outcome.status = OutcomeStatus::rejected;
       outcome.message = one_line(error.what());
     }
@@ -158,7 +158,6 @@ class Shrinking {
       return try_out(shorter, text_of(length_s) + " s");
     };
     const double now_s = shrunk_.scenario.duration_s.numbers.front();
-    // The bisection of the duration is repeated, because a shorter run may fail after details of the run were removed.
     return least_failing_number(now_s, 0.0, kLengthResolution * drawn_s, false, fails).complete;
   }
 

@@ -19,8 +19,8 @@ struct ShrinkTrial {
 
 struct ShrinkOptions {
   Failure failure;
-  /// The control is a method of the same kind, which must succeed on every simulated run that the search accepts; the
-  /// control excludes scenarios that no method can solve.
+  /// Reference method of the same kind, which must succeed on each simplified run, so that the simplification excludes
+  /// scenarios that no method can solve.
   MethodPointer control;
   int budget = 60;           ///< number of simulated runs, at least 1
   double timeout_s = 300.0;  ///< time limit of one method run
@@ -34,28 +34,24 @@ struct ShrinkLine {
   std::string what;  ///< "duration_s", or the complication's name
   Fate fate = Fate::not_tried;
   std::optional<double> from, to;       ///< original and final value of a duration, size or count
-  std::optional<Outcome> without = {};  ///< for a needed complication: outcome without it (no failure)
+  std::optional<Outcome> without = {};  ///< outcome without this complication
 };
 
 struct Shrunk {
-  Scenario scenario;    ///< scenario with constant parameters (fixed_scenario.hpp) and the original seed
+  Scenario scenario;    ///< constant parameters and original seed
   std::string failure;  ///< description of the failure: SameFailure::describe
   Outcome drawn, left;
   std::vector<ShrinkLine> lines;
   int runs = 0;
-  bool complete = false;    ///< the budget was sufficient, and no single complication can be removed
+  bool complete = false;    ///< no single complication can be removed
   bool controlled = false;  ///< the control succeeded on all accepted runs
-  /// Input whose true value prevents the failure of the original run and of every accepted run; empty if no input does
-  /// so.
+  /// Input whose true value prevents the failure in the original run and in each simplified run, or an empty string.
   std::string cure;
 };
 
-/// Simplifies a simulated run, by delta debugging and bisection, as long as `method` still fails in the same way
-/// (same_failure.hpp). If the true value of an input prevents the original failure, it must also prevent the failure of
-/// the simpler run; otherwise, the search could end at another cause. All trials use the random seed of the original
-/// run, so the search is deterministic.
-///
-/// Throws BadInput if the original run does not fail, or if `method` or the control cannot process the run.
+/// Simplifies a simulated run by delta debugging and bisection, as long as `method` fails in the same way as in the
+/// original run (same_failure.hpp). If the true value of an input prevents the original failure, the same true value
+/// must prevent the failure of the simplified run.
 Shrunk shrink(const DataRoot& data, const Scenario& scenario, std::uint64_t seed, const Method& method,
               const ShrinkOptions& options);
 

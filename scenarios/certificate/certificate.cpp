@@ -32,7 +32,7 @@ std::vector<CertificateEntry> measure_row(const CertificateRow& row, const Certi
     throw;
   } catch (const sim::InvalidSituation&) {
     throw;
-  } catch (const std::exception& error) {  // a failing simulation is a valid result of a measurement
+  } catch (const std::exception& error) {  // a failed simulation is a result
     reason = error.what();
   }
   return {{row.name, "", row.doc, "1", std::nan(""), 0.0, 0.0, reason}};
@@ -47,8 +47,7 @@ std::vector<const CertificateRow*> select(const std::vector<std::string>& names)
   }
   for (const std::string& name : names) {
     if (std::find(known.begin(), known.end(), name) == known.end()) {
-      throw BadInput(
-          fmt::format("the certificate of the simulation has no measurement '{}'{}", name, suggestion(name, known)));
+      throw BadInput(fmt::format("no check of the simulation has the name '{}'{}", name, suggestion(name, known)));
     }
   }
   return selected;

@@ -34,10 +34,9 @@ struct Certificate {
 
 struct CertificateInput {
   DataRoot data;
-  std::filesystem::path program;  ///< the program `tumble`, which computes a digest in a new process
+  std::filesystem::path program;  ///< computes a digest in a new process
 };
 
-/// A CertificateRow registers one measurement that checks the simulation against a physical law or a data sheet.
 struct CertificateRow {
   std::string name;
   std::string doc;
@@ -47,12 +46,12 @@ struct CertificateRow {
 std::span<const CertificateRow> certificate_rows();
 
 struct CertifyOptions {
-  std::vector<std::string> rows;            ///< names of the measurements; empty: all
-  const std::atomic<bool>* stop = nullptr;  ///< the caller sets it to stop after the current measurement
+  std::vector<std::string> rows;                                        ///< names of the measurements; empty: all
+  const std::atomic<bool>* stop = nullptr;                              ///< stops after the current measurement
   std::function<void(const CertificateRow&, double elapsed_s)> on_row;  ///< called before each measurement
 };
 
-/// If a measurement cannot be made, its entry contains the reason and the value NaN, and does not pass.
+/// If a simulation check cannot be measured, its entry contains the reason and the value NaN, and does not pass.
 Certificate measure_certificate(const CertificateInput& input, const CertifyOptions& options);
 
 }  // namespace tumble::scenarios

@@ -8,8 +8,8 @@
 
 namespace tumble::scenarios {
 
-/// CertificateStore caches certificates (checks of the simulation) in a folder, one file per combination of build, data
-/// and processor model. A file system error disables the cache without a message.
+/// CertificateStore caches simulation checks in a folder, with one file per combination of build, data and processor
+/// model.
 class CertificateStore {
  public:
   CertificateStore(std::filesystem::path folder, const DataRoot& data);

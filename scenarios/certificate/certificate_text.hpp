@@ -11,7 +11,6 @@ namespace tumble::scenarios {
 /// verdict, note}]}; non-finite numbers become null.
 std::string to_json(const Certificate& certificate);
 
-/// JSON null becomes NaN, and the verdict is computed again from the value and its range.
 Certificate certificate_from_json(const std::string& text, const std::string& place);
 
 }  // namespace tumble::scenarios

@@ -22,7 +22,7 @@ Matrix3d matrix(const std::vector<Vector3d>& rows) {
 }
 
 int side(const SensedTriad& triad, std::size_t k, int j) {
-  constexpr double kMargin = 0.08;  // fraction of the limit, above the change of the signal between samples
+  constexpr double kMargin = 0.08;
   int sign = 0;
   for (std::size_t i = k - 1; i <= k + 1; ++i) {
     const Vector3d sensed = (triad.axes * triad.unclipped[i] + triad.offset) / triad.rail;

@@ -15,7 +15,7 @@ std::vector<CertificateEntry> certify_flight_force(const CertificateInput& input
   sim::SensorSpec ideal;
   ideal.name = "imu";
   ideal.kind = "imu";
-  ideal.values.set("output_rate_hz", 1.0 / trial.step_s());  // one averaging window per physics step
+  ideal.values.set("output_rate_hz", 1.0 / trial.step_s());
   ideal.values = sim::resolve("certificate.imu", ideal.values, sim::imu_parameters());
   Eigen::Isometry3d T_BI = Eigen::Isometry3d::Identity();
   T_BI.translation().x() = setup.lever_arm_m;
@@ -25,7 +25,6 @@ std::vector<CertificateEntry> certify_flight_force(const CertificateInput& input
 
   double largest_m_s2 = 0.0;
   for (const Eigen::Vector3d& f : record.accel_m_s2) largest_m_s2 = larger(largest_m_s2, f.norm());
-  // The measured specific force in free flight is 3e-12 m/s^2.
   return {{"flight_specific_force", "rig",
            "an ideal accelerometer at the centre of mass reads zero in free flight: maximum reading", "m/s^2",
            largest_m_s2, 0.0, 1e-6, ""}};

@@ -18,7 +18,6 @@ std::vector<CertificateEntry> certify_free_fall(const CertificateInput& input, c
     trial.step();
     if (!trial.contacts().empty()) touched_s = trial.state().time_s;
   }
-  // By rounding, the simulated fall can end exactly at the time of the first contact.
   return {{"free_fall_time", "sphere",
            "a fall from height h takes sqrt(2 h / g): time of the first contact minus this time, in steps of the "
            "physics engine",

@@ -20,8 +20,8 @@ struct RestReadings {
   std::vector<Eigen::Vector3d> gyro, accel;
 };
 
-/// Sensor errors other than noise and bias are constant at rest, and filters would need a higher sample rate, so both
-/// are omitted.
+/// The noise check omits filters and all sensor errors except noise and bias, because the other errors are constant at
+/// rest.
 sim::SensorSpec resting(const DataSheet& sheet) {
   sim::SensorSpec sensor = imu_of_sheet(sheet);
   for (const char* off :
@@ -80,10 +80,9 @@ struct Stated {
   }
 };
 
-/// The accepted range of an Allan deviation is its statistical interval for three axes.
 CertificateEntry entry(const std::string& row, const std::string& subject, const std::string& law,
                        const sim::AllanPoint& measured, double stated, sim::AllanNoise noise) {
-  constexpr double kSigmas = 4.0;  // wide enough that none of about twenty entries fails by chance
+  constexpr double kSigmas = 4.0;  // no false alarm in twenty entries
   const sim::AllanInterval interval = sim::confidence_interval(measured, noise, kSigmas);
   return {row,
           subject,
@@ -99,7 +98,6 @@ std::vector<CertificateEntry> entries_of(const std::string& subject, const State
                                          const std::vector<sim::AllanPoint>& curve,
                                          const std::vector<sim::AllanPoint>& walk) {
   const sim::AllanPoint& white = sim::nearest_point(curve, 0.1);
-  // The Allan deviation of a gyro's bias instability is flat up to half of the longest correlation time.
   const sim::AllanPoint& floor = sim::nearest_point(curve, stated.bias.in_run_s / 10.0);
   std::vector<CertificateEntry> entries = {
       entry("imu_white_noise", subject, "white noise at rest, Allan deviation at 0.1 s: ratio to the data sheet", white,

@@ -18,8 +18,6 @@ using Eigen::Vector3d;
 
 constexpr double kSegment_m = 0.25, kMass_kg = 0.3;
 
-/// Chain computes the frictionless motion of three equal slim bars in a plane from Lagrange's equations of the multiple
-/// pendulum. The angle of each bar is measured from the vertical, about +y.
 class Chain {
  public:
   Chain(double segment_m, double gravity_m_s2) : length_m_(segment_m) {
@@ -170,8 +168,6 @@ CertificateEntry periods(const CertificateInput& input, const PendulumSetup& set
     pendulum.set(kSmall_rad / shape.cwiseAbs().maxCoeff() * shape, Vector3d::Zero());
     worst = larger(worst, std::abs(measured_period_s(pendulum, expected_s) / expected_s - 1.0));
   }
-  // The accepted range includes the effect of the amplitude of 0.001 rad on the period: 6e-8 for a simple pendulum,
-  // about fifty times more for the higher modes.
   return {"pendulum_period",
           "pendulum",
           "the periods of the three small oscillations equal their closed form: maximum relative difference",
@@ -231,8 +227,6 @@ CertificateEntry force(const CertificateInput& input, const PendulumSetup& setup
   for (std::size_t k = 0; k < expected.size(); ++k) {
     largest_m_s2 = larger(largest_m_s2, (record.accel_m_s2.at(k) - expected[k]).norm());
   }
-  // The measured error of the specific force is 1e-6 m/s^2: at the bars' turning points, Simpson's rule and RK4 have
-  // errors of a few parts in 1e8.
   return {"pendulum_specific_force",
           "pendulum",
           "an ideal accelerometer on the lowest segment agrees with Lagrange's equations: maximum difference",

@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The measured saturation planes of two real gyros are references for the simulation (equation: clipped_plane.hpp). The
-// planes were fitted by least squares to recordings of RepoIMU (Szczesna et al., ICCVG 2016). The fit uses readings
-// inside saturated intervals, without repeated readings: tests/bench/rail_measures x 7.3 (or y 7.2, z 10.29) FILE.csv.
-// The accepted interval of each plane parameter includes the fitted values of all recordings and their errors.
+// The reference for the simulated saturation consists of saturation planes fitted to recordings of two real gyros,
+// RepoIMU (Szczesna et al., ICCVG 2016).
+// The fit uses readings inside saturated intervals, without repeated readings: tests/bench/rail_measures x 7.3 (or y
+// 7.2, z 10.29) FILE.csv.
 //
-// Hand-held wand, x axis: Test05 trials 1 to 3 and Test10 trials 1 to 3 have 100 to 1700 readings each. The residual is
-// 0.003 to 0.009 rad/s, or 0.005 to 0.010 rad/s without cross-axis sensitivity.
+// Hand-held wand, x axis: Test05 trials 1 to 3 and Test10 trials 1 to 3, 100 to 1700 readings each.
 //
-// Wand, y axis: Test06 trial 1 has 39 and 42 readings at the two limits. The residual is 0.004 rad/s, or 0.014 rad/s
-// without cross-axis sensitivity. The accepted interval is three standard errors, because only one recording exists.
+// Hand-held wand, y axis: Test06 trial 1, 39 and 42 readings at the two limits; the accepted interval is three standard
+// errors, because only one recording exists.
 //
-// Pendulum, z axis: Test02a (37 readings) and Test07 trial 3 (10 readings) have residuals of 0.0003 rad/s, or 0.07 and
-// 0.09 rad/s without cross-axis sensitivity.
+// Pendulum, z axis: Test02a (37 readings) and Test07 trial 3 (10 readings).
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -51,8 +49,6 @@ const char* axis_name(int axis) {
   return kNames[static_cast<std::size_t>(axis % 3)];
 }
 
-/// A measured plane does not determine the scale of the saturated element, nor the other two elements; the unknown
-/// parameters are ideal.
 sim::Elements elements_of(const MeasuredPlane& plane, const RealRailsSetup& setup) {
   const int j = plane.element;
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
@@ -133,7 +129,7 @@ std::vector<CertificateEntry> certify_real_rails(const CertificateInput& input, 
     slope = std::max({slope, plane.first_slope.farthest(), plane.second_slope.farthest()});
     offset_rad_s = std::max(offset_rad_s, plane.offset_rad_s.farthest());
   }
-  constexpr double kCut = 3.0;  // sim::Elements truncates its distributions at this many standard deviations
+  constexpr double kCut = 3.0;  // truncation of sim::Elements
   for (const std::string& name : device_names(input.data)) {
     const DataSheet sheet = load_data_sheet(input.data, name);
     if (sheet.sensor_kind != "imu") continue;

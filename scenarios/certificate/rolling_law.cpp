@@ -16,7 +16,7 @@ struct Lengths {
   double path_length_m = 0.0, missed_m = 0.0;
 };
 
-/// The vector n of the rolling law v = r w x n is the contact normal with the largest load.
+/// The normal n in the rolling law v = r w x n is the contact normal with the largest load.
 Lengths compare(const sim::Truth& truth, double radius_m) {
   Lengths lengths;
   const double dt_s = static_cast<double>(truth.period_ns) * 1e-9;
@@ -67,7 +67,6 @@ std::vector<CertificateEntry> certify_rolling(const CertificateInput& input, con
   plane.robot.values.set("inner_z_m", -0.01);
   std::vector<CertificateEntry> entries = {entry(input, setup, sim::resolve(plane), "plane", 1e-3)};
   if (!setup.terrains) return entries;
-  // On the terrains of the scenarios, edges and permitted slip cause relative path errors of 2e-4 to 5.1e-4.
   constexpr double kTerrainHigh = 1e-3;
   for (const std::string& name : scenario_names(input.data)) {
     const Scenario scenario = load_scenario(input.data, name);

@@ -8,12 +8,12 @@
 #include "scenarios/certificate/certificate.hpp"
 #include "sim/trial/trial.hpp"
 
-/// Tests change one setting and check that the measurement then fails. Members named `stated_*` replace a value that
-/// the closed form assumes.
+/// Members named `stated_*` replace a value that the closed form of the law assumes, so that a test can make the check
+/// fail.
 namespace tumble::scenarios {
 
-/// The free-flight measurement throws the rig with a rotation near its unstable axis; energy and angular momentum must
-/// be constant.
+/// The free-flight check throws the rig with a rotation near its unstable axis; kinetic energy and angular momentum
+/// must be constant.
 struct FreeFlightSetup {
   double duration_s = 5.0;
   double rate_rad_s = 18.0;
@@ -28,7 +28,8 @@ struct FlightForceSetup {
 };
 std::vector<CertificateEntry> certify_flight_force(const CertificateInput& input, const FlightForceSetup& setup = {});
 
-/// The time from the sphere's release to its first contact must equal sqrt(2 h / g) within one engine step.
+/// The time from the sphere's release to its first contact must equal sqrt(2 h / g) within one engine step (height h,
+/// gravity g).
 struct FreeFallSetup {
   double height_m = 1.0;
   double stated_height_m = 1.0;
@@ -42,7 +43,8 @@ struct RollingSetup {
 };
 std::vector<CertificateEntry> certify_rolling(const CertificateInput& input, const RollingSetup& setup = {});
 
-/// A sphere that starts to slide at speed v0 must stop slipping after the time v0 / (mu g (1 + m r^2 / I)).
+/// A sphere that starts to slide at speed v0 must stop slipping after the time v0 / (mu g (1 + m r^2 / I)), with
+/// friction coefficient mu, mass m and moment of inertia I.
 struct SlipToGripSetup {
   double speed_m_s = 1.0;
   double friction = 0.1;
@@ -50,10 +52,9 @@ struct SlipToGripSetup {
 };
 std::vector<CertificateEntry> certify_slip_to_grip(const CertificateInput& input, const SlipToGripSetup& setup = {});
 
-/// The impact measurement drops the rig on its corners and computes the first peak of the specific force, averaged over
-/// 2 ms. The measurement reports the relative change of the peak at a quarter of the simulation step. The measurement
-/// also reports the exponent of the peak as a function of the contact time constant; an ideal spring has the exponent
-/// -1.
+/// The impact check drops the rig on its corners and computes the first peak of the specific force, averaged over 2 ms.
+/// The impact check also reports the exponent of the peak as a function of the contact time constant; an ideal spring
+/// has the exponent -1.
 struct ImpactSetup {
   double height_m = 1.0;
   double step_s = 0.0;                  ///< 0: the simulation's step
@@ -61,7 +62,7 @@ struct ImpactSetup {
 };
 std::vector<CertificateEntry> certify_impact(const CertificateInput& input, const ImpactSetup& setup = {});
 
-/// The range measurement compares the points of a moving lidar without range error with the walls of an empty room.
+/// The lidar range check compares the points of a moving lidar without range error with the walls of an empty room.
 struct LidarRangeSetup {
   double added_range_m = 0.0;
 };
@@ -69,12 +70,12 @@ std::vector<CertificateEntry> certify_lidar_range(const CertificateInput& input,
 
 struct LidarRaysSetup {
   int rays = 2000;              ///< rays per world
-  double mirror_shift_m = 0.0;  ///< error: the rays in the lidar simulation start this much higher
-  int surface_shift = 0;        ///< error: added to the surface ids of the lidar simulation
+  double mirror_shift_m = 0.0;  ///< deliberate error of the ray origin
+  int surface_shift = 0;        ///< deliberate error of the surface ids
 };
 std::vector<CertificateEntry> certify_lidar_rays(const CertificateInput& input, const LidarRaysSetup& setup = {});
 
-/// The noise measurement compares one hour of each IMU at rest with the noise and bias of its data sheet.
+/// The noise check compares one hour of each IMU at rest with the noise and bias of its data sheet.
 struct ImuNoiseSetup {
   double duration_s = 3600.0;
   std::uint64_t seed = 1;
@@ -83,45 +84,43 @@ struct ImuNoiseSetup {
 };
 std::vector<CertificateEntry> certify_imu_noise(const CertificateInput& input, const ImuNoiseSetup& setup = {});
 
-/// The plane measurement fits planes to the clipped readings of IMUs with tilted sensing elements, and compares them
-/// with the simulated planes.
+/// The saturation check fits planes to the clipped readings of IMUs with tilted sensing elements, and compares the
+/// planes with the simulated ones.
 struct TiltedRailSetup {
-  double misalignment = 0.02;  ///< standard deviation; scales use half of it, offsets use 0.5 % of the limit
+  double misalignment = 0.02;  ///< standard deviation
   double assumed_tilt = 0.0;
   int devices = 5;
 };
 std::vector<CertificateEntry> certify_tilted_rail(const CertificateInput& input, const TiltedRailSetup& setup = {});
 
-/// The measurement compares the saturation planes of two real gyros (a hand-held device, a pendulum) with those of
-/// simulated gyros.
+/// The real-gyro check compares the saturation planes of two real gyros with those of simulated gyros.
 struct RealRailsSetup {
-  double tilt_factor = 1.0;         ///< factor on the slopes of the measured plane; 0: aligned elements
+  double tilt_factor = 1.0;         ///< on the slopes; 0: aligned elements
   double added_tilt = 0.0;          ///< added to each slope
-  double rail_factor = 1.0;         ///< factor on the saturation limit of the device
+  double rail_factor = 1.0;         ///< on the saturation limit
   double added_offset_rad_s = 0.0;  ///< added to the midpoint of the two limits
   double spread_factor = 1.0;       ///< factor on the tolerances in the data sheets
   int devices = 500;                ///< number of random devices per data sheet
 };
 std::vector<CertificateEntry> certify_real_rails(const CertificateInput& input, const RealRailsSetup& setup = {});
 
-/// The pendulum measurement compares a frictionless pendulum, with large and small swings, with Lagrange's equations of
-/// three bars.
+/// The pendulum check compares a simulated frictionless pendulum with Lagrange's equations of three bars.
 struct PendulumSetup {
   double duration_s = 5.0;
   sim::Integrator integrator = sim::Integrator::runge_kutta_4;
-  double stated_segment_m = 0.0;   ///< length of a bar in the closed forms of energy and periods; 0: true length
-  double lever_arm_error_m = 0.0;  ///< error: the simulated IMU is this much higher than in the closed form
+  double stated_segment_m = 0.0;   ///< assumed bar length; 0: true length
+  double lever_arm_error_m = 0.0;  ///< deliberate height error of the IMU
 };
 std::vector<CertificateEntry> certify_pendulum(const CertificateInput& input, const PendulumSetup& setup = {});
 
-/// The digest of a simulated run must not depend on the number of threads, the order of runs, or the process.
+/// The digest of a simulated run must be independent of the number of threads, the order of runs, and the process.
 struct DigestSetup {
   std::string scenario = "hill";
   std::string other_scenario = "slip";
   std::uint64_t seed = 1;
   std::uint64_t restart_seed = 1;  ///< seed for the new process
   double duration_s = 3.5;         ///< duration of the runs in this process
-  double disturbance = 0.0;        ///< error: added to the duration of every second run
+  double disturbance = 0.0;        ///< deliberate error of the duration
 };
 std::vector<CertificateEntry> certify_digests(const CertificateInput& input, const DigestSetup& setup = {});
 

@@ -30,7 +30,6 @@ std::vector<CertificateEntry> certify_slip_to_grip(const CertificateInput& input
   state.v_WB_m_s = {setup.speed_m_s, 0.0, 0.0};
   trial.set_state(state);
 
-  // With soft contact, the last 0.5 % of the sphere's slip velocity decays slowly, so the measurement stops there.
   constexpr double kLeftOver = 0.005;
   const double mass_kg = trial.mass_kg(), inertia_kg_m2 = trial.inertia_B_kg_m2()(1, 1);
   const double expected_s =

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Each sensing element saturates along its own axis, so its saturated readings form one plane per sign
-// (clipped_plane.hpp).
 #include <algorithm>
 #include <cmath>
 
@@ -30,7 +28,7 @@ sim::SensorSpec tilted(const DataSheet& sheet, const TiltedRailSetup& setup) {
 
 struct PlaneErrors {
   double slope = 0.0, distance_share = 0.0;
-  int samples = 0;  ///< smallest number of samples over elements and signs
+  int samples = 0;
 };
 
 void compare_planes(const SensedTriad& triad, int j, double assumed_tilt, PlaneErrors& errors) {
@@ -75,7 +73,6 @@ std::vector<CertificateEntry> certify_tilted_rail(const CertificateInput& input,
             ? ""
             : "the fit of a saturation plane needs at least 10 samples per sign in which the element is always clipped";
     const double none = std::nan("");
-    // The closed form of the saturation plane is exact: the measured error of 1e-15 is rounding.
     entries.push_back(
         {"tilted_rail_slope", subject,
          "clipped readings of simulated devices are on the saturation planes of their elements: maximum slope error",

@@ -15,7 +15,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// A missing number in a data sheet is an error, because the simulation would otherwise silently use a default.
 void require_every_number(const DataSheet& sheet, const std::string& file, const Registry& registry) {
   for (const sim::Parameter& parameter : find_type(registry.sensors, sheet.sensor_kind)->parameters) {
     const auto is_it = [&](const DataSheet::Entry& entry) { return entry.name == parameter.name; };

@@ -24,7 +24,6 @@ struct DataSheet {
 };
 
 std::vector<std::string> device_names(const DataRoot& data);
-/// Throws BadInput for an unknown device or key, a wrong unit, a missing number, or a number without a source.
 DataSheet load_data_sheet(const DataRoot& data, const std::string& device);
 
 }  // namespace tumble::scenarios

@@ -21,8 +21,6 @@ sim::Component draw_part(const Scenario::Part& part, std::uint64_t seed, const s
 }
 
 sim::SensorSpec draw_sensor(const Scenario::Sensor& sensor, const DataSheet& sheet, std::uint64_t seed) {
-  // The random stream has the name of the sensor and not its index, so an inserted sensor does not change the random
-  // numbers of other sensors.
   const std::string place = "sensors." + sensor.name;
   sim::SensorSpec out{sensor.name, sensor.kind, sensor.device, sensor.site, sheet.values(), {}};
   draw_numbers(sensor.numbers, seed, place, out.values);

@@ -7,9 +7,8 @@
 
 namespace tumble::scenarios {
 
-/// Returns the scenario with every random parameter, default and data sheet number replaced by its value in
-/// `situation`. With the seed of `situation`, the result reproduces the simulated run even if data sheets, defaults or
-/// scenario files change later.
+/// Returns a copy of `scenario` with the parameter values of `situation`, so that later changes of data sheets and
+/// defaults do not affect the simulated run.
 Scenario fixed_as(Scenario scenario, const sim::Situation& situation);
 
 std::string to_yaml(const Scenario& scenario);

@@ -19,7 +19,7 @@ struct Scenario {
   struct Part {
     std::string type;
     std::map<std::string, Distribution> numbers;
-    int line = 0;  ///< line in the file, for messages
+    int line = 0;
   };
   struct Sensor {
     std::string name, kind, device, site;
@@ -29,28 +29,26 @@ struct Scenario {
   };
   std::string name;
   std::string doc;
-  std::string file;  ///< path of the file, for messages
+  std::string file;
   Distribution duration_s;
   Part world, robot, motion;
   std::vector<Sensor> sensors;
-  std::optional<NamedCase> named_case;  ///< set for files in scenarios/regressions, whose parameters are constants
+  std::optional<NamedCase> named_case;  ///< for files in scenarios/regressions
 };
 
 std::vector<std::string> scenario_names(const DataRoot& data);
 
-/// Functions that accept a scenario name also accept the name of a named case.
 std::vector<std::string> case_names(const DataRoot& data);
 
-/// Loads the scenario scenarios/catalogue/NAME.yaml, the named case scenarios/regressions/NAME.yaml, or the file `name`
-/// if it ends in ".yaml". Throws BadInput, with file and line, if the file is missing or invalid.
+/// Loads scenarios/catalogue/NAME.yaml, scenarios/regressions/NAME.yaml, or the file `name` if its name ends in
+/// ".yaml".
 Scenario load_scenario(const DataRoot& data, const std::string& name);
 
-/// Draws all random parameters of the scenario with `seed`, and adds the numbers of the sensors' data sheets. Throws
-/// BadInput if the scenario contradicts a data sheet or contains a component that this build lacks.
+/// Draws all random parameters of the scenario with the random seed `seed`, and adds the numbers of the sensors' data
+/// sheets.
 sim::ResolvedSituation draw(const DataRoot& data, const Scenario& scenario, std::uint64_t seed);
 
-/// The functions to_yaml and situation_from_yaml convert a resolved situation to and from YAML without loss of bits. On
-/// invalid text or values, both throw BadInput with a message that starts with `place`.
+/// The conversion of a simulated run's parameters to YAML and back preserves all bits.
 std::string to_yaml(const sim::Situation& situation);
 sim::Situation situation_from_yaml(const std::string& text, const std::string& place);
 

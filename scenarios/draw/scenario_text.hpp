@@ -9,8 +9,6 @@
 
 namespace tumble::scenarios {
 
-/// Throws BadInput, with file and line, for an unknown component type, or a distribution that exceeds the limits of its
-/// parameter in `registry`.
 Scenario parse_scenario(const std::string& text, const std::string& file, const Registry& registry);
 
 const sim::Parameter& duration_parameter();

@@ -24,11 +24,10 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr std::uintmax_t kLargestFile = 4u << 20;
-/// Identifiers become file names, which have at most 255 bytes, including a seed and an extension.
 constexpr std::size_t kIdentifierMax = 100;
 
-/// Counter counts the events of the YAML parser, because some invalid texts cause an endless loop. Each event consumes
-/// at least one byte of text, so an endless loop has more events than bytes.
+/// Some invalid texts cause an endless loop in the YAML parser; each parser event consumes a byte, so a count above the
+/// text length detects the loop.
 class Counter : public YAML::EventHandler {
  public:
   Counter(const std::string& text, const std::string& file) : most_(4 * text.size() + 64), file_(file) {}

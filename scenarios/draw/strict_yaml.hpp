@@ -15,8 +15,6 @@ namespace tumble::scenarios {
 
 std::string read_text_file(const std::filesystem::path& path);
 
-/// YamlNode is a YAML node with its location in the file; each error is a BadInput with the message "FILE:LINE: PLACE:
-/// what".
 class YamlNode {
  public:
   static YamlNode parse(const std::string& text, const std::string& file);
@@ -51,7 +49,6 @@ class YamlNode {
   int line_ = 0;
 };
 
-/// Returns "; did you mean 'slope_rad'?" if a known name is similar, and otherwise a list of the known names.
 std::string suggestion(const std::string& name, std::span<const std::string> known);
 
 }  // namespace tumble::scenarios

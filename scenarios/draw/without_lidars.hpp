@@ -8,7 +8,6 @@ namespace tumble::scenarios {
 
 bool has_lidar(const Scenario& scenario);
 
-/// Motion and IMU readings stay bit-identical, because each sensor has its own random stream.
 sim::ResolvedSituation without_lidars(const sim::ResolvedSituation& situation);
 
 }  // namespace tumble::scenarios

@@ -9,8 +9,6 @@ namespace tumble::scenarios {
 
 std::vector<std::string> yaml_stems(const std::filesystem::path& folder);
 
-/// If the YAML file does not exist, throws BadInput with a message such as "unknown scenario 'hil'; did you mean
-/// 'hill'?".
 std::filesystem::path find_yaml(const std::filesystem::path& folder, const std::string& what, const std::string& name);
 
 }  // namespace tumble::scenarios

@@ -5,7 +5,6 @@
 
 namespace tumble::scenarios {
 
-/// Returns the shortest text that parses to the same double, and throws BadInput for NaN.
 std::string yaml_number(double value, const std::string& place);
 
 std::string yaml_word(const std::string& text);

@@ -19,16 +19,16 @@ namespace {
 
 constexpr std::uintmax_t kBase = 10'000;       // rows or points allowed for any recording
 constexpr std::uintmax_t kPerReading = 4;      // additional rows or points per input reading
-constexpr std::uintmax_t kBytesPerRow = 1024;  // enough for a sweep's row of 37 numbers with full precision
-constexpr std::uintmax_t kBytesPerPoint = 32;  // x y z nx ny nz sigma, and a header
+constexpr std::uintmax_t kBytesPerRow = 1024;  // a sweep's row of 37 numbers
+constexpr std::uintmax_t kBytesPerPoint = 32;  // x y z nx ny nz sigma, header
 constexpr std::int64_t kMargin_ns = 10'000'000'000;
 constexpr double kPositionMax_m = 1e7;
 constexpr double kRateMax_rad_s = 1e6;
 constexpr double kAnswerNormTolerance = 1e-2;
-constexpr double kCorrelationTolerance = 1e-3;  // tolerance for covariances written with few digits
+constexpr double kCorrelationTolerance = 1e-3;  // covariances may have few digits
 
-constexpr std::size_t kStampsToJudge = 10;  // fewer stamps could span a short time by chance
-constexpr double kUnitsApart = 100.0;       // a span of a hundredth indicates another unit or a broken answer
+constexpr std::size_t kStampsToJudge = 10;  // fewer stamps could agree by chance
+constexpr double kUnitsApart = 100.0;       // smaller spans indicate a wrong unit
 
 std::string unit_like(std::string_view unit, double times) {
   constexpr std::array<std::pair<const char*, double>, 4> kUnits = {
@@ -36,11 +36,11 @@ std::string unit_like(std::string_view unit, double times) {
   double asked_s = 1.0;
   for (const auto& [name, length_s] : kUnits)
     if (unit == name) asked_s = length_s;
-  constexpr double kFactor = 5.0;  // an answer may cover only a part of the recording
+  constexpr double kFactor = 5.0;  // a result may cover only a part
   for (const auto& [name, length_s] : kUnits) {
-    const double share = times * length_s / asked_s;  // fraction of the recording if the stamps had this unit
+    const double share = times * length_s / asked_s;  // covered fraction in this unit
     if (unit != name && share > 1.0 / kFactor && share < kFactor)
-      return fmt::format("; the values seem to be in {}", name);
+      return fmt::format("; the time stamps seem to be in {}", name);
   }
   return "";
 }
@@ -97,7 +97,7 @@ AnswerBounds::AnswerBounds(const sim::Sensors& sensors) : rows_(kBase), points_(
     points_ += kPerReading * lidar.position_L_m.size();
   }
   if (first_ns < last_ns_) length_s_ = 1e-9 * static_cast<double>(last_ns_ - first_ns);
-  first_ns_ = std::min<std::int64_t>(first_ns, 0);  // the recording starts at 0; its first sample may be later
+  first_ns_ = std::min<std::int64_t>(first_ns, 0);  // the first sample may be later
 }
 
 std::uintmax_t AnswerBounds::table_bytes() const {
@@ -110,7 +110,6 @@ std::uintmax_t AnswerBounds::map_bytes() const {
 
 void AnswerBounds::require_size(const std::filesystem::path& file, std::uintmax_t bytes) const {
   const std::string name = file.filename().string();
-  // Symbolic links are rejected, because they could lead to files that the method did not write.
   if (!std::filesystem::is_regular_file(std::filesystem::symlink_status(file)))
     throw BadInput(
         fmt::format("{}: the output path is not a regular file; the method must write a regular file", name));

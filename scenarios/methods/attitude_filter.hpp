@@ -9,9 +9,6 @@
 
 namespace tumble::scenarios {
 
-/// Stores one attitude per sample of the primary IMU. The first error of the filter ends the run; the estimate keeps
-/// the earlier attitudes. The type `Filter` must have the types Params and State (with q_WI) and the function
-/// step(sample, state).
 template <typename Filter>
 Estimate run_attitude_filter(const sim::Sensors& sensors, const typename Filter::Params& params) {
   const Filter filter(params);

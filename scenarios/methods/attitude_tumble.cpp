@@ -22,7 +22,8 @@ TumbleAttitude::Params stated(const sim::Sensors& sensors) {
   return params;
 }
 
-/// The attitude of a sphere comes from all IMUs, merged in body axes; the rolling motion measures the velocity.
+/// The attitude of a sphere comes from the merged readings of all IMUs in body axes; the rolling motion measures the
+/// velocity.
 Estimate run_sphere(const sim::Sensors& sensors, const sim::Values& parameters) {
   Estimate estimate;
   estimate.frame = Frame::body;

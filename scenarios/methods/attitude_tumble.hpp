@@ -11,8 +11,8 @@ namespace tumble::scenarios {
 
 const Settings<TumbleAttitude::Params>& attitude_tumble_settings();
 
-/// The inclination is unknown while two standard deviations exceed 1 rad, for example after an IMU gap in a tumble. The
-/// report is a failed health check and the health value `attitude_unknown_s`.
+/// The inclination counts as unknown while its double standard deviation exceeds 1 rad, for example after an IMU gap in
+/// a tumble.
 void report_unknown_attitude(Estimate& estimate);
 
 }  // namespace tumble::scenarios

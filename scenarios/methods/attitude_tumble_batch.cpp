@@ -68,11 +68,9 @@ Status run_carried(const sim::Sensors& sensors, const sim::Values& parameters, s
   return status;
 }
 
-/// In clipped intervals with a higher probability of hand-held motion, the motion limits of the hand-held smoother give
-/// better rates than the rate smoother.
+/// In clipped intervals with hand-held motion, the hand-held smoother gives better rates than the rate smoother.
 constexpr double kCarried = 0.5;
 
-/// Smooths the attitude of a body that was not hand-held while its gyro clipped.
 Status run_thrown(const sim::Sensors& sensors, const sim::Values& parameters, const std::vector<ImuSample>& samples,
                   const RecoveredRates& recovered, std::vector<RateState>& rates, Estimate& estimate) {
   const std::vector<Eigen::Matrix3d>& covariances = recovered.covariances_rad2_s2;
@@ -117,7 +115,8 @@ Estimate run_attitude_tumble_batch(const sim::Sensors& sensors, const sim::Value
   }
   if (!estimate.status.ok()) return estimate;
   report_unknown_attitude(estimate);
-  // The checks use the input of the attitude smoother, because its output always agrees with gravity at rest.
+  // The health checks use the input of the attitude smoother, because the output of the smoother always agrees with
+  // gravity at rest.
   (void)check_imu(sensors, samples, rates_of(recovered), carried_share(recovered.report), estimate);
   return estimate;
 }

@@ -15,7 +15,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// The additional covariance is zero for measured rates, because the attitude filter models their white noise and bias.
 Eigen::Matrix3d beyond_noise(const RateState& rate) {
   const bool as_read = rate.clipped_axes == 0 && rate.source == RateSource::measured;
   return as_read ? Eigen::Matrix3d::Zero() : rate.covariance_rad2_s2;

@@ -19,7 +19,6 @@ namespace tumble::scenarios::bridge {
 
 namespace {
 
-// The explicit table makes a change of the flag bits in either library an error.
 constexpr std::array<std::pair<int, ClipFlag>, 6> kClipBits = {
     {{0, kClipGyroX}, {1, kClipGyroY}, {2, kClipGyroZ}, {3, kClipAccelX}, {4, kClipAccelY}, {5, kClipAccelZ}}};
 
@@ -31,7 +30,8 @@ std::uint8_t clip_flags(std::uint8_t sim_bits) {
   return flags;
 }
 
-// A wrong unit of the time stamps gives a ratio of 1000 or 1/1000; a device that is read slowly stays below the limit.
+// A wrong unit of the time stamps gives a period ratio of 1000 or 1/1000; a device that is read slowly stays below this
+// limit.
 constexpr double kPeriodsMax = 20.0;
 
 Status check_period(const sim::ImuRecord& record, std::span<const ImuSample> samples) {
@@ -58,8 +58,7 @@ bool in_range(const sim::ImuRecord& record, const ImuSample& sample) {
   return check_range(record, sample.angular_velocity_rad_s, sample.specific_force_m_s2).ok();
 }
 
-// Usable readings are finite, within the range of any sensor, and in order of time. If too many readings are faulty,
-// all count as usable, so that a later check rejects the recording.
+// If too many readings are faulty, all readings count as usable, so that a later check rejects the recording.
 std::vector<bool> find_usable(std::span<const ImuSample> samples) {
   std::vector<bool> usable(samples.size(), true);
   std::vector<TimeNs> stamps_ns;
@@ -80,8 +79,8 @@ std::vector<bool> find_usable(std::span<const ImuSample> samples) {
   return usable;
 }
 
-// Isolated readings that exceed the device's range are removed. Frequent or lasting readings beyond the range stay, so
-// that a later check rejects the recording.
+// Only isolated readings beyond the device's range are removed; frequent readings beyond the range stay, so that a
+// later check rejects the recording.
 void leave_out_faulty(const sim::ImuRecord& record, std::vector<ImuSample>& samples) {
   std::vector<bool> kept = find_usable(samples);
   std::size_t beyond = 0;

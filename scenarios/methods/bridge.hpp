@@ -28,45 +28,36 @@
 /// - In both, a lidar point is in metres in L, with the time offset from the sweep's start [ns].
 namespace tumble::scenarios::bridge {
 
-/// Methods that cannot restart accept a gap between two IMU samples of at most 1 s. Methods that continue after any gap
-/// have no limit.
 inline constexpr double kGapMaxS = 1.0, kAnyGapS = std::numeric_limits<double>::infinity();
 
-/// Real saturation limits exceed the stated range (MTi-30: by a factor of 1.4), and a tilted saturation plane allows
-/// even larger readings.
+/// Real saturation limits exceed the stated range of a device (MTi-30: by a factor of 1.4), and a tilted saturation
+/// plane allows even larger readings.
 inline constexpr double kStatedRangesMax = OutlierFilter::kStatedRangesMax;
 
 inline constexpr double kWildShareMax = 0.01;
 
 ImuSheet imu_sheet(const sim::ImuRecord& record);
 
-/// Returns `out_of_range`, with value and limit, for the first axis whose reading exceeds kStatedRangesMax times the
-/// measurement range. A measurement range of 0 disables the check.
 Status check_range(const sim::ImuRecord& record, const Eigen::Vector3d& gyro_rad_s, const Eigen::Vector3d& accel_m_s2);
 
-/// A usable sample is finite, within the range of any sensor, in order of time, and accepted by OutlierFilter. If
-/// unusable samples are not rare (may_leave_out), or the arrays of the record differ in length, all samples count as
-/// usable. The cost is O(N log N).
+/// A usable IMU sample is finite, in order of time, and accepted by OutlierFilter. If unusable samples are frequent, or
+/// the arrays of the record differ in length, all samples count as usable.
 std::vector<bool> find_inliers(const sim::ImuRecord& record);
 
-/// Faulty readings (find_inliers) are dropped. Possible errors are `empty`, `non_finite`, `time_order`, `gap` (more
-/// than `gap_max_s`) and `out_of_range` (check_range failed, or the median time step differs 20-fold from the stated
-/// sample period). On error, `out` is empty. Throws BadInput if the arrays of the record differ in length. The cost is
-/// O(N).
+/// Returns `empty`, `non_finite`, `time_order`, `gap`, or `out_of_range` (a reading, or a time step that differs
+/// 20-fold from the stated sample period). On error, `out` is empty.
 Status imu_samples(const sim::ImuRecord& record, std::vector<ImuSample>& out, double gap_max_s = kGapMaxS);
 
 Status primary_imu_samples(const sim::Sensors& sensors, std::vector<ImuSample>& out, double gap_max_s = kGapMaxS);
 
-/// Throws BadInput if `truth` and the IMU record do not match.
 Status unclipped_samples(const sim::ImuRecord& record, const sim::ImuTruth& truth, std::vector<ImuSample>& out);
 
-/// Returns the vector from the centre of mass to the IMU, in IMU axes [m]: R_BI^T p_BI of the calibration.
+/// Vector from the centre of mass to the IMU, in IMU axes [m].
 Eigen::Vector3d lever_arm_I_m(const sim::ImuRecord& record);
 
 Eigen::Isometry3d T_IL(const sim::ImuRecord& imu, const sim::LidarRecord& lidar);
 
-/// Returns the variance of one gyro reading per axis [(rad/s)^2], from the noise density of the data sheet and the
-/// sample period.
+/// Variance of one gyro reading per axis [(rad/s)^2], from the noise density of the data sheet and the sample period.
 double gyro_variance_rad2_s2(const sim::ImuRecord& record);
 
 struct Sweep {
@@ -75,15 +66,14 @@ struct Sweep {
   std::vector<LidarPoint> points;
 };
 
-/// Throws BadInput if the arrays of the lidar record are inconsistent.
 std::size_t sweep_count(const sim::LidarRecord& record);
 
-/// Time stamps stored as seconds since 1970 in a double have rounding errors of up to 250 ns.
+/// Time stamps that are stored as seconds since 1970 in a double have rounding errors of up to 250 ns.
 inline constexpr std::int64_t kRounding_ns = 1000;
 
-/// The sweep `index` ends after one period, or at the start of the next sweep if this is earlier. Points up to
-/// kRounding_ns after the end get the time of the end; later points are dropped. A sweep without a time per point has
-/// zero duration, so it is not deskewed. The cost is O(points).
+/// A lidar sweep ends after one period, or at the start of the next sweep if this is earlier. Points up to kRounding_ns
+/// after the end of the sweep get the time of the end; later points are dropped. A sweep without a time per point has
+/// zero duration, so its points are not deskewed.
 Sweep sweep(const sim::LidarRecord& record, std::size_t index);
 
 }  // namespace tumble::scenarios::bridge

@@ -28,7 +28,8 @@ std::string without_trailing_folder(std::string text, const std::filesystem::pat
 }
 
 std::string with_output_tail(const std::string& what, const CommandEnd& end) {
-  return what + (end.output_tail.empty() ? "" : fmt::format("; the command printed at the end: {}", end.output_tail));
+  return end.output_tail.empty() ? what
+                                 : fmt::format("{}; the last output of the command is: {}", what, end.output_tail);
 }
 
 void require_done(const CommandEnd& end) {

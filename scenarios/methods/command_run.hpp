@@ -14,8 +14,6 @@ std::string without_trailing_folder(std::string text, const std::filesystem::pat
 
 std::string with_output_tail(const std::string& what, const CommandEnd& end);
 
-/// The path of the scratch folder changes from run to run. Without the path, the messages of BadInput and NoAnswer are
-/// equal in each run.
 template <class Work>
 auto without_folder(const std::filesystem::path& scratch, Work&& work) {
   try {
@@ -29,8 +27,7 @@ auto without_folder(const std::filesystem::path& scratch, Work&& work) {
 
 void require_done(const CommandEnd& end);
 
-/// Returns the first line that the command prints, with a digest of its whole output. The command runs for at most 30
-/// s. If the command fails, throws BadInput with a message that starts with `place`.
+/// The version command of an external method runs for at most 30 s.
 std::string reported_version(Command command, const std::string& place);
 
 }  // namespace tumble::scenarios

@@ -8,18 +8,16 @@
 
 #include "scenarios/recordings/table_file.hpp"
 
-/// TUM files have no columns for covariances, so the covariances have a separate file (columns: ESTIMATE.md).
+/// TUM files have no columns for covariances, so the covariances are in a separate file (see ESTIMATE.md).
 namespace tumble::scenarios {
 
-/// Writes the upper triangle of each covariance, row by row. Writes no file if all covariances are zero (not
-/// estimated). Throws BadInput if writing fails.
+/// Writes the upper triangle of each covariance, row by row.
 void write_covariances(const std::filesystem::path& path, const std::vector<std::int64_t>& stamps_ns,
                        const std::vector<Eigen::Matrix3d>& covariances);
 
 std::vector<Eigen::Matrix3d> read_covariances(const std::filesystem::path& path,
                                               const std::vector<std::int64_t>& stamps_ns);
 
-/// Throws BadInput with path and line if the first column of the table differs from the time stamps.
 void require_stamps(const Table& table, const std::vector<std::int64_t>& stamps_ns);
 
 }  // namespace tumble::scenarios

@@ -19,7 +19,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// A sensor whose driver needs several seconds to boot starts later than this after the other sensors.
+/// A sensor whose driver needs several seconds to boot starts later than this time after the other sensors.
 constexpr double kApart_s = 0.5;
 /// A single lost reading costs no accuracy; many lost readings indicate a fault of the bus, the driver or the recorder.
 constexpr double kLostShareMax = 0.005;
@@ -205,7 +205,7 @@ std::vector<RecordingFinding> findings_in_estimate(const Estimate& estimate, std
     out.push_back({"odometry",
                    fmt::format("the odometry registered only {} of {} sweeps with the map ({}, minimum {})", registered,
                                sweeps, percent_text(share), percent_text(kRegisteredShareMin)),
-                   "check the lidar pose in the option --T-body-lidar, and the other findings"});
+                   "check the lidar pose in the option --T-body-lidar, and the other faults in this list"});
   for (const HealthFinding& finding : estimate.faults.findings) {
     const bool mounting = finding.kind == HealthFinding::Kind::lidar_calibration;
     out.push_back({"odometry", report_text(finding),

@@ -9,29 +9,25 @@
 #include "scenarios/methods/method.hpp"
 #include "sim/recording.hpp"
 
-/// A finding is a fault of a recording that increases the error of an estimate.
 namespace tumble::scenarios {
 
 struct RecordingFinding {
   std::string where;     ///< sensor, topic or file
   std::string evidence;  ///< description of the fault, with numbers and limits
-  std::string repair;  ///< option of `tumble import` that repairs the reading, or another change; empty: see `evidence`
-  bool fault = true;   ///< false: a note, for example on saturation or on an ended finding
+  std::string repair;    ///< import option or another repair
+  bool fault = true;     ///< false: a note
 
   bool operator==(const RecordingFinding&) const = default;
 };
 
-/// Returns the option in a message that contains "(set '--gyro-unit deg/s')"; empty for other messages.
 std::string recommended_option(const std::string& message);
 
-/// A warning of an importer has the form "NAME: caution: TEXT".
 std::vector<RecordingFinding> findings_in_notes(std::span<const std::string> notes);
 
 struct Saturation {
   double gyro_share = 0.0, accel_share = 0.0;  ///< samples with at least one saturated axis
   double gyro_rad_s = 0.0, accel_m_s2 = 0.0;   ///< smallest saturated reading; 0: none
 };
-/// The cost is O(N log N).
 Saturation saturation_of(const sim::ImuRecord& imu);
 
 std::vector<RecordingFinding> findings_in_readings(const sim::Sensors& sensors);

@@ -8,8 +8,7 @@
 
 namespace tumble::scenarios {
 
-/// An estimate from another program may use the clock of the recording, of the original file (`origin_ns`), or of
-/// exported files (export_origin_ns). Time stamps that fit none of the three clocks stay unchanged.
+/// An estimate of another program may use the clock of the recording, of the original file, or of exported files.
 void move_to_clock(std::int64_t origin_ns, const StampSpan& span, Estimate& estimate);
 
 }  // namespace tumble::scenarios

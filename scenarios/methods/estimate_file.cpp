@@ -30,7 +30,7 @@ const std::string kRatesHeader = "time_ns,wx_rad_s,wy_rad_s,wz_rad_s,cxx,cxy,cxz
 const std::string kPoseColumns = "px_m,py_m,pz_m,qx,qy,qz,qw,vx_m_s,vy_m_s,vz_m_s";
 const std::string kContactsHeader = "time_ns,label";
 const std::string kFlaggedContactsHeader = kContactsHeader + ",uncertain";
-constexpr std::size_t kCovarianceColumn = 16;  // first column of the covariance of a sweep's pose
+constexpr std::size_t kCovarianceColumn = 16;
 const std::string kSweepsHeader =
     "end_ns,verdict,iterations,inlier_share,conditioning,pose_time_ns," + kPoseColumns +
     ",c00,c01,c02,c03,c04,c05,c11,c12,c13,c14,c15,c22,c23,c24,c25,c33,c34,c35,c44,c45,c55";
@@ -48,7 +48,6 @@ Eigen::Vector3d read_vector(const Table& table, const Table::Row& row, std::size
   return {table.number(row, first), table.number(row, first + 1), table.number(row, first + 2)};
 }
 
-// Quaternions with NaN are accepted, because a diverged method may write NaN.
 Eigen::Quaterniond read_quaternion(const Table& table, const Table::Row& row, std::size_t first, bool normalise) {
   Eigen::Quaterniond q(table.number(row, first + 3), table.number(row, first), table.number(row, first + 1),
                        table.number(row, first + 2));
@@ -111,7 +110,7 @@ void read_rates(const std::filesystem::path& path, std::vector<RateState>& rates
   }
 }
 
-// Contact modes are 0 air, 1 grip, 2 slip, 3 slide, as in a recording's truth.
+// Contact modes in the file are 0 air, 1 grip, 2 slip, 3 slide.
 void write_contacts(const std::filesystem::path& path, const Estimate& estimate) {
   const bool flagged = !estimate.uncertain.empty();
   TableWriter table(path, ',', flagged ? kFlaggedContactsHeader : kContactsHeader);
@@ -308,11 +307,10 @@ void read_header(const std::filesystem::path& path, Kind& kind, std::string& met
   estimate.frame = reader.named("frame", Frame::centre);
   const json& status = reader.object("status");
   estimate.status.error_code = JsonMembers(path, status).named("trouble", ErrorCode::diverged);
-  // A Status refers to a static string, so the field name stays in estimate.json.
   if (!estimate.status.ok()) estimate.status.field = "estimate.json";
   for (const auto& [name, value] : reader.object("health").items())
     estimate.health[name] = value.is_number() ? value.get<double>() : std::nan("");
-  for (const json& each : header.value("findings", json::array()))  // files of earlier versions lack findings
+  for (const json& each : header.value("findings", json::array()))  // missing in earlier versions
     estimate.faults.findings.push_back(finding_in(path, each));
   if (!header.contains("parameters")) return;
   for (const auto& [name, value] : reader.object("parameters").items()) {
@@ -328,7 +326,6 @@ void write_estimate(const std::filesystem::path& folder, const std::string& meth
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw BadInput(fmt::format("{}: the folder cannot be created: {}", folder.string(), error.message()));
-  // Files of an earlier estimate would be read as part of this estimate.
   for (const char* name : kEstimateFiles) std::filesystem::remove(folder / name, error);
   if (!estimate.rates.empty()) write_rates(folder / "rates.csv", estimate.rates);
   if (!estimate.attitudes.empty()) write_attitudes(folder, estimate.attitudes);
@@ -357,7 +354,7 @@ void write_estimate(const std::filesystem::path& folder, const std::string& meth
   if (!estimate.map.empty()) write_map(folder / "map.ply", estimate.map);
   if (!estimate.transcript.empty()) replace_file(folder / "transcript.txt", estimate.transcript);
 
-  // The presence of estimate.json marks a complete folder, so it is written last.
+  // The file estimate.json is written last, because its presence marks a complete folder.
   replace_file(folder / "estimate.json", header_of(method, kind, estimate, sensors_digest, origin_ns).dump(2) + '\n');
 }
 

@@ -22,7 +22,7 @@ namespace {
 
 constexpr double kTimeMax_s = 1e6;
 constexpr double kMemoryMax_mib = 1e7;
-constexpr std::size_t kWordMax = 4096;  // longest argument: std::regex recurses once per character
+constexpr std::size_t kWordMax = 4096;  // std::regex recurses once per character
 
 const std::regex& placeholder() {
   static const std::regex pattern(R"(\{([a-z0-9_]+)\})");
@@ -48,7 +48,6 @@ ExternalDescription::Output output_named(const YamlNode& node) {
   node.fail("unknown output '" + name + "'" + suggestion(name, known));
 }
 
-/// A method for a misspelt robot would never run, so the robot must exist.
 std::string robot_named(const YamlNode& node) {
   const std::string name = node.identifier();
   std::vector<std::string> known;
@@ -85,7 +84,6 @@ std::string digest_of(const std::string& text) {
   return fmt::format("{:016x}", XXH3_64bits(text.data(), text.size()));
 }
 
-/// Arguments name files with the placeholder {folder}, such as "{folder}/mine", or inside a shell command.
 std::set<std::filesystem::path> own_files(const std::vector<std::string>& command,
                                           const std::filesystem::path& folder) {
   static const std::regex pattern(R"(\{folder\}/([^\s{}"';|&<>()]{1,512}))");
@@ -111,8 +109,8 @@ std::uint64_t digest_of_file(const std::filesystem::path& file) {
   return XXH3_64bits_digest(state.get());
 }
 
-/// The digest covers the description and the files that the command names with {folder}. A recompiled program is
-/// therefore another version of the method.
+/// The digest of an external method covers its description and the files that its command names, so a recompiled
+/// program is another version of the method.
 std::string digest_of_command(const std::string& text, const ExternalDescription& description) {
   std::string all = text;
   for (const std::filesystem::path& file : own_files(description.command, description.file.parent_path()))
@@ -165,7 +163,6 @@ std::vector<Kind> kinds_found(const std::string& text, const std::regex& pattern
   return found;
 }
 
-/// Without a function, an assignment such as `slam = ...` determines the kind.
 Kind kind_of_function(const std::string& text, const std::string& file) {
   static const std::regex defined(R"((^|\n)def[ \t]{1,8}(rate|attitude|position|slam)[ \t]{0,8}\()");
   static const std::regex assigned(R"((^|\n)(rate|attitude|position|slam)[ \t]{0,8}=(?!=))");

@@ -10,11 +10,10 @@
 
 namespace tumble::scenarios {
 
-/// A Python file always has this wall-time limit, because it has no description.
+/// Wall-time limit of a method in a Python file, which cannot state another limit.
 inline constexpr double kExternalTimeLimit_s = 600.0;
 
-/// An external method is a command (NAME.yaml) or a Python function (NAME.py). EXTERNAL.md describes the keys and
-/// placeholders.
+/// An external method is a command (NAME.yaml) or a Python function (NAME.py).
 struct ExternalDescription {
   enum class Output { rates, tum, estimate };
 
@@ -23,7 +22,7 @@ struct ExternalDescription {
   Kind kind = Kind::rate;
   Frame frame = Frame::imu;  ///< frame of the poses in a TUM file
   std::vector<std::string> robots;
-  std::vector<std::string> command;  ///< empty for a Python function
+  std::vector<std::string> command;
   std::filesystem::path python;
   std::string function;
   std::vector<std::string> interpreter;  ///< empty: the user's Python
@@ -32,20 +31,15 @@ struct ExternalDescription {
   Output output = Output::tum;
   double time_limit_s = kExternalTimeLimit_s;
   double memory_limit_mib = 8192.0;
-  std::string digest;  ///< digest of this file and of the files that the command names with {folder}
+  std::string digest;  ///< of the description and named files
 };
 
-/// Returns the names that a command may contain in braces: "recording", "csv", "output".
 std::vector<std::string> external_placeholders();
 
 std::vector<std::string> placeholders_in(const std::string& word);
 
 std::string filled(const std::string& word, const std::map<std::string, std::string>& values);
 
-/// Reads NAME.yaml, or a file NAME.py with exactly one function `rate`, `attitude`, `position` or `slam`, whose name is
-/// the kind of the method. Throws BadInput with file, line and reason for an unknown or missing key, an unknown kind,
-/// frame or placeholder, a command without the placeholder of its output, a limit out of range, or a Python file
-/// without exactly one such function.
 ExternalDescription read_external(const std::filesystem::path& file);
 
 }  // namespace tumble::scenarios

@@ -26,7 +26,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The sensor data are written in a format only if the command contains its placeholder.
 struct Provision {
   const char* placeholder;
   const char* name;  ///< name in the scratch folder
@@ -126,8 +125,6 @@ Estimate run(const ExternalDescription& description, const sim::Sensors& sensors
   }
 }
 
-/// The version of an external method is the output of its version command, the Python file, and the digest of the
-/// description.
 std::string version_of(const ExternalDescription& description) {
   const std::string own = "description " + description.digest;
   if (!description.python.empty()) return python_version(description) + "; " + own;
@@ -154,7 +151,7 @@ Method external_method(const std::filesystem::path& file, double time_limit_s) {
             sim::resolve("method " + description.name, given, {});
             try {
               return run(description, sensors);
-            } catch (const std::system_error& error) {  // cannot create the folder or process
+            } catch (const std::system_error& error) {
               throw NoAnswer(NoAnswer::Why::machine, error.what());
             }
           }};

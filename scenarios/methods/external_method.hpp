@@ -39,18 +39,16 @@ class RefusedAnswer : public BadInput {
   std::string transcript_;
 };
 
-/// A command receives the sensor data in a scratch folder, in the formats that it requests, and writes its result to a
-/// file (EXTERNAL.md). The command runs in a separate process with limits of time and memory. A Python function
-/// exchanges sensor data and result through shared memory. External programs never receive the truth.
+/// An external command receives the sensor data in a temporary folder, and writes its result to a file (EXTERNAL.md).
+/// An external command runs in a separate process with limits of time and memory. External programs never receive the
+/// true motion.
 ///
-/// The time limit is that of the description, but at most `time_limit_s`. Throws BadInput if the description is invalid
-/// or the version command fails. Running the method throws NoAnswer or RefusedAnswer.
+/// The time limit of an external method is the smaller one of the description's limit and `time_limit_s`.
 Method external_method(const std::filesystem::path& file,
                        double time_limit_s = std::numeric_limits<double>::infinity());
 
 bool is_method_file(const std::string& name);
 
-/// Finds methods like find_methods (method.hpp).
 std::vector<MethodPointer> find_methods_within(std::span<const std::string> names, double time_limit_s);
 
 }  // namespace tumble::scenarios

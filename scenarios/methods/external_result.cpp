@@ -24,7 +24,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr std::int64_t kStampTolerance_ns = 1000;  // tolerance for time stamps that were stored as seconds in a double
+constexpr std::int64_t kStampTolerance_ns = 1000;  // stamps stored as seconds in doubles
 constexpr const char* kRateColumns = "time_ns,wx_rad_s,wy_rad_s,wz_rad_s";
 constexpr const char* kWithCovariance = "time_ns,wx_rad_s,wy_rad_s,wz_rad_s,cxx,cxy,cxz,cyy,cyz,czz";
 
@@ -86,7 +86,7 @@ std::vector<double> stamps_of(const std::filesystem::path& file) {
     stamps_s.push_back(stamp_s);
   }
   constexpr double kOrigin_s = 1e-9 * static_cast<double>(kExportOrigin_ns);
-  // Large time stamps are bag stamps in seconds; subtracting the origin gives the recording's time.
+  // Large time stamps are seconds in the clock of exported bags, so the origin of the exported clock is subtracted.
   if (!stamps_s.empty() && stamps_s.front() > kOrigin_s / 2 && stamps_s.back() < kOrigin_s * 2)
     for (double& stamp_s : stamps_s) stamp_s -= kOrigin_s;
   return stamps_s;
@@ -184,7 +184,7 @@ Estimate read_external_result(const ExternalDescription& description, const std:
       estimate.rates = read_rates(output, sensors);
       break;
     case ExternalDescription::Output::tum:
-      // The unit is checked before parsing, because time stamps in a wrong unit can overflow the time type.
+      // The unit of time stamps is checked before parsing, because stamps in a wrong unit can overflow the time type.
       bounds.require_unit(stamps_of(output), "seconds", rows_of(output, false));
       estimate = read_poses(description, output);
       break;

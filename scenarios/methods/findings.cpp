@@ -20,7 +20,8 @@ using About = HealthFinding::Kind;
 
 bool is_about_readings(const HealthFinding& finding) {
   const About kind = finding.kind;
-  // The rotation of gravity can confirm the scale of the gyro later.
+  // The rotation of gravity can confirm the scale of the gyro later, so an ended health finding of the gyro scale is
+  // not current.
   if (kind == About::gyro_scale) return !finding.ended;
   return kind == About::frozen_axis || kind == About::frozen_sensor || kind == About::force_at_rest ||
          kind == About::axes_or_signs || kind == About::flight_forces || kind == About::rotation;
@@ -36,7 +37,7 @@ bool any_of(const Estimate& estimate, bool (*about)(const HealthFinding&)) {
   return std::any_of(all.begin(), all.end(), about);
 }
 
-/// A finding contains only a pointer, so its text needs static lifetime.
+/// A health finding contains only a pointer to its text, so the text needs static lifetime.
 const char* kept(const std::string& text) {
   static std::mutex lock;
   static std::set<std::string> all;

@@ -9,8 +9,7 @@
 
 namespace tumble::scenarios {
 
-/// A text has the form "rate/tumble_lag.lag_s=0.5"; the kind "rate/" is optional. Throws BadInput for a malformed text,
-/// a text that matches no method, a repeated parameter, an invalid value, or an unknown parameter.
+/// Parses parameters of methods such as "rate/tumble_lag.lag_s=0.5"; the kind "rate/" is optional.
 std::vector<Method> with_parameters(std::span<const MethodPointer> methods, std::span<const std::string> texts);
 
 }  // namespace tumble::scenarios

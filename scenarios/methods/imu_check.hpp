@@ -17,7 +17,8 @@ void report_findings(const SensorHealth& health, const sim::Sensors& sensors, Es
 ImuFindings check_imu(const sim::Sensors& sensors, std::span<const ImuSample> samples, std::span<const RateState> rates,
                       std::optional<double> carried_share, Estimate& estimate);
 
-/// Only batch methods may call inflate_rates, because live or lagged results must not depend on later readings.
+/// Only methods that process the whole recording may call inflate_rates, because live results must not depend on later
+/// readings.
 void inflate_rates(const ImuFindings& findings, std::span<const ImuSample> samples, Estimate& estimate);
 
 }  // namespace tumble::scenarios

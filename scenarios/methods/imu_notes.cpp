@@ -8,7 +8,6 @@ namespace tumble::scenarios {
 
 std::string imu_note(const sim::ImuRecord& imu, double gravity_m_s2) {
   std::vector<ImuSample> samples;
-  // The reader of recordings already reports errors of single readings.
   if (!bridge::imu_samples(imu, samples).ok()) return "";
   const SensorHealth health = check_readings({.gyro_range_rad_s = imu.stated_gyro_range_rad_s,
                                               .accel_range_m_s2 = imu.stated_accel_range_m_s2,
@@ -16,7 +15,7 @@ std::string imu_note(const sim::ImuRecord& imu, double gravity_m_s2) {
                                              samples);
   if (health.ok()) return "";
   HealthFinding finding = health.findings.front();
-  finding.sensor.clear();  // imu_notes() adds the name
+  finding.sensor.clear();
   return "caution: " + to_text(finding);
 }
 

@@ -9,8 +9,6 @@
 
 namespace tumble::scenarios {
 
-/// Returns a warning if an IMU repeats one reading, or measures a force or rotation that contradicts gravity. The cost
-/// is O(N).
 std::string imu_note(const sim::ImuRecord& imu, double gravity_m_s2);
 
 std::vector<std::string> imu_notes(const Imported& recording);

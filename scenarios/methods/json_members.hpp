@@ -10,7 +10,6 @@
 
 namespace tumble::scenarios {
 
-/// Each error is a BadInput with file, member and value. Both constructor arguments must outlive JsonMembers.
 class JsonMembers {
  public:
   JsonMembers(const std::filesystem::path& path, const nlohmann::json& object) : path_(path), object_(object) {}

@@ -23,9 +23,10 @@ constexpr std::size_t kSpans = 10, kSweepsOfSpan = 12;
 constexpr double kSlowest_rad_s = 0.1, kFastest_rad_s = 2.0;
 constexpr std::size_t kLeastPairs = 12;
 /// A larger rotation error, relative to the median rotation, indicates that lidar and gyro do not measure the same
-/// motion. The relative error of the lidar's rotation is about 0.1.
+/// motion; correct pairs have about 0.1.
 constexpr double kAgrees = 0.3;
-/// A correction of the gyro's units, axes or delay is reported only if it clearly reduces the rotation error.
+/// A correction of the gyro's units, axes or delay is reported only if the correction reduces the rotation error by
+/// these factors.
 constexpr double kConclusive = 0.5, kDelayConclusive = 0.6;
 constexpr double kDegreesPerRadian = 57.29577951308232;
 constexpr double kDelayMost_s = 0.5, kDelayStep_s = 0.01, kDelaySaid_s = 0.03;
@@ -64,7 +65,6 @@ void add_rotations(const Estimate& estimate, std::vector<SeenRotation>& out) {
   }
 }
 
-/// Between two sweeps, the rotation is a few hundredths of a radian, so integrating each gyro axis alone is accurate.
 class Integral {
  public:
   explicit Integral(const sim::ImuRecord& imu) : imu_(imu) {
@@ -101,7 +101,7 @@ class Integral {
 
 struct Pairs {
   std::vector<Eigen::Vector3d> seen, said;
-  double rotation_rad = 0.0;  // median of the lidar's rotations
+  double rotation_rad = 0.0;
 
   template <class Error>
   double share(Error&& error) const {
@@ -129,7 +129,7 @@ Pairs pairs_at(const Integral& integral, const Eigen::Matrix3d& R_IL, std::span<
   return out;
 }
 
-/// The orthogonal matrix with the given determinant, 1 or -1, solves Wahba's problem (1965) by singular values.
+/// Solves Wahba's problem (1965) by singular values for an orthogonal matrix with the determinant 1 or -1.
 Eigen::Matrix3d best_orthogonal(const Pairs& pairs, double determinant) {
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   for (std::size_t k = 0; k < pairs.seen.size(); ++k) sum += pairs.seen[k] * pairs.said[k].transpose();
@@ -199,7 +199,7 @@ std::string delay_text(const RotationAgreement& found) {
   if (std::abs(found.delay_s) < kDelaySaid_s) return "";
   return fmt::format(
       "caution: the lidar's rotation follows the gyro's rotation {}{}; check that both use one clock and that sweep "
-      "stamps are start times. After removal of this delay, ",
+      "stamps are start times. Result after removal of this delay: ",
       rounded(std::abs(found.delay_s)), found.delay_s > 0.0 ? " s later" : " s earlier");
 }
 
@@ -211,19 +211,18 @@ std::string axes_text(const RotationAgreement& found) {
             ? ": units, signs and axes agree"
             : ": the units agree; this motion does not rotate about all axes, so some axes are not checked");
   }
-  const std::string off =
-      fmt::format("caution: the rotations of lidar and gyro differ{} (difference {}). They would agree if ",
-                  pairs_text(found), percent(found.error_as_read));
   if (found.axes_error <= kAgrees) {
     return fmt::format(
-        "{}the lidar's axes were {} (difference {}). Check the signs and order of the axes, and the mounting", off,
-        found.axes.text(), percent(found.axes_error));
+        "caution: the rotations of lidar and gyro differ{} (difference {}). The rotations would agree if the lidar's "
+        "axes were {} (difference {}). Check the signs and order of the axes, and the mounting",
+        pairs_text(found), percent(found.error_as_read), found.axes.text(), percent(found.axes_error));
   }
   const Eigen::Quaterniond& q = found.turned;
   return fmt::format(
-      "{}the lidar's orientation relative to the IMU were the quaternion x y z w {} {} {} {} (difference {}). Check "
-      "the mounting",
-      off, rounded(q.x()), rounded(q.y()), rounded(q.z()), rounded(q.w()), percent(found.turned_error));
+      "caution: the rotations of lidar and gyro differ{} (difference {}). The rotations would agree if the lidar's "
+      "orientation relative to the IMU were the quaternion x y z w {} {} {} {} (difference {}). Check the mounting",
+      pairs_text(found), percent(found.error_as_read), rounded(q.x()), rounded(q.y()), rounded(q.z()), rounded(q.w()),
+      percent(found.turned_error));
 }
 
 }  // namespace
@@ -269,11 +268,10 @@ std::optional<RotationAgreement> rotation_agreement(const sim::ImuRecord& imu, c
     fit_unit(pairs, delay_s, delayed, delayed_error);
     if (step == 0) fit_unit(pairs, delay_s, at_once, at_once_error);
   }
-  // Among a hundred candidate delays, one may fit slightly better by chance.
+  // Among a hundred candidate delays, one delay may fit slightly better by chance.
   RotationAgreement out = delayed_error < kDelayConclusive * at_once_error ? delayed : at_once;
   if (out.unit_error > kAgrees) return std::nullopt;
   fit_axes(pairs_at(integral, R_IL, seen, std::llround(1e9 * out.delay_s)), out);
-  // If lidar tracking fails in a tumble, the rotation angles alone may agree by chance.
   if (std::min({out.error_as_read, out.axes_error, out.turned_error}) > kAgrees) return std::nullopt;
   return out;
 }
@@ -292,7 +290,6 @@ std::optional<Eigen::Matrix3d> better_attitude(const sim::ImuRecord& imu, const 
   const bool by_axes =
       found.axes_error <= kAgrees && axes.determinant() > 0.0 && kConclusive * found.next_error > found.axes_error;
   if (agrees || found.unit != 1.0 || (!by_axes && found.turned_error > kAgrees)) return std::nullopt;
-  // In IMU axes, the lidar's rotation is M times the gyro's rotation, so the true attitude is M^T R_IL.
   const Eigen::Matrix3d M = by_axes ? axes : found.turned.toRotationMatrix();
   return imu.T_BI.linear() * M.transpose() * bridge::T_IL(imu, lidar).linear();
 }

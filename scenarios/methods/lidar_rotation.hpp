@@ -13,8 +13,6 @@
 #include "scenarios/recordings/import.hpp"
 #include "sim/recording.hpp"
 
-/// If the body tilts little, gravity does not reveal wrong axes or units of the gyro, but the lidar's rotation between
-/// sweeps does.
 namespace tumble::scenarios {
 
 struct SeenRotation {
@@ -22,10 +20,10 @@ struct SeenRotation {
   Eigen::Vector3d rotation_L_rad = Eigen::Vector3d::Zero();  ///< rotation vector, lidar axes
 };
 
-/// The rotations between the ends of consecutive sweeps come from the lidar alone, by the method
-/// `slam/constant_velocity`. At most ten parts of a dozen sweeps, spread over the recording, are processed, each with a
-/// separate map. Only pairs of registered sweeps with rates of 0.1 to 2 rad/s are kept, because slower rotations are
-/// mostly noise, and faster rotations distort the sweeps. The cost is about 10 ms per sweep.
+/// The rotations between consecutive sweeps come from the lidar alone, by the method `slam/constant_velocity`. At most
+/// ten segments of a dozen sweeps, spread over the recording, are processed, each with a separate map. Only pairs of
+/// registered sweeps with rates of 0.1 to 2 rad/s are kept: slower rotations are mostly noise, and faster rotations
+/// distort the sweeps. The cost is about 10 ms per sweep.
 std::vector<SeenRotation> seen_rotations(const sim::LidarRecord& lidar, const PointStore* aside);
 
 /// True axis i is `sign[i]` times axis `axis[i]` of the readings.
@@ -34,39 +32,39 @@ struct SignedAxes {
   std::array<int, 3> sign{1, 1, 1};
 
   Eigen::Matrix3d matrix() const;
-  std::string text() const;  ///< "(-x, y, z)"
+  std::string text() const;
 };
 
-/// Each error is the median rotation error over the pairs of sweeps, relative to the median rotation.
+/// Each error is the median difference between lidar rotation and gyro rotation over the pairs of sweeps, relative to
+/// the median rotation.
 struct RotationAgreement {
   std::size_t pairs = 0;
-  double unit = 1.0;        ///< 1, 57.3 or 1/57.3: factor from the gyro's integral to the lidar's rotation
-  double unit_error = 1.0;  ///< error of the rotation angles, independent of the mounting
-  double delay_s = 0.0;     ///< delay of the lidar relative to the gyro, within half a second
+  double unit = 1.0;        ///< 1, 57.3 or 1/57.3
+  double unit_error = 1.0;  ///< independent of the lidar mounting
+  double delay_s = 0.0;     ///< of the lidar relative to the gyro
   double error_as_read = 1.0;
   SignedAxes axes;
   double axes_error = 1.0;
-  double next_error = 1.0;  ///< error of the second-best axes; close to `axes_error` if undetermined
+  double next_error = 1.0;                                     ///< of the second-best axes
   Eigen::Quaterniond turned = Eigen::Quaterniond::Identity();  ///< lidar rotation = `turned` times gyro rotation
   double turned_error = 1.0;
 };
 
-/// Returns nothing if the gyro readings cover fewer than a dozen pairs of sweeps, or if no unit, axes or mounting
-/// rotation makes gyro and lidar agree within 30 %. The cost is O(pairs).
+/// Returns nothing for fewer than a dozen pairs of sweeps, or if no unit, axes or mounting makes gyro and lidar agree
+/// within 30 %.
 std::optional<RotationAgreement> rotation_agreement(const sim::ImuRecord& imu, const sim::LidarRecord& lidar,
                                                     std::span<const SeenRotation> seen);
 
-/// Returns a note on agreement or a warning with a better interpretation of the gyro; empty if undetermined. Throws
-/// BadInput, with a message that starts with `where`, if the rates are in deg/s instead of rad/s or vice versa.
+/// Returns a note that lidar and gyro agree, or a warning with a better interpretation of the gyro; empty if
+/// undetermined.
 std::string agreement_text(const std::string& where, const RotationAgreement& agreement, GyroUnit unit);
 
 struct LidarRotationCheck {
   std::vector<std::string> notes;              ///< at most one for each IMU
   std::optional<RotationAgreement> primary;    ///< for the primary IMU; empty if undetermined
-  std::optional<Eigen::Isometry3d> better_BL;  ///< pose of the first lidar that makes lidar and primary IMU agree
+  std::optional<Eigen::Isometry3d> better_BL;  ///< makes lidar and primary IMU agree
 };
 
-/// Throws BadInput, with a message that starts with `where`, if the rates are in a wrong unit.
 LidarRotationCheck check_lidar_rotation(const std::string& where, const Imported& recording, GyroUnit unit);
 
 }  // namespace tumble::scenarios

@@ -9,13 +9,12 @@
 
 namespace tumble::scenarios {
 
-/// The file is binary little-endian PLY: x y z nx ny nz sigma, float32 each.
+/// Binary little-endian PLY with the float32 columns x y z nx ny nz sigma.
 void write_map(const std::filesystem::path& path, std::span<const MapPoint> map);
 
-/// The file is binary PCD 0.7: x y z normal_x normal_y normal_z sigma, float32 each.
+/// Binary PCD 0.7 with the float32 columns x y z normal_x normal_y normal_z sigma.
 void write_map_pcd(const std::filesystem::path& path, std::span<const MapPoint> map);
 
-/// Throws BadInput with path and reason if the file is missing, truncated, or has another layout.
 std::vector<MapPoint> read_map(const std::filesystem::path& path);
 
 }  // namespace tumble::scenarios

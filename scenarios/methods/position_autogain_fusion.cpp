@@ -32,7 +32,6 @@ baselines::AutogainFusion::Params fusion_params(const sim::Sensors& sensors, con
   return params;
 }
 
-// Like the published filter, the method estimates the attitude from unmodified readings.
 Estimate run_position_autogain_fusion(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
   Estimate estimate;
   estimate.frame = Frame::centre;

@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kLagS = 1.0;
 constexpr TimeNs kHealthPeriodNs = 100'000'000;       // time between two calls of health()
-constexpr double kSpinsM_s = 0.2, kSpinsShare = 0.3;  // a hop with a larger speed difference is a slip
+constexpr double kSpinsM_s = 0.2, kSpinsShare = 0.3;  // speed differences of a slip
 
 Settings<RollingOdometry::Params> odometry_settings(double lag_s, std::vector<std::string> fixed) {
   RollingOdometry::Params params;
@@ -52,7 +52,7 @@ const Settings<RollingOdometry::Params>& live_settings() {
   return all;
 }
 
-/// If rolling speed and travel speed differ, a short flight belongs to a slip.
+/// If rolling speed and travel speed of a sphere differ, a short flight counts as part of a slip.
 bool spins(double radius_m, const RollingOdometry::Pose& pose) {
   const double rolling_m_s = radius_m * (pose.pose.q_WA * pose.angular_velocity_rad_s).head<2>().norm();
   const double speed_m_s = pose.pose.v_WA_m_s.norm();
@@ -98,7 +98,7 @@ Status replay(const std::vector<UnitRecording>& recordings, RollingOdometry& odo
     }
     if (!first) break;
     const Status status = odometry.add_imu(*first, recordings[*first].samples[next[*first]++]);
-    // The estimator rejects the first sample after a gap, until the second sample confirms its time stamp.
+    // The estimator rejects the first sample after a gap, until a second sample confirms the time stamp of the first.
     if (!status.ok() && status.error_code != ErrorCode::gap) return status;
     collect();
   }

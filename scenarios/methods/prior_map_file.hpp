@@ -9,13 +9,12 @@
 
 namespace tumble::scenarios {
 
-/// The folder of an estimate contains the map for later runs in this file (save_map).
 inline constexpr const char* kPriorMapName = "map.tumblemap";
 
 void write_prior_map(const std::filesystem::path& path, std::span<const MapPoint> points);
 
-/// Reads a file of write_prior_map, or a PCD or PLY file. Without the columns nx ny nz or normal_x normal_y normal_z,
-/// the normals are fitted to the points. The column `sigma` contains the standard deviation of each point.
+/// If the file has no columns nx ny nz or normal_x normal_y normal_z, the normals are fitted to the points. The column
+/// `sigma` contains the standard deviation of each point [m].
 std::vector<MapPoint> read_prior_map(const std::filesystem::path& path);
 
 }  // namespace tumble::scenarios

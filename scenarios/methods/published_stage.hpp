@@ -13,7 +13,6 @@ namespace tumble::scenarios {
 
 const Settings<baselines::PublishedChain::Params>& published_settings();
 
-/// `estimate.rates` must contain one rate per sample, which replaces the gyro reading.
 void run_published_chain(const sim::Sensors& sensors, std::span<const ImuSample> samples, const sim::Values& parameters,
                          Estimate& estimate);
 

@@ -31,7 +31,6 @@ std::size_t aligned(std::size_t size) {
   return (size + kAlignment - 1) / kAlignment * kAlignment;
 }
 
-/// The data must outlive Arrays.
 class Arrays {
  public:
   template <typename Value>
@@ -144,7 +143,7 @@ json of_series(const sim::SeriesRecord& series, Arrays& arrays) {
 class Answer {
  public:
   Answer(const SharedMemory& memory, const AnswerBounds& bounds) {
-    // The Python function can enlarge the shared memory that it received.
+    // The Python function can enlarge the shared memory, so the size of the memory is checked.
     const std::uintmax_t most = bounds.table_bytes() + bounds.map_bytes();
     if (memory.size() > most)
       throw BadInput(

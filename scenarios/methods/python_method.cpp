@@ -38,7 +38,7 @@ Command interpreter(const ExternalDescription& description, const ScratchFolder&
                   .memory_limit_mib = description.memory_limit_mib};
   const char* own = std::getenv("TUMBLE_PYTHON");
   if (command.words.empty()) command.words = {own != nullptr && *own != '\0' ? own : "python3"};
-  command.environment.emplace("PYTHONDONTWRITEBYTECODE", "1");  // avoids a __pycache__ folder next to the user's file
+  command.environment.emplace("PYTHONDONTWRITEBYTECODE", "1");  // no __pycache__ at the user's file
   command.words.insert(command.words.end(), words.begin(), words.end());
   return command;
 }

@@ -8,12 +8,9 @@
 /// The Python function runs in a separate interpreter that only needs numpy (EXTERNAL.md).
 namespace tumble::scenarios {
 
-/// `transcript` receives the printed output, even if the function throws. Throws NoAnswer and RefusedAnswer
-/// (external_method.hpp).
+/// `transcript` receives the printed output of the Python function, even if the function raises an exception.
 Estimate call_python(const ExternalDescription& description, const sim::Sensors& sensors, std::string& transcript);
 
-/// Returns the versions of Python and numpy, and a digest of the method's Python file (without imported modules).
-/// Throws BadInput if there is no interpreter with numpy.
 std::string python_version(const ExternalDescription& description);
 
 }  // namespace tumble::scenarios

@@ -16,7 +16,7 @@ namespace tumble::scenarios {
 const Settings<Saave::Params>& saave_settings();
 Settings<Saave::Params> other_saave_settings(std::span<const sim::Parameter> others);
 
-/// Estimates one rate per sample by Saave's method. On error, `out` is empty.
+/// On error, `out` is empty.
 Status saave_rates(const sim::Sensors& sensors, std::span<const ImuSample> samples,
                    const Settings<Saave::Params>& settings, const sim::Values& parameters, std::vector<RateState>& out);
 

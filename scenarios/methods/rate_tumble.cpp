@@ -18,8 +18,7 @@
 
 namespace tumble::scenarios {
 
-// A range or noise density of 0 means that the data sheet lacks the value. The smoother then assumes an unlimited range
-// or the library's default density.
+// A range or noise density of 0 means that the data sheet lacks this value; the smoother then uses its default.
 RateSmoother::Params stated_params(const sim::ImuRecord& record, RateSmoother::Params params) {
   RateModelParams& model = params.model;
   model.nominal.lever_arm_m = bridge::lever_arm_I_m(record);
@@ -41,7 +40,7 @@ Status auxiliary_recordings(const sim::Sensors& sensors, std::vector<AuxiliaryRe
   const sim::ImuRecord& primary = sensors.imus.front();
   for (std::size_t i = 1; i < sensors.imus.size() && out.size() < kAuxiliaryImusMax; ++i) {
     const sim::ImuRecord& record = sensors.imus[i];
-    if (record.name == "imu_reference") continue;  // the reference IMU is only for comparisons
+    if (record.name == "imu_reference") continue;  // only for comparisons
     AuxiliaryRecording& added = out.emplace_back();
     if (Status status = bridge::imu_samples(record, added.samples, bridge::kAnyGapS); !status.ok()) return status;
     added.imu.T_IC = primary.T_BI.inverse(Eigen::Isometry) * record.T_BI;
@@ -70,10 +69,10 @@ const CalibratedRig* RigCalibrationUse::found() const {
 
 namespace {
 
-/// Returns false, and adds a failed health check, if the saved calibration and the calibration of a run without it
+/// Returns false, and adds a health finding, if the saved calibration and the calibration that was estimated without it
 /// cannot belong to one rig.
 bool may_be_of_this_rig(const CalibratedRig& given, const std::optional<CalibratedRig>& fresh, Estimate& result) {
-  constexpr double kDistanceMax = 2.0;  // standard deviations; see calibration_distance
+  constexpr double kDistanceMax = 2.0;  // standard deviations
   if (!fresh || fresh->only_rails) return true;
   const double distance = calibration_distance(given.calibration, fresh->calibration);
   if (distance <= kDistanceMax) return true;

@@ -25,22 +25,21 @@ const std::vector<std::string>& stated_densities();
 
 RateSmoother::Params stated_params(const sim::ImuRecord& record, RateSmoother::Params params);
 
-/// `parameters` has priority over the IMU record, which has priority over the defaults of `settings`.
+/// A parameter in `parameters` has priority over the IMU record, which has priority over the defaults of `settings`.
 RateSmoother::Params smoother_params(const sim::ImuRecord& record, const Settings<RateSmoother::Params>& settings,
                                      const sim::Values& parameters);
 
 RegimeSmoother::Params regime_params(const sim::Sensors& sensors, const RateSmoother::Params& rate);
 
-/// Converts at most kAuxiliaryImusMax IMUs after the primary IMU, without `imu_reference`.
 Status auxiliary_recordings(const sim::Sensors& sensors, std::vector<AuxiliaryRecording>& out);
 
-/// Starts from the saved calibration `given`, and writes the new calibration to `found`; both may be null. If the
-/// status is not ok, or the run estimated neither rig constants nor a saturation limit, `found` stays unchanged. The
-/// covariance of `given` is multiplied by four and limited to the default prior, because rigs change between runs.
+/// Starts from the saved calibration `given`, and writes the new calibration to `found`; both may be null. If the run
+/// fails, or estimates neither rig constants nor a saturation limit, `found` stays unchanged. The covariance of the
+/// calibration `given` is multiplied by four and limited to the default prior, because rigs change between runs.
 Estimate run_rate_tumble(const sim::Sensors& sensors, const sim::Values& parameters, const CalibratedRig* given,
                          std::optional<CalibratedRig>* found);
 
-/// The streaming method writes the new calibration only if its covariance decreased during the run.
+/// The streaming method writes the new calibration only if the calibration's covariance decreased during the run.
 Estimate run_rate_tumble_lag(const sim::Sensors& sensors, const sim::Values& parameters, const CalibratedRig* given,
                              std::optional<CalibratedRig>* found);
 
@@ -48,14 +47,13 @@ struct RigCalibrationUse {
   std::optional<CalibratedRig> given;  ///< empty: start without calibration
   std::optional<CalibratedRig> of_batch, of_stream;
   /// The calibration of the smoother over the whole recording has priority, unless it contains only saturation limits
-  /// and the stream estimated more.
+  /// and the streaming method estimated more.
   const CalibratedRig* found() const;
 };
 
-/// `learning` must outlive the returned method, which starts with the calibration in `learning` and updates it. If
-/// `learning` contains a calibration, the method also runs without it. If the two results differ
-/// (calibration_distance), the estimate gets a failed health check and the calibration is not saved. Throws BadInput if
-/// the method is neither rate/tumble nor rate/tumble_lag.
+/// The returned method starts with the rig calibration in `learning` and updates it; `learning` must outlive the
+/// method. If `learning` contains a rig calibration, the method also runs without this calibration; if the two results
+/// differ, the new calibration is not saved.
 Method calibrating_method(const Method& method, RigCalibrationUse& learning);
 
 Method rate_tumble_lag();

@@ -24,7 +24,6 @@ const Settings<RegimeStream::Params>& rate_tumble_lag_settings() {
     std::vector<std::string> stated = stated_densities();
     stated.insert(stated.end(),
                   {"period_s", "evidence_gravity_m_s2", "carried_gravity_m_s2", "hand_held_probability_min"});
-    // The HandHeldStream of RegimeStream makes one iteration per node of the trajectory.
     const std::vector<std::string> fixed = {"carried_period_s", "carried_lag_s", "carried_gap_max_s",
                                             "carried_iterations_max"};
     return Settings<RegimeStream::Params>(RegimeStream::Params{}, {.stated = stated, .fixed = fixed});
@@ -53,12 +52,11 @@ RegimeStream::Params stream_params(const sim::Sensors& sensors, const sim::Value
   return params;
 }
 
-/// Like TumblingOdometry, the stream restarts after a gap with its current calibration.
 void restart_after_gap(RegimeStream::Params& params, RegimeStream& joined, RegimeStream::State& all) {
   const RigCalibration calibration = joined.rate().calibration(all.rate);
   if (check_calibration(calibration).ok()) params.rate.model.calibration = calibration;
   joined = RegimeStream(params);
-  const FrozenAxes::State frozen = all.rate.frozen;  // a frozen axis may stay frozen after the gap
+  const FrozenAxes::State frozen = all.rate.frozen;
   const FlightSignCheck::State sense = all.rate.sense;
   all = joined.start();
   all.rate.frozen = frozen;
@@ -78,8 +76,7 @@ Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& paramet
   std::vector<std::vector<AuxiliaryReading>> auxiliary_imus;
   estimate.status = align(recordings, samples, bridge::kGapMaxS, params.rate.model, auxiliary_imus);
   if (!estimate.status.ok()) return estimate;
-  // Auxiliary IMUs measure the rate during hand-held motion too, but the hand-held smoother cannot use them, so it is
-  // switched off.
+  // If auxiliary IMUs exist, the hand-held smoother is switched off, because it cannot use auxiliary IMUs.
   if (!auxiliary_imus.empty() && !parameters.has("hand_held_probability_min")) params.hand_held_probability_min = 1.0;
   RegimeStream joined(params);
   const RateStream& stream = joined.rate();
@@ -125,7 +122,6 @@ Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& paramet
     if (std::optional<CalibratedRig> rig = learnt(stream, params.rate, given, state)) *found = std::move(rig);
   }
   if (estimate.status.ok()) {
-    // The rates are already final, so the method only reports the findings.
     (void)check_imu(sensors, samples, estimate.rates, carried_share, estimate);
   }
   count_sources(estimate.rates, estimate.health);

@@ -9,8 +9,7 @@
 
 namespace tumble::scenarios {
 
-/// The rates that rate/tumble recovers replace the gyro readings of a rig. If the data of one auxiliary IMU are
-/// invalid, no auxiliary IMU is used.
+/// If the data of one auxiliary IMU are invalid, no auxiliary IMU is used.
 RecoveredRates recovered_readings(const sim::Sensors& sensors, std::span<const ImuSample> samples,
                                   ReplacedReadings replaced, Estimate& estimate);
 

@@ -33,7 +33,7 @@ std::vector<Method> all_methods() {
       attitude_tumble(),
       attitude_tumble_lag(),
       attitude_tumble_batch(),
-      position_rolling(),  // without a baseline, the first method of a kind is the reference
+      position_rolling(),  // first, as reference without baseline
       position_autogain_fusion(),
       position_tumble(),
       position_tumble_lag(),
@@ -105,7 +105,6 @@ Method make_method(MethodInfo info, RunCore run) {
       std::make_shared<const std::vector<sim::Parameter>>(joined_rows(settings, info.parameters_first));
   info.parameters = *parameters;
   const bool needs_truth = info.needs_truth;
-  // The lambda keeps the parameters alive, because `info` refers to them.
   RunMethod wrapped = [name, settings, parameters, needs_truth, run](
                           const sim::Sensors& sensors, const sim::Values& given, const OracleInput& oracle) {
     if (needs_truth && oracle.truth == nullptr) {
@@ -146,7 +145,7 @@ std::vector<MethodPointer> find_methods(std::span<const std::string> names) {
 
 std::vector<MethodPointer> find_methods_within(std::span<const std::string> names, double time_limit_s) {
   std::vector<MethodPointer> found;
-  std::map<std::string, std::string> asked;  // argument that selected the method
+  std::map<std::string, std::string> asked;
   for (const std::string& name : names) {
     for (MethodPointer& method : find_within(name, time_limit_s)) {
       const auto [before, is_new] = asked.emplace(full_name(method->info), name);

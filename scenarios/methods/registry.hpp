@@ -13,14 +13,12 @@
 #include "tumble/common/imu.hpp"
 #include "tumble/mapping/detail/odometer_reading.hpp"
 
-/// A new method needs a file KIND_NAME.cpp that defines `Method KIND_NAME()`, a declaration here, a line in
+/// A new method needs a file KIND_NAME.cpp that defines `Method KIND_NAME()`, a declaration in this header, a line in
 /// registry.cpp, and a line in CMakeLists.txt.
 namespace tumble::scenarios {
 
 using RunCore = Estimate (*)(const sim::Sensors&, const sim::Values& parameters, const OracleInput& oracle);
 
-/// Missing parameters get their defaults. Running the method throws BadInput for an unknown parameter, a value out of
-/// range, or a missing truth.
 Method make_method(MethodInfo info, RunCore run);
 
 Method rate_raw();
@@ -57,15 +55,15 @@ Status unclipped_rates(const sim::Sensors& sensors, const sim::Truth& truth, std
 void count_sources(std::span<const RateState> rates, std::map<std::string, double>& health);
 
 struct KnownMotion {
-  /// Returns the motion of the IMU between two times; empty if the odometer does not cover both times.
+  /// Motion of the IMU between two times, or nothing if the odometer does not cover both times.
   std::function<std::optional<OdometerReading>(TimeNs from_ns, TimeNs to_ns)> between;
-  double correction_max_m = 1.0;  ///< registrations with a larger correction are rejected
+  double correction_max_m = 1.0;  ///< larger corrections are rejected
   double correction_max_rad = 1.0;
 };
 
 struct SlamChain {
-  /// true: a first pass over the recording estimates lidar mounting, lidar clock offset and gravity. A second pass
-  /// starts with this calibration.
+  /// true: a first pass over the recording estimates lidar mounting, clock offset and gravity, and a second pass starts
+  /// with this calibration.
   bool calibration = false;
   const KnownMotion* along = nullptr;  ///< odometer
   std::function<void(std::size_t done, std::size_t all)> on_sweep = {};

@@ -9,8 +9,7 @@
 
 namespace tumble::scenarios {
 
-/// Reports the limit of each axis, and the plane parameters of tilted limits (ESTIMATE.md, "Rails"). Limits that were
-/// copied from another axis or from a data sheet are omitted.
+/// Saturation limits that were copied from another axis or from a data sheet are not reported.
 void report_rails(const SaturationLevels& rails, std::map<std::string, double>& health);
 
 void report_rails(const RateReport& report, std::map<std::string, double>& health);

@@ -23,7 +23,7 @@ using nlohmann::json;
 constexpr double kMost = 1e6;
 constexpr const char* kKeys[] = {"lever_arm_m", "gyro_bias_rad_s", "accel_bias_m_s2", "inertia",
                                  "covariance",  "gyro_rail_rad_s", "accel_rail_m_s2"};
-// Files of early versions lack the gyro elements and their covariance rows.
+// Calibration files of early versions lack the directions of the gyro's sensing elements and their covariance.
 constexpr const char* kElementsKey = "gyro_elements";
 constexpr const char* kPlanesKey = "gyro_planes_rad_s";
 constexpr const char* kAccelPlanesKey = "accelerometer_planes_m_s2";
@@ -70,7 +70,7 @@ class CalibrationReader {
     for (std::size_t i = 0; i < values.size(); ++i) {
       if (!values[i].is_number() || !std::isfinite(values[i].get<double>()))
         complain(key, "an element of the array is not a number; all elements must be numbers");
-      // Numbers above 1e6 cannot be rig constants, and would dominate all others.
+      // Numbers above 1e6 cannot be rig constants, and would dominate the covariance check.
       if (std::abs(values[i].get<double>()) > kMost) {
         complain(key,
                  fmt::format("an element of the array is {}; its magnitude must be at most 1e6", values[i].dump()));
@@ -149,7 +149,6 @@ void read_device_errors(const CalibrationReader& reader, const json& object, Cal
   reader.read(kErrorsCovarianceKey, known.covariance);
   known.errors = SensorErrors::from(errors);
   const SensorErrors::Vector deviation = known.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
-  // The entries differ by orders of magnitude, so the standard deviations scale them.
   const SensorErrors::Vector over = deviation.cwiseMax(1e-300).cwiseInverse();
   const SensorErrors::Matrix scaled = over.asDiagonal() * known.covariance * over.asDiagonal();
   if (!scaled.allFinite() || (scaled - scaled.transpose()).cwiseAbs().maxCoeff() > 1e-9 ||

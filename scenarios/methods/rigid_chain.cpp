@@ -19,10 +19,10 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr double kRestMaxS = 1.0;
-/// The rig counts as stationary from the first reading to the first motion. The thresholds are those of the mapper
-/// (`mapper_rest`), without the gravity test.
+/// The thresholds for a stationary rig at the start of a recording are those of the mapper (`mapper_rest`), without the
+/// gravity test.
 constexpr RestDetector::Params kStart = {.rate_spread_rad_s = 0.05, .force_spread_m_s2 = 0.5, .rest_s = 0.0};
-constexpr double kVelocitySigmaMS = 1e-4;  // registration of a rigid sweep gives no velocity measurement
+constexpr double kVelocitySigmaMS = 1e-4;  // registration measures no velocity
 
 TimeNs window_start(std::span<const ImuSample> samples, std::size_t k) {
   if (k > 0) return samples[k - 1].time_ns;

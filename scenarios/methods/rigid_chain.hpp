@@ -10,36 +10,35 @@
 #include "sim/parameters.hpp"
 #include "tumble/common/imu.hpp"
 
-/// Methods that register each sweep as a rigid body differ in their trajectory model, which predicts the motion within
-/// a sweep.
+/// Methods that register each sweep as a rigid body differ only in their trajectory model, which predicts the motion
+/// within a sweep.
 namespace tumble::scenarios {
 
 class TrajectoryModel {
  public:
   virtual ~TrajectoryModel() = default;
-  /// Predicts the motion from the end of the last sweep to `to_ns`. For the first sweep, the prediction starts at the
-  /// start of the sweep.
+  /// Predicts the motion of the IMU from the end of the last sweep, or from the start of the first sweep, to `to_ns`.
   virtual baselines::RigidOdometry::Motion expect(TimeNs from_ns, TimeNs to_ns) = 0;
   virtual void learn(const baselines::RigidOdometry& odometry, const LidarInertialOdometry::SweepReport& report) = 0;
 };
 
-/// The standstill at the start determines the attitude, from the specific force with yaw 0, and the gyro bias.
+/// The specific force of a stationary IMU determines roll and pitch (yaw is 0), and the gyro readings determine the
+/// gyro bias.
 struct StartAtRest {
   Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
   Eigen::Vector3d gyro_bias_rad_s = Eigen::Vector3d::Zero();
 };
-/// The computation uses the first readings (one sample to one second) while the gyro stays below 0.05 rad/s. Returns
-/// `too_few` or `degenerate` if the readings do not determine an attitude.
+/// Attitude and gyro bias come from the first readings, one sample to one second, while the gyro stays below 0.05
+/// rad/s.
 Status start_at_rest(std::span<const ImuSample> samples, StartAtRest& out);
 
-/// Returns one motion sample per IMU averaging window in the interval, with constant rate and acceleration (without
-/// gravity) in body axes.
+/// Returns one motion sample per IMU averaging window, with constant rate and acceleration (without gravity) in body
+/// axes.
 std::vector<MotionSample> steady_motion(std::span<const ImuSample> samples, const Eigen::Vector3d& rate_I_rad_s,
                                         const Eigen::Vector3d& force_I_m_s2, TimeNs from_ns, TimeNs to_ns);
 
 Eigen::Matrix<double, 9, 9> loose_covariance(double sigma_m, double sigma_rad);
 
-/// Sweeps after the last IMU reading are only counted. A sweep without points is not an error.
 void run_rigid_chain(const sim::Sensors& sensors, std::span<const ImuSample> samples,
                      const baselines::RigidOdometry::Params& params, TrajectoryModel& model, Estimate& estimate);
 

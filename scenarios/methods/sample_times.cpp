@@ -15,7 +15,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Decreasing time stamps are kept, so that a later check rejects them.
 struct SampleTimes {
   std::vector<std::int64_t> times_ns;
   double corrected_jitter_s = 0.0;

@@ -8,16 +8,15 @@
 
 namespace tumble::scenarios {
 
-/// SampleClock corrects the host computer's time stamps of the IMU. The returned rates have the original time stamps;
-/// poses and attitudes have the corrected times. The health value `stamps_mended_s` is the largest correction [s].
+/// The estimated rates have the original time stamps; poses and attitudes have the corrected times. The health value
+/// `stamps_mended_s` is the largest correction of a time stamp [s].
 Estimate with_sample_times(const sim::Sensors& sensors, const std::function<Estimate(const sim::Sensors&)>& run);
 
-/// The health value `rejected_readings` is the number of samples that OutlierFilter rejects.
 Estimate without_outliers(const sim::Sensors& sensors, const std::function<Estimate(const sim::Sensors&)>& run);
 
-/// All methods of tumble use this correction of sample times and removal of outliers, except those that call the public
-/// API, which corrects time stamps itself. Published methods receive the original time stamps. A method with truth
-/// receives all outliers, because the truth has one value per sample.
+/// All methods of this project correct sample times and remove outliers in this function, except those that call the
+/// public API. Published methods receive the original time stamps. A method with access to the truth receives all
+/// outliers, because the truth has one value per sample.
 template <RunCore run>
 Estimate at_sample_times(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput& oracle) {
   const auto timed = [&](const sim::Sensors& kept) {

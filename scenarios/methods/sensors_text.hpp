@@ -7,8 +7,8 @@
 
 namespace tumble::scenarios {
 
-/// Returns gravity, the sphere's radius and the sensors as JSON. An IMU has sample rate, ranges, noise densities and
-/// mounting T_BI. A lidar has period and mounting T_BL. A mounting has "translation_m" [x, y, z] and "quaternion_xyzw",
+/// The JSON text contains gravity, the sphere's radius, each IMU with sample rate, ranges, noise densities and mounting
+/// T_BI, and each lidar with period and mounting T_BL. A mounting has "translation_m" [x, y, z] and "quaternion_xyzw",
 /// and includes calibration errors.
 std::string sensors_text(const sim::Sensors& sensors);
 

@@ -12,7 +12,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// The suffix for the unit "m/s^2" is "_m_s2".
 std::string suffix_of(std::string_view unit) {
   std::string out = "_";
   for (const char c : unit) {

@@ -17,13 +17,12 @@
 #include "tumble/common/fields_by_name.hpp"
 #include "tumble/common/parameters.hpp"
 
-/// Settings converts the `Params` struct of a library class to the parameters of a method, by the descriptions of the
-/// struct's fields (common/parameters.hpp).
+/// Settings converts the fields of a library class's `Params` struct to parameters of a method that a user can set by
+/// name (common/parameters.hpp).
 namespace tumble::scenarios {
 
 namespace detail {
 
-/// The axis comes before the unit: "lever_arm_x_m".
 std::array<std::string, 3> coordinate_names(const std::string& name, const Field& field);
 
 template <class Params, class Each>
@@ -42,9 +41,9 @@ void visit_numbers(Params& params, Each each) {
 }  // namespace detail
 
 struct SettingsOptions {
-  /// The recording contains the values of these fields, unless the user sets them; a name may end in `*`.
+  /// Names of fields whose values come from the recording unless the user sets them; a name may end in `*`.
   std::vector<std::string> stated = {};
-  /// Users cannot set these fields, because they follow from other parameters; a name may end in `*`.
+  /// Names of fields that users cannot set, because they follow from other parameters; a name may end in `*`.
   std::vector<std::string> fixed = {};
   std::vector<std::string> first = {};
   /// A field with the same name as a parameter of another stage gets `prefix` before its name.
@@ -52,7 +51,6 @@ struct SettingsOptions {
   std::string prefix = {};
 };
 
-/// SettingsTable is the base class of all Settings and does not depend on the `Params` type.
 class SettingsTable {
  public:
   virtual ~SettingsTable() = default;
@@ -64,7 +62,6 @@ class SettingsTable {
   std::size_t first_rows() const { return first_rows_; }
   bool is_whole(std::string_view name) const { return whole_.contains(name); }
   bool is_stated(std::string_view name) const { return stated_.contains(name); }
-  /// Returns every number of the `Params` struct after applying `values`, by its name in the library.
   virtual std::map<std::string, double> numbers(const sim::Values& values) const = 0;
 
  protected:
@@ -80,18 +77,15 @@ class SettingsTable {
   std::vector<sim::Parameter> rows_;
   std::size_t first_rows_ = 0;
   std::set<std::string_view> first_, whole_, stated_;
-  std::deque<std::string> texts_;  ///< owns the texts to which the other members refer
+  std::deque<std::string> texts_;  ///< storage of the texts
 };
 
-/// Parameters with a value in the recording are omitted unless the user sets them. Throws InvalidSituation like
-/// sim::resolve, and also for a fraction where an integer is required.
 sim::Values resolve_settings(const std::string& place, const sim::Values& given,
                              std::span<const SettingsTable* const> stages);
 
-/// The names of the stages must differ.
 std::vector<sim::Parameter> joined_rows(std::span<const SettingsTable* const> stages, std::size_t& first);
 
-/// A Settings object must be static, because methods refer to it.
+/// A Settings object must be static, because methods keep pointers to it.
 template <class Params>
 class Settings : public SettingsTable {
  public:
@@ -103,7 +97,6 @@ class Settings : public SettingsTable {
   }
   const Params& defaults() const { return defaults_; }
 
-  /// A field whose value comes from the recording keeps its value unless the user set it.
   void apply(const sim::Values& values, Params& params) const {
     detail::visit_numbers(params, [&](const std::string& field_name, auto& value, const Field&, bool) {
       using Value = std::remove_cvref_t<decltype(value)>;

@@ -41,7 +41,6 @@ LidarInertialOdometry::Params odometry_params(const sim::Sensors& sensors, const
 bool append_sweeps(std::vector<MappedSweep>& sweeps, Estimate& estimate) {
   for (MappedSweep& sweep : sweeps) {
     SweepReport& report = sweep.report;
-    // A sweep that ended before the first IMU reading has no pose.
     if (sweep.status.error_code == ErrorCode::too_few && report.trajectory.empty()) {
       leave_out_unfinished(estimate);
       continue;

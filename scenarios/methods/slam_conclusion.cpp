@@ -12,7 +12,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// A large uncertainty of the final pose reveals surroundings that constrain the pose poorly.
 void report_end(Estimate& estimate) {
   const Eigen::Matrix<double, 6, 6>& P = estimate.sweeps.back().pose.covariance;
   estimate.health["end_sigma_m"] = std::sqrt(P.topLeftCorner<3, 3>().trace());

@@ -13,8 +13,7 @@ namespace tumble::scenarios {
 
 void apply_smoothed(std::vector<PoseState> smoothed, LidarInertialOdometry::SweepReport& sweep);
 
-/// The run is localised unless a finding contradicts its pose in the map (report_localised). The status is `too_few` if
-/// no sweep was registered. Returns true if the run is localised and completed.
+/// Returns true if the run is complete and its final pose in the map is plausible.
 bool conclude(const LidarInertialOdometry& odometry, Estimate& estimate);
 
 void report_calibration(const LidarInertialOdometry& odometry, const sim::Sensors& sensors,

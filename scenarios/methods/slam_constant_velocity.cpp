@@ -9,14 +9,16 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr int kPosesPerSweep = 10;  // poses per sweep for recordings without IMU
+constexpr int kPosesPerSweep = 10;  // for recordings without IMU
 
-// The prior is very weak: registration alone determines the pose, as in published methods with constant velocity.
+// The prior of the velocity is very weak, so registration alone determines the pose, as in published methods with
+// constant velocity.
 constexpr double kVelocityPriorM = 1.0;
 constexpr double kVelocityPriorRad = 0.5;
 
-/// The model predicts that the pose change over the last sweep repeats, in translation and rotation. The IMU gives only
-/// the times of the poses and the initial vertical; without an IMU, the start is assumed upright.
+/// ConstantVelocity predicts that the pose change over the last lidar sweep repeats, in translation and rotation.
+/// ConstantVelocity uses the IMU only for the times of the poses and the initial vertical; without an IMU, the start is
+/// assumed upright.
 class ConstantVelocity : public TrajectoryModel {
  public:
   ConstantVelocity(std::span<const ImuSample> samples, const Eigen::Quaterniond& q_WL) : samples_(samples) {

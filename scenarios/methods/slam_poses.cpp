@@ -5,8 +5,7 @@
 #include "scenarios/methods/sweep_log.hpp"
 #include "tumble/mapping/voxel_map.hpp"
 
-/// As published, these methods build maps of a rolling sphere from the poses of a position method, without
-/// registration.
+/// Published methods build maps of a rolling sphere from the poses of a position method, without registration.
 namespace tumble::scenarios {
 
 namespace {
@@ -48,7 +47,6 @@ class Track {
   bool covers(std::int64_t time_ns) const {
     return !poses_.empty() && time_ns >= poses_.front().time_ns && time_ns <= poses_.back().time_ns;
   }
-  /// The cost is O(1) for times close to the time of the previous call.
   Eigen::Isometry3d at(std::int64_t time_ns) {
     while (next_ > 1 && poses_[next_ - 1].time_ns > time_ns) --next_;
     while (next_ + 1 < poses_.size() && poses_[next_].time_ns < time_ns) ++next_;
@@ -64,7 +62,7 @@ class Track {
   std::size_t next_ = 1;
 };
 
-// The lidar's mounting refers to the centre of mass, a few millimetres from the sphere's centre.
+// The lidar mounting refers to the centre of mass, which is a few millimetres from the centre of the sphere.
 Estimate map_from_poses(const Method& position, const sim::Sensors& sensors, const sim::Values& parameters) {
   Estimate estimate = position.run(sensors, values_of(position, parameters), {});
   estimate.contacts.clear();

@@ -20,9 +20,9 @@ Method slam_constant_velocity();
 Method slam_tumble_lag();
 Method slam_tumble_live();
 
-/// Returns a copy of slam/tumble_lag or slam/tumble_live that localises in a prior map (TumblingOdometry::use_map);
-/// empty for other methods. The health value `prior_map_sweep` is the number of the sweep at which the run was
-/// localised, or 0. The poses of earlier sweeps are in a local frame.
+/// Returns a copy of slam/tumble_lag or slam/tumble_live that localises in a prior map (TumblingOdometry::use_map), or
+/// nothing for other methods. The health value `prior_map_sweep` is the number of the sweep at which the run was
+/// localised in the prior map, or 0. The poses of sweeps before the localisation in the prior map are in a local frame.
 std::optional<Method> localised_in(const Method& method, std::shared_ptr<const PriorMap> map);
 
 struct RigSlam {

@@ -11,7 +11,6 @@
 #include "scenarios/methods/slam_settings.hpp"
 #include "scenarios/methods/sphere_attitude.hpp"
 
-/// Sweeps of a rolling sphere are registered as on the rig, with rolling as an odometer (add_reading).
 namespace tumble::scenarios {
 
 namespace {
@@ -88,7 +87,7 @@ std::optional<Radius> radius_by_lidar(const Estimate& rolled, const Estimate& re
   const Eigen::Isometry3d T_IG =
       sensors.imus.front().T_BI.inverse(Eigen::Isometry) * Eigen::Translation3d(rolled.centre_B_m);
   double squares = 0.0, products = 0.0;
-  std::vector<Eigen::Vector2d> segments;  // rolled and registered distance of each segment
+  std::vector<Eigen::Vector2d> segments;  // rolled and registered distance
   bool open = false;                      // a segment has started
   Eigen::Vector3d from_rolled = Eigen::Vector3d::Zero(), from_registered = Eigen::Vector3d::Zero();
   std::size_t k = 0;
@@ -96,7 +95,7 @@ std::optional<Radius> radius_by_lidar(const Estimate& rolled, const Estimate& re
     for (; k + 1 < rolled.poses.size() && rolled.poses[k].time_ns < sweep.pose.time_ns; ++k) {
       if (rolled.contacts[k] != sim::ContactLabel::grip) open = false;
     }
-    if (sweep.verdict != SweepVerdict::registered) continue;  // a predicted pose is not an independent measurement
+    if (sweep.verdict != SweepVerdict::registered) continue;  // no independent measurement
     const Eigen::Vector3d p_rolled = rolled.poses[k].p_WA_m;
     const Eigen::Vector3d p_registered =
         (Eigen::Translation3d(sweep.pose.p_WA_m) * sweep.pose.q_WA * T_IG).translation();
@@ -217,7 +216,6 @@ Estimate register_along(const Estimate& rolled, const sim::Sensors& sensors, std
   return estimate;
 }
 
-/// The first run, with an uncertain odometer, estimates the radius; the second run uses this radius.
 Estimate run_rolling_prior(const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {
   Estimate estimate;
   estimate.frame = Frame::imu;

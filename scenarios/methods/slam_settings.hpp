@@ -26,10 +26,10 @@ struct SlamParams {
   }
 };
 
-/// A hand-assembled rig has typical calibration uncertainties.
+/// Sets the prior uncertainties of lidar mounting and clock offset to typical values of a hand-assembled rig.
 SlamParams with_calibration(SlamParams params);
-/// A registration with few matches is accepted if its pose agrees with the prediction. Baseline methods reject such
-/// registrations, because a clipped gyro makes the prediction wrong (`hill` seed 8: 272 m of error).
+/// The odometry accepts a registration with few matches if its pose agrees with the prediction. Baseline methods reject
+/// registrations with few matches, because a clipped gyro makes their prediction wrong.
 SlamParams with_few_matches(SlamParams params);
 Settings<SlamParams> slam_settings(const SlamParams& defaults, std::vector<std::string> fixed = {});
 

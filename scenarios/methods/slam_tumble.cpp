@@ -66,9 +66,9 @@ TumblingOdometry::Params stated_params(const sim::Sensors& sensors, TumblingOdom
 }
 
 enum class Output {
-  live,   ///< live pose at each IMU sample, when the sample is processed
-  lag,    ///< final trajectory of each sweep, after a fixed lag
-  whole,  ///< final trajectory of each sweep, from the whole recording
+  live,   ///< live pose at each IMU sample
+  lag,    ///< final trajectory after a fixed lag
+  whole,  ///< final trajectory from the whole recording
 };
 
 using SweepProgress = TumblingOdometry::SweepProgress;
@@ -81,7 +81,6 @@ class Collector {
   void observe(const TumblingOdometry& odometry) {
     PoseState pose;
     if (output_ != Output::live || !odometry.newest(pose).ok()) return;
-    // After a sample that TumblingOdometry holds back, the newest pose is that of the previous sample.
     if (live_.empty() || pose.time_ns > live_.back().time_ns) live_.push_back(pose);
   }
   void take(TumblingOdometry& odometry) {
@@ -114,7 +113,6 @@ class Collector {
     apply_smoothed(std::move(smoothed), estimate_.sweeps[smoothed_++]);
   }
 
-  /// Sweeps before the first live pose (at rest about 0.3 s after the start) keep their trajectory.
   void replace_by_live() {
     auto next = live_.begin();
     for (SweepReport& sweep : estimate_.sweeps) {
@@ -136,8 +134,8 @@ class Collector {
   std::vector<PoseState> live_;
 };
 
-/// Each sample is passed in real-time order at the end of its averaging window, and each sweep after its last point.
-/// Sweeps that end after the last sample are used if `whole` is true, and otherwise only counted.
+/// Replays IMU samples at the end of their averaging windows, and sweeps after their last points, as in real time.
+/// Sweeps that end after the last IMU sample are used only if `whole` is true.
 Status replay(const sim::Sensors& sensors, std::span<const ImuSample> samples, bool whole, TumblingOdometry& odometry,
               Collector& collector, const SweepProgress& on_sweep, Estimate& estimate) {
   const sim::LidarRecord& lidar = sensors.lidars.front();
@@ -151,14 +149,12 @@ Status replay(const sim::Sensors& sensors, std::span<const ImuSample> samples, b
   for (const ImuSample& sample : samples) {
     const TimeNs gap_ns = last_ns ? sample.time_ns - *last_ns : 0;
     last_ns = sample.time_ns;
-    // In real time, sweeps also arrive during a gap of the IMU. Most sweeps in a gap have no IMU data.
     while (seconds(gap_ns) > bridge::kGapMaxS && (present || next < sweeps)) {
       if (!present) present = bridge::sweep(lidar, next++);
       if (present->end_ns > sample.time_ns) break;
       if (!add_sweep(*present).ok()) estimate.health["sweeps_without_imu"] += 1.0;
       present.reset();
     }
-    // The estimator rejects the first sample after a gap, until the second sample confirms its time stamp.
     if (Status status = odometry.add_imu(sample); !status.ok() && status.error_code != ErrorCode::gap) return status;
     while (present || next < sweeps) {
       if (!present) present = bridge::sweep(lidar, next++);

@@ -12,7 +12,7 @@
 
 namespace tumble::scenarios {
 
-/// The samples of the primary IMU have no gyro bias.
+/// Samples of the primary IMU after subtraction of the gyro bias.
 struct SphereAttitude {
   std::vector<ImuSample> samples;
   std::vector<Eigen::Quaterniond> q_WI;  ///< parallel to `samples`; yaw starts at 0
@@ -30,15 +30,14 @@ struct RestParams {
 };
 const Settings<RestParams>& rest_settings();
 
-/// Gyro bias and tilt come from the first `rest_s` seconds, then the gyro is integrated. Throws BadInput, with the name
-/// `method`, if the recording is not from a sphere. The cost is O(N).
+/// Gyro bias and tilt come from the first `rest_s` seconds at rest; later attitudes come from integrating the gyro.
 Status sphere_attitude(const char* method, const sim::Sensors& sensors, double rest_s, SphereAttitude& out);
 
 PoseState centre_pose(const sim::Sensors& sensors, TimeNs time_ns, const Eigen::Quaterniond& q_WI,
                       const Eigen::Vector3d& p_WG_m, const Eigen::Vector3d& v_WG_m_s);
 
-/// A moving contact point is `slide` if the centre moves faster than the sphere rolls, and `slip` if the sphere rotates
-/// faster.
+/// A moving contact point is `slide` if the centre of the sphere moves faster than the sphere rolls, and `slip` if the
+/// sphere rotates faster.
 sim::ContactLabel slip_or_slide(double radius_m, const Eigen::Quaterniond& q_WI, const Eigen::Vector3d& w_WI_I_rad_s,
                                 const Eigen::Vector3d& v_WG_m_s);
 

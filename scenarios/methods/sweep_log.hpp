@@ -13,8 +13,7 @@ using SweepReport = LidarInertialOdometry::SweepReport;
 
 void count_trouble(const Status& status, Estimate& estimate);
 
-/// A sweep without points is not an error. Returns false if the sweep has no pose; its error is then the status of the
-/// estimate.
+/// Returns false if the sweep has no pose; the error of the sweep is then the status of the estimate.
 bool append_sweep(const Status& status, TimeNs end_ns, SweepReport report, Estimate& estimate);
 
 /// Consecutive sweeps share the IMU sample at their boundary; the pose of this sample comes from the earlier sweep.
@@ -22,17 +21,14 @@ void append_poses(std::span<const PoseState> trajectory, Estimate& estimate);
 
 void leave_out_unfinished(Estimate& estimate);
 
-/// A sweep before the first IMU reading, or with too few points to start the map, has no pose. Returns false for other
-/// sweeps.
+/// A lidar sweep before the first IMU reading, or with too few points to start the map, gets no pose.
 bool leave_out_before_map(const Status& status, const SweepReport& report, Estimate& estimate);
 
 struct SweepMapper {
-  /// An error of `add` ends the run and becomes the status of the estimate.
   std::function<bool(const bridge::Sweep&)> covers;
   std::function<Status(const bridge::Sweep&, SweepReport&)> add;
 };
 
-/// The status is `too_few` if no sweep was registered. Returns false if an error ended the run early.
 bool run_over_sweeps(const sim::LidarRecord& lidar, const SweepMapper& mapper, Estimate& estimate);
 
 }  // namespace tumble::scenarios

@@ -13,8 +13,8 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr double kTurnsOtherwise = 0.5, kTurnsAsSaid = 0.15;
-/// After the correction of a delay, a larger rotation difference is not accepted; reference_check.cpp has the same
-/// limit.
+/// Largest relative rotation difference between estimate and gyro that is accepted after the correction of a delay (as
+/// in reference_check.cpp).
 constexpr double kTurnsOnceCorrected = 0.3;
 
 std::vector<TimedAttitude> attitudes_of(const Estimate& estimate) {
@@ -48,7 +48,7 @@ std::string text_of(const TurningFit& fit, const std::string& frame) {
   return out + (out.empty() ? "the poses" : " and the poses") + " belonged to the frame " + frame;
 }
 
-/// The frame of the estimate comes first, so that it is chosen if two frames have equal mountings.
+/// The frame of the estimate is the first candidate, so that it is chosen if two frames have equal mountings.
 std::vector<CandidateFrame> candidates(const Estimate& estimate, const sim::Sensors& sensors) {
   std::vector<CandidateFrame> frames;
   if (sensors.imus.empty()) return frames;

@@ -46,7 +46,8 @@ void become(const Command& command, std::string& problem) {
   std::vector<char*> words;
   for (const std::string& word : command.words) words.push_back(const_cast<char*>(word.c_str()));
   words.push_back(nullptr);
-  // The memory limit is set last, because the child process is a copy of this program and may exceed the limit already.
+  // The memory limit of a command is set last, because the child process is a copy of this program and may exceed the
+  // limit already.
   limit(RLIMIT_DATA, command.memory_limit_mib * kMib);
   execvp(words.front(), words.data());
   problem = command.words.front() + ": " + strerror(errno);
@@ -67,7 +68,6 @@ std::string ends_of(const std::filesystem::path& path, std::size_t most) {
   return text;
 }
 
-/// The start of a long program output usually contains the cause of an error.
 std::string words_of(const std::string& transcript) {
   std::string text = transcript;
   if (text.size() > 2 * kWords) text = text.substr(0, kWords) + " ... " + text.substr(text.size() - kWords);

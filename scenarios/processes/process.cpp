@@ -20,7 +20,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-// The child process is a copy of a program that may hold locks and open files, so it does only minimal work.
 [[noreturn]] void run_child(const std::function<void(int)>& work, int fd, pid_t parent, bool own_group) {
   if (own_group) setpgid(0, 0);
   prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -64,7 +63,6 @@ Process::Process(const std::function<void(int)>& work, bool own_group) : own_gro
 }
 
 Process::Process(const std::function<void(int, int)>& work, bool own_group) : own_group_(own_group) {
-  // A socket pair serves as pipe, because sending to a closed socket can avoid a signal.
   int ends[2];
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
     throw std::system_error(errno, std::generic_category(), "socketpair");

@@ -8,22 +8,21 @@
 
 namespace tumble::scenarios {
 
-/// Process is a child process that writes to a pipe. The child ends when its parent ends, leaves no core file, and
-/// never returns to the caller's code. Process works on Linux only.
+/// The child process ends when its parent ends, leaves no core file, and never returns to the caller's code.
 class Process {
  public:
   struct End {
     bool normal = false;  ///< exit status 0
     int signal = 0;       ///< signal that ended the child, or 0
     int exit_code = 0;
-    double cpu_s = 0;              ///< CPU time of the child without its children
+    double cpu_s = 0;              ///< without child processes
     double peak_mib = 0;           ///< largest resident memory
     std::string describe() const;  ///< "ended by signal 11 (Segmentation fault)"
-    /// True if the child was ended from outside: by SIGKILL (out of memory, an operator), SIGTERM, or a time quota.
+    /// True if the child process was ended from outside: by SIGKILL (out of memory, an operator), SIGTERM, or a time
+    /// quota.
     bool killed() const;
   };
 
-  /// Forks this process and runs `work(write_end)` in the child. Throws std::system_error if no process can be started.
   explicit Process(const std::function<void(int)>& work, bool own_group);
   explicit Process(const std::function<void(int, int)>& work, bool own_group);
   ~Process();
@@ -33,7 +32,7 @@ class Process {
   int read_end() const { return fd_; }
   bool write_text(const std::string& text);
   bool read_available(std::string& buffer);
-  /// Returns false if the child still runs at the deadline, a time of now_s().
+  /// Returns false if the child process still runs at the deadline, a time of now_s().
   bool ends_before(double deadline_s);
   void kill();
   End wait();
@@ -49,8 +48,8 @@ class Process {
 
 inline constexpr double kMib = 1024.0 * 1024.0;  ///< bytes in one MiB
 
-/// Limits the data memory (RLIMIT_DATA) of this process and of each future child. Allocations beyond the limit fail
-/// with std::bad_alloc, and new processes cannot be started.
+/// Limits the data memory (RLIMIT_DATA) of this process and of each future child process. Allocations beyond the memory
+/// limit fail with std::bad_alloc, and new processes cannot be started.
 void limit_memory(double mib);
 
 bool write_all(int fd, const std::string& text);

@@ -8,7 +8,7 @@
 namespace tumble::scenarios {
 
 /// SharedMemory is anonymous shared memory, which a program inherits as a file descriptor and which is freed when its
-/// last user ends. SharedMemory works on Linux only.
+/// last user ends.
 class SharedMemory {
  public:
   explicit SharedMemory(const char* name);

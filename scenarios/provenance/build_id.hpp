@@ -5,8 +5,8 @@
 
 namespace tumble::scenarios {
 
-/// The build identity contains version, compiler, build type, and a digest of the sources at build time; equal builds
-/// have equal identities on any machine.
+/// The build identity contains version, compiler, build type, and a digest of the sources at build time, and is equal
+/// on any machine.
 const std::string& build_id();
 
 }  // namespace tumble::scenarios

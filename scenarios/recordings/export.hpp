@@ -18,16 +18,14 @@ bool is_bag_format(const std::string& format);
 
 std::string format_of_ending(const std::filesystem::path& out);
 
-/// Throws BadInput if the export would replace a file whose extension belongs to another format. Output folders are not
-/// checked.
+/// Throws BadInput if the export would replace a file whose extension belongs to another format.
 void require_own_kind(const std::string& format, const std::filesystem::path& out);
 
 struct ExportChoices {
   bool truth = false;
   SweepLayout sweeps = own_sweep_layout();
-  /// Writes estimates to the bag (scoring/estimate_in_bag.hpp), if set; points and truth in its arguments are on disk.
   std::function<void(const sim::Sensors&, BagWriting&)> more = {};
-  std::string frame = "body";  ///< for `tum` and `kitti`: frame of the true poses, see true_mounting
+  std::string frame = "body";  ///< for `tum` and `kitti`
 };
 
 /// Converts a recording to another format; existing files are replaced atomically. Time 0 of the recording becomes the
@@ -36,18 +34,16 @@ struct ExportChoices {
 /// - `mcap`, `rosbag1`: one file with the sensor data
 /// - `csv`, `pcd`, `ply`, `rosbag2`, `rosbag2_mcap`: a folder, which is created if missing
 ///
-/// Returns notes on renamed sensors (export_names.hpp) and on sensors for which a bag has no message type. Throws
-/// BadInput for an unknown format, missing data, or an output path that cannot be written. During bag export, memory
-/// contains the IMU samples, one sweep, 32 bytes per message, and the poses of estimates.
+/// During bag export, memory contains the IMU samples, one sweep, 32 bytes per message, and the poses of estimates.
 std::vector<std::string> export_recording(const std::filesystem::path& recording, const std::string& format,
                                           const std::filesystem::path& out, const ExportChoices& choices = {});
 
 /// Returns the true mounting T_BA of a frame A on the body: `body`, `centre` (of the sphere's shell), or a sensor by
-/// its exported or original name. Throws BadInput for another name.
+/// its exported or original name.
 Eigen::Isometry3d true_mounting(const sim::Truth& truth, const std::string& frame);
 
 /// Writes the true poses T_WA to a TUM file: one line "t x y z qx qy qz qw" per physics sample, with t in seconds,
-/// rounded to nanoseconds. `origin_ns` is added to all times. Times with an unknown pose are omitted.
+/// rounded to nanoseconds. Times with an unknown pose are omitted.
 void export_tum(const sim::Truth& truth, const std::filesystem::path& file, std::int64_t origin_ns = 0,
                 const std::string& frame = "body");
 void export_tum(const StoredTruth& truth, const std::filesystem::path& file, std::int64_t origin_ns = 0,
@@ -58,8 +54,8 @@ void export_tum(const StoredTruth& truth, const std::filesystem::path& file, std
 void export_kitti(const sim::Truth& truth, const std::filesystem::path& file, const std::string& frame = "body");
 
 /// The columns of an IMU are those of sensor_msgs/Imu: rate [rad/s] and specific force [m/s^2], each with its
-/// covariance; the attitude is unknown. Other sensors have the columns stamp s, stamp ns, frame, and one column per
-/// quantity. If `truth` is not null, truth.csv contains time, T_WB, v_WB_W, w_WB_B, f_B and contact label.
+/// covariance; the attitude is unknown. If `truth` is not null, truth.csv contains time, T_WB, v_WB_W, w_WB_B, f_B and
+/// contact label.
 void export_csv(const sim::Sensors& sensors, const sim::Truth* truth, const std::filesystem::path& folder,
                 std::int64_t origin_ns = 0);
 

@@ -22,7 +22,7 @@ const std::set<std::string>& frames_of_no_sensor() {
 
 struct Claim {
   std::string sensor, name;
-  bool own;  ///< true: the recording's own name; false: a number replaces an invalid name
+  bool own;  ///< false: generated name
   std::string given = {};
 };
 

@@ -16,11 +16,11 @@ struct GivenNames {
 
 struct ExportNames {
   GivenNames imus, lidars, series;
-  std::set<std::string> taken;  ///< names of the sensors, and topics and frames of the export itself
+  std::set<std::string> taken;  ///< names of sensors, topics and frames
 };
 
-/// Returns unique names of letters, digits, - and _ for the sensors. A name gets a number if an earlier sensor has the
-/// same name, or if the name is a frame or topic of a bag (truth, body, world, tf, map, odom, base_link).
+/// A sensor name gets a number if an earlier sensor has the same name, or if the name is a frame or topic of a bag
+/// (truth, body, world, tf, map, odom, base_link).
 ExportNames export_names(const sim::Sensors& sensors);
 ExportNames export_names(const sim::Truth& truth);
 

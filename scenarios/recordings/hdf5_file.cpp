@@ -23,7 +23,7 @@ namespace {
 constexpr std::size_t kSuperblockBytes = 48;
 
 Handle open_file(const std::filesystem::path& path) {
-  require_recording_file(path);  // HDF5 would report a missing permission as damage
+  require_recording_file(path);  // HDF5 reports missing permission as damage
   require_survivable(path);
   Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   if (file.valid()) return file;
@@ -33,8 +33,8 @@ Handle open_file(const std::filesystem::path& path) {
   throw BadInput(fmt::format("{}: the file is truncated, damaged or not an HDF5 file{}", path.string(), reason));
 }
 
-/// This callback keeps the memory of the HDF5 driver when the file closes. Before closing, H5Fget_file_image of HDF5
-/// 1.10 returns an outdated superblock checksum.
+/// This callback keeps the memory of the HDF5 driver when the file closes, because H5Fget_file_image of HDF5 1.10
+/// returns an outdated superblock checksum.
 H5FD_file_image_callbacks_t keep_image_in(void** user) {
   H5FD_file_image_callbacks_t calls{};
   calls.image_malloc = [](std::size_t size, H5FD_file_image_op_t, void*) { return std::malloc(size); };
@@ -152,7 +152,7 @@ void Group::fail(const std::string& name, const std::string& what) const {
 Group Group::open(const std::string& name) const {
   if (!has(name)) fail(name, "is missing");
   Handle group(H5Gopen2(group_.get(), name.c_str(), H5P_DEFAULT), H5Gclose);
-  if (!group.valid()) fail(name, fmt::format("the group cannot be read{}", last_error()));
+  if (!group.valid()) fail(name, fmt::format("the HDF5 group with this path cannot be read{}", last_error()));
   return Group(std::move(group), file_, place_ + "/" + name);
 }
 

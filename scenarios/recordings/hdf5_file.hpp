@@ -38,7 +38,7 @@ class MemoryFile {
  private:
   Silence silence_;
   std::string name_;
-  void* image_ = nullptr;  ///< set by the HDF5 driver when the file closes
+  void* image_ = nullptr;  ///< set when the file closes
   Handle file_;
   Group root_;
 };
@@ -46,7 +46,6 @@ class MemoryFile {
 /// DiskFile reserves the maximum disk space first, because the HDF5 library cannot recover from a write to a full disk.
 class DiskFile {
  public:
-  /// Throws BadInput if disk space is missing.
   DiskFile(const std::string& name, const std::filesystem::path& path, std::uint64_t most_bytes);
   ~DiskFile();
   DiskFile(const DiskFile&) = delete;

@@ -12,7 +12,7 @@
 #include "scenarios/recordings/hdf5_layout.hpp"
 #include "scenarios/recordings/scratch_file.hpp"
 
-/// Every error of Group is a BadInput with the message "FILE: PLACE: what". The HDF5 library prints nothing.
+/// Every error of Group is a BadInput with file and place; the HDF5 library prints nothing.
 namespace tumble::scenarios::hdf5 {
 
 class Group {
@@ -37,7 +37,6 @@ class Group {
   std::int64_t int_attribute(const std::string& name) const;
   std::uint64_t uint_attribute(const std::string& name) const;
 
-  /// Writes a one-dimensional dataset if a row has one column. `compressed` applies the filters shuffle and deflate.
   template <class Row>
   void write(const std::string& name, const std::vector<Row>& rows, const std::string& unit, const std::string& columns,
              bool compressed) const {
@@ -54,14 +53,12 @@ class Group {
     });
     describe_rows(std::move(dataset), name, unit, columns);
   }
-  /// Throws BadInput if the dataset has another scalar type or number of columns.
   template <class Row>
   void read(const std::string& name, std::vector<Row>& rows) const {
     const Handle dataset = open_dataset(name);
     rows.resize(count_rows(dataset, name, RowLayout<Row>::columns, RowLayout<Row>::scalar));
     read_rows(dataset, name, rows.data(), rows.size(), RowLayout<Row>::scalar);
   }
-  /// The column `rows` must be empty and have a folder for its scratch file.
   template <class Row>
   void read(const std::string& name, ColumnFile<Row>& rows) const {
     const Handle dataset = open_dataset(name);

@@ -29,7 +29,6 @@ class Handle {
   Close close_ = nullptr;
 };
 
-/// Silence suppresses the messages of the HDF5 library in this thread during its lifetime.
 class Silence {
  public:
   Silence();

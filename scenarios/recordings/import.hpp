@@ -14,14 +14,13 @@
 namespace tumble::scenarios {
 
 struct Imported {
-  RecordingInfo info;  ///< no scenario; `attribution` names the source; `origin_ns` is the source's stamp of time 0
+  RecordingInfo info;  ///< `origin_ns`: source stamp of time 0
   sim::Sensors sensors;
-  std::vector<PointStore> points;       ///< points of each lidar on disk (SweepReading::scratch), or empty
-  std::optional<sim::Truth> reference;  ///< poses measured by another instrument: FORMAT.md, "References"
+  std::vector<PointStore> points;       ///< points on disk, or empty
+  std::optional<sim::Truth> reference;  ///< see FORMAT.md, "References"
   std::vector<std::string> notes;
 };
 
-/// One g is 9.80665 m/s^2.
 enum class AccelUnit { m_s2, g };
 enum class GyroUnit { rad_s, deg_s };
 
@@ -30,7 +29,7 @@ enum class GyroUnit { rad_s, deg_s };
 /// The header line identifies the columns by one of these naming schemes:
 /// - names that export_csv writes, or their short forms (sec nsec wx.. fx.. or ax..),
 /// - ROS names as written by `rostopic echo -p` and bagpy: ".../header/stamp" [s], ".../angular_velocity/x",
-///   ".../linear_acceleration/x", and y and z. The stamps are those of the message headers.
+///   ".../linear_acceleration/x", and y and z,
 /// - names of loggers and data sets (tables/logger_columns.hpp): "time,gyro_x,...,accel_x,...", "#timestamp
 ///   [ns],w_RS_S_x [rad s^-1],..."
 ///
@@ -39,14 +38,15 @@ enum class GyroUnit { rad_s, deg_s };
 ///
 /// @param columns   Names or positions (from 0) of the columns: "time=t,gyro=gx,gy,gz,accel=ax,ay,az"; may be empty.
 /// @param device    Properties that the file lacks: name, device, ranges, noise, T_BI.
-/// @return          Times count from the first stamp; the period is the median step. Stamps rounded to milliseconds
-///                  are moved to the true period of the IMU, with a note (rounded_stamps.hpp).
+/// @return          Times count from the first stamp; the period is the median step. Stamps rounded to milliseconds are
+/// moved to the true period of the IMU, with a note (rounded_stamps.hpp).
 ///
 /// A line is skipped, with a note, if it has an invalid or non-finite number, a wrong number of columns, readings that
 /// are all 0, or a stamp that does not increase (left_out.hpp).
 ///
 /// Throws BadInput with file and line for unknown, repeated or missing columns, an unexpected unit, a truncated last
-/// line, more than 5 % of faulty lines, or fewer than two samples. Throws BadInput if one of these limits is exceeded:
+/// line, more than 5 % of faulty lines, or fewer than two samples. Throws BadInput if the readings violate one of these
+/// limits:
 ///
 /// - The median specific force is 3 to 30 m/s^2, and the period is 20 us to 2 s.
 /// - At most 1 % of the rates exceed twice the device's range (100 rad/s if unknown).
@@ -56,16 +56,16 @@ Imported import_imu_csv(const std::filesystem::path& path, const sim::ImuRecord&
                         const std::string& columns = "");
 
 /// Each IMU has the name of its file; the first IMU by name is the primary IMU. Tables without IMU readings are
-/// skipped. Throws BadInput like import_imu_csv, and if no table has IMU readings.
+/// skipped.
 Imported import_csv_folder(const std::filesystem::path& folder, const sim::ImuRecord& device, AccelUnit unit,
                            GyroUnit gyro_unit);
 
 struct SweepSource {
   std::filesystem::path folder;
   std::string format;           ///< "ply", "pcd", "vtk" or "kitti" (.bin)
-  std::string stem;             ///< file name before the number: "lidar"; empty if equal in all files
-  std::filesystem::path times;  ///< file with a stamp per sweep; empty: STEM_times.txt or times.txt, if present
-  std::int64_t steady_ns = 0;   ///< sweep period if no times exist; 0: missing times are an error
+  std::string stem;             ///< file name before the number
+  std::filesystem::path times;  ///< empty: STEM_times.txt or times.txt
+  std::int64_t steady_ns = 0;   ///< sweep period if no times exist
   std::string bin_columns;      ///< columns of .bin files (read_cloud)
   SweepReading reading;
 };
@@ -75,29 +75,25 @@ struct SweepSource {
 /// `steady_ns`. Time 0 of the recording is the start of the first sweep, or the zero of the clock if it is less than a
 /// second earlier.
 ///
-/// Throws BadInput if more than 5 % of the files are faulty; fewer faulty files are skipped with a note. Throws
-/// BadInput for different numbers of stamps and files, files of several lidars, or sweeps without times.
+/// Throws BadInput if more than 5 % of the files are faulty; fewer faulty files are skipped with a note.
 Imported import_sweeps(const SweepSource& source);
 
 struct ReferenceSource {
   std::filesystem::path file;
   std::string format;           ///< "tum", "kitti" or "odometry"
-  bool of_body = false;         ///< true: poses of the body; false: poses of the first lidar, converted with its T_BL
-  bool sorted = false;          ///< true: lines may be unsorted (read_tum_poses)
-  std::filesystem::path times;  ///< times of a KITTI file without sweeps
-  std::int64_t steady_ns = 0;   ///< pose period of a KITTI file without sweeps
+  bool of_body = false;         ///< false: poses of the first lidar
+  bool sorted = false;          ///< lines may be unsorted
+  std::filesystem::path times;  ///< for KITTI files without sweeps
+  std::int64_t steady_ns = 0;   ///< for KITTI files without sweeps
 };
 
-/// Time 0 follows the rule of import_sweeps.
 Imported import_trajectory(const ReferenceSource& source);
 
 /// Uses the poses of a file as the truth of `recording`, up to the end of the sensor data. The stamps of the poses are
-/// in the clock of the recording's source (`origin_ns`). A KITTI file must have one pose per sweep. Throws BadInput for
-/// an invalid file, lidar poses without a lidar, or times that do not overlap.
+/// in the clock of the recording's source (`origin_ns`). A KITTI file must have one pose per sweep.
 void attach_reference(Imported& recording, const ReferenceSource& source);
 
-/// Adds IMUs that use the same clock as `recording`. Time 0 of the result is the earlier time 0 of both. Throws
-/// BadInput if the times do not overlap.
+/// Adds IMUs that use the same clock as `recording`; time 0 of the result is the earlier time 0 of both.
 void attach_imus(Imported& recording, Imported imu);
 
 }  // namespace tumble::scenarios

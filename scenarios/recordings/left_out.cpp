@@ -10,7 +10,6 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr std::size_t kNoIndex = ~std::size_t{0};
-/// Fewer than ten time stamps do not determine the duration of a recording.
 constexpr std::size_t kLeastForEnds = 10;
 /// A gap of more than a day between a few stamps and the others indicates that the clock was set.
 constexpr std::uint64_t kClockSet_ns = 86'400'000'000'000;

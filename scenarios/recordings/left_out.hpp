@@ -13,9 +13,9 @@
 namespace tumble::scenarios {
 
 /// Occasional faults of drivers, buses and files affect fewer than 5 % of a sensor's readings. A wrong clock, unit or
-/// layout affects more, so the reader rejects the recording.
+/// layout affects more than 5 % of the readings, so the recording is rejected.
 inline constexpr double kLeftOutShareMax = 0.05;
-/// A sensor with at least five items may always lose one.
+/// A sensor with at least five readings may always have one faulty reading.
 inline constexpr std::size_t kLeftOutOneOf = 5;
 
 bool may_leave_out(std::size_t count, std::size_t all);
@@ -24,10 +24,10 @@ class LeftOut {
  public:
   explicit LeftOut(std::string items) : items_(std::move(items)) {}
 
-  /// Counts a faulty item. `cause` completes the note "the import leaves out 1 of 150 readings: 1 with ..."; `error`
-  /// contains the location of the item.
+  /// `cause` completes the note "the import leaves out 1 of 150 readings: 1 with ..."; `error` contains the location of
+  /// the faulty reading.
   void add(const std::string& cause, const std::string& error);
-  /// Counts an item that was skipped for a cause that does not limit the number of items, such as empty messages in
+  /// Counts a skipped reading whose cause does not limit the number of skipped readings, such as empty messages in
   /// place of lost readings.
   void add_unlimited(const std::string& cause, const std::string& error);
   template <class Read>
@@ -55,10 +55,10 @@ class LeftOut {
   std::size_t faulty_ = 0, unlimited_ = 0;
 };
 
-/// Returns which time stamps to keep, so that the kept stamps increase. The fewest possible stamps are dropped (longest
+/// Selects time stamps such that the kept stamps increase and the fewest possible stamps are dropped (longest
 /// increasing subsequence). With at least ten stamps, a first or last stamp is also dropped if its distance from the
-/// others exceeds their duration. Several stamps at one end are dropped only if their gap also exceeds a day. The cost
-/// is O(N log N), or O(N) if all stamps increase.
+/// others exceeds their duration. Several stamps at one end are dropped only if their gap to the other stamps also
+/// exceeds a day. The cost is O(N log N), or O(N) if all stamps increase.
 std::vector<bool> stamps_in_order(std::span<const std::int64_t> stamps_ns);
 
 /// A list of another length than `kept` is unchanged, because the sensor lacks these data.

@@ -23,7 +23,6 @@ bool all_digits(std::string_view text) {
   return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
 }
 
-/// Splits "1.5e3" into the digits "15" and the power of ten of the last digit, 2.
 bool split_decimal(std::string_view text, std::string& digits, int& power) {
   constexpr int kPowerMax = 400;
   power = 0;

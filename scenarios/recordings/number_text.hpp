@@ -15,14 +15,13 @@ namespace tumble::scenarios {
 bool parse_number(std::string_view text, double& value);
 
 /// Converts a decimal time to nanoseconds exactly, by moving the decimal point by `decimals`: 9 for s, 6 for ms, 3 for
-/// us, 0 for ns. Returns nothing for an invalid text, or a time after the year 2255.
+/// us, 0 for ns.
 std::optional<std::int64_t> parse_time_ns(std::string_view text, int decimals);
 
 /// Parses a stamp since 1970: decimal seconds, an integer of 13, 16 or 19 digits (ms, us, ns), or a date in UTC
 /// ("2011-09-26 13:02:25.964389445").
 std::optional<std::int64_t> parse_stamp_ns(std::string_view text);
 
-/// Appends the shortest text that parses to the same number.
 template <class Number>
 void append_number(std::string& text, Number value) {
   std::array<char, 32> digits;
@@ -36,7 +35,6 @@ inline std::string rounded(double value) {
   return text.data();
 }
 
-/// Appends the time exactly, as seconds with nine decimals.
 inline void append_seconds(std::string& text, std::int64_t time_ns) {
   const std::uint64_t size =
       time_ns < 0 ? 0 - static_cast<std::uint64_t>(time_ns) : static_cast<std::uint64_t>(time_ns);

@@ -10,15 +10,14 @@
 
 namespace tumble::scenarios {
 
-/// PointStore contains the points of one lidar on disk, one file per column of sim::LidarRecord. The record in memory
-/// then has no points.
+/// PointStore contains the points of one lidar on disk, one file per column of sim::LidarRecord, whose record in memory
+/// has no points.
 struct PointStore {
   PointStore() = default;
   explicit PointStore(const std::filesystem::path& folder)
       : position_L_m(folder), range_m(folder), intensity(folder), offset_ns(folder), ring(folder) {}
 
   std::size_t size() const { return position_L_m.size(); }
-  /// Moves the points of `record` from memory to the end of the files. Throws BadInput like ScratchFile.
   void take(sim::LidarRecord& record);
 
   ColumnFile<Eigen::Vector3f> position_L_m;
@@ -27,8 +26,8 @@ struct PointStore {
   ColumnFile<std::uint16_t> ring;
 };
 
-/// Returns a lidar record with only the sweep `sweep`. The points come from disk (`aside`), or from `lidar` if `aside`
-/// is null.
+/// Returns a lidar record with only the sweep `sweep`, whose points come from disk (`aside`), or from `lidar` if
+/// `aside` is null.
 sim::LidarRecord sweep_alone(const sim::LidarRecord& lidar, const PointStore* aside, std::size_t sweep);
 
 }  // namespace tumble::scenarios

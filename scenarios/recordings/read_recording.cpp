@@ -86,7 +86,6 @@ class RecordingReader {
     if (group_.has(name)) list(name, records, fields);
   }
 
-  /// Recordings written by other programs may lack the digest.
   std::string digest_or_empty() const { return group_.has_attribute("digest") ? group_.text_attribute("digest") : ""; }
 
  private:

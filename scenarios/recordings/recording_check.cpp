@@ -17,7 +17,8 @@ namespace {
 
 using Lengths = std::initializer_list<std::pair<const char*, std::size_t>>;
 
-/// This tolerance accepts rotations with few digits, but rejects a wrong order of quaternion components.
+/// This tolerance of the quaternion norm accepts rotations with few digits, but rejects a wrong order of quaternion
+/// components.
 constexpr double kUnitTolerance = 1e-6;
 constexpr std::int64_t kTimeMax_ns = 100'000'000'000'000'000;
 
@@ -217,7 +218,7 @@ std::string series_truth_problem(const sim::SeriesTruth& series) {
 }
 
 std::string series_mismatch(const sim::SeriesRecord& series, const sim::SeriesTruth& truth) {
-  if (truth.quantities.empty()) return "";  // the truth of a reference instrument has no quantities
+  if (truth.quantities.empty()) return "";  // reference instruments measure no quantities
   if (truth.quantities.size() != series.quantities.size())
     return "truth and sensor differ in the number of quantities; the numbers must be equal";
   std::string problem;
@@ -232,7 +233,6 @@ template <class Imu>
 std::string imu_truth_problem(const Imu& imu) {
   return first_of(
       {pose_problem("T_BI", imu.T_BI),
-       // A reference may contain only poses, or poses and rates.
        optional_length_problem("specific_force_I_m_s2", imu.specific_force_m_s2.size(), imu.rate_rad_s.size()),
        length_problem({{"specific_force_I_m_s2", imu.specific_force_m_s2.size()},
                        {"gyro_unclipped_I_rad_s", imu.gyro_unclipped_rad_s.size()},

@@ -12,13 +12,12 @@
 namespace tumble::scenarios {
 
 /// Describes the first inconsistency in lengths, periods, calibrations (rotations), sweep order, labels or surface ids;
-/// empty for a consistent recording. Readings are not checked, because the estimator reports NaN, gaps and wrong time
-/// order. `points` has one PointStore per lidar if the points are on disk.
+/// empty for a consistent recording. The check accepts any readings, because the estimator reports NaN, gaps and wrong
+/// time order.
 std::string find_problem(const sim::Sensors& sensors, const std::vector<PointStore>& points = {});
 std::string find_problem(const sim::Truth& truth);
 std::string find_problem(const StoredTruth& truth);
 
-/// Returns true if the file contains a digest of its sensor data, by which the reader detects damage.
 bool states_digest(const std::filesystem::path& path);
 
 std::string find_mismatch(const sim::Sensors& sensors, const sim::Truth& truth);

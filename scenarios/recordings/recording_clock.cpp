@@ -13,7 +13,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// A clock whose zero is less than a second before the first stamp started with the recording.
 constexpr std::int64_t kOwnZero_ns = 1000000000;
 
 void shift(sim::Sensors& sensors, std::int64_t by_ns) {

@@ -12,15 +12,12 @@
 
 namespace tumble::scenarios {
 
-/// Returns the first and last time of the readings, including the duration of the last sweep. Throws BadInput without
-/// readings.
 std::pair<std::int64_t, std::int64_t> span_of(const sim::Sensors& sensors);
 
 using StampSpan = std::pair<std::int64_t, std::int64_t>;
 
 /// Returns the first of `shifts_ns` that makes the two time spans overlap; empty if none does. Exported files of a
-/// simulated recording count from kExportOrigin_ns, while its other files may count from zero. No recording lasts
-/// longer than a day, so this difference of 31 years is unambiguous.
+/// simulated recording count from kExportOrigin_ns (31 years), while its other files may count from zero.
 std::optional<std::int64_t> clock_shift_ns(const StampSpan& moved, const StampSpan& fixed,
                                            std::initializer_list<std::int64_t> shifts_ns);
 
@@ -34,14 +31,10 @@ void start_clock(Imported& recording);
 
 void add_lidar(Imported& recording, BuiltSweeps built);
 
-/// Uses the poses of a frame A, mounted at T_BA on the body, as the truth of a recording. The stamps of the poses are
-/// in the clock of the recording's source. Throws BadInput, with a message that starts with `where`, if the poses are
-/// invalid.
+/// Uses the poses of a frame A, mounted at T_BA on the body, as the truth of a recording.
 void attach_poses(Imported& recording, std::vector<ReferencePose> poses, const Eigen::Isometry3d& T_BA,
                   const std::string& where);
 
-/// Returns the mounting T_BL of the first lidar. Throws BadInput, with a message that starts with `where`, if there is
-/// no lidar.
 const Eigen::Isometry3d& lidar_of_poses(const sim::Sensors& sensors, const std::string& where);
 
 }  // namespace tumble::scenarios

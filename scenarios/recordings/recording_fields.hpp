@@ -9,18 +9,16 @@
 #include "scenarios/recordings/point_store.hpp"
 #include "sim/recording.hpp"
 
-/// Writer, reader and digest visit the same list of fields, so none of them can omit a field. Names, units and columns
-/// are those of FORMAT.md; truth_fields.hpp lists the truth.
+/// Writer, reader and digest visit the same list of fields, so none of them can omit a field.
 ///
 /// A visitor (archive) has the members value(name, text | double | int64), pose(name, isometry), point(name, vector,
 /// unit), rows(name, vector, unit, columns, storage), texts(name, strings), list(name, records, fields) and group(name,
-/// record, fields). The members optional_rows, optional_point, optional_list and point_times visit fields that later
-/// versions of the format added. Later fields are neither stored nor hashed while they are empty, zero or "measured",
-/// so older files keep their digests.
+/// record, fields). A field that a later version added is neither stored nor hashed while it is empty, zero or
+/// "measured", so older files keep their digests.
 namespace tumble::scenarios {
 
-/// Rows are compressed by deflate if measurements showed a smaller file. The noise-like floats of a lidar are not
-/// compressed (FORMAT.md).
+/// Rows are compressed by deflate only if measurements showed a smaller file; lidar points are not compressed
+/// (FORMAT.md).
 enum class Storage { plain, deflated };
 
 struct StoredLidar {

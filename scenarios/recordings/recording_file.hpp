@@ -19,17 +19,17 @@ struct RecordingInfo {
   int format_version = kRecordingVersion;
   std::string scenario;  ///< empty for a real recording
   std::uint64_t seed = 0;
-  std::string situation_yaml;  ///< complete simulation setup in YAML; empty for a real recording
+  std::string situation_yaml;  ///< simulation setup in YAML
   std::string tumble_version;
   std::string engine_version;  ///< version of MuJoCo
-  std::string attribution;     ///< author and licence of a real recording
-  std::int64_t origin_ns = 0;  ///< stamp of time 0 in the clock of a real recording's source; 0: unknown
-  std::string digest;          ///< digest of all sensor and truth data, 32 hexadecimal digits
+  std::string attribution;     ///< author and licence
+  std::int64_t origin_ns = 0;  ///< source stamp of time 0; 0: unknown
+  std::string digest;          ///< of all sensor and truth data
   bool has_truth = false;
 };
 
-/// Exports of a recording without `origin_ns`, such as a simulated one, start 1 000 000 000 s after 1970, because ROS
-/// treats a stamp of 0 as missing.
+/// Exported files of a recording without `origin_ns` start 1 000 000 000 s after 1970, because ROS treats a stamp of 0
+/// as missing.
 inline constexpr std::int64_t kExportOrigin_ns = 1'000'000'000'000'000'000;
 
 /// Origins before 1970 are replaced by kExportOrigin_ns, because bags cannot store earlier stamps.
@@ -43,27 +43,24 @@ std::string digest(const sim::Sensors& sensors, const std::vector<PointStore>& p
 std::string digest(const sim::Truth& truth);
 std::string digest(const StoredTruth& truth);
 
-/// Writes a recording as HDF5 (scenarios/recordings/FORMAT.md) to a temporary file, which is then renamed. `truth` may
-/// be null. The file is created in memory, which doubles the memory use. Throws BadInput if the folder is not writable
-/// or the disk is full; no partial file remains. Throws std::invalid_argument for inconsistent data (find_problem in
-/// recording_check.hpp).
+/// Writes a recording as HDF5 (scenarios/recordings/FORMAT.md) to a temporary file, which is then renamed. The HDF5
+/// file is created in memory, which doubles the memory use. Throws BadInput if the folder is not writable or the disk
+/// is full; no partial file remains.
 void write_recording(const std::filesystem::path& path, const RecordingInfo& info, const sim::Sensors& sensors,
                      const sim::Truth* truth);
 
-/// Writes a recording whose points are on disk; the file is bit-identical to that for points in memory. The writer
-/// reserves the maximum file size first. Memory contains the sensors without points, the truth, and some MiB.
+/// Writes a recording whose points are on disk; the file is bit-identical to that for points in memory.
 void write_recording(const std::filesystem::path& path, const RecordingInfo& info, const sim::Sensors& sensors,
                      const std::vector<PointStore>& points, const sim::Truth* truth);
 
-/// All readers open only the groups that they need. They throw BadInput, with path and reason, if the file is missing,
-/// truncated or not HDF5, a dataset is missing or has a wrong shape, or the format version or digest does not match.
+/// The readers throw BadInput, with path and reason, if the file is damaged or not HDF5, a dataset has a wrong shape,
+/// or the format version or digest does not match.
 RecordingInfo read_info(const std::filesystem::path& path);
 sim::Sensors read_sensors(const std::filesystem::path& path);
-/// Stores the points on disk in the folder `scratch`, one PointStore per lidar.
 sim::Sensors read_sensors(const std::filesystem::path& path, const std::filesystem::path& scratch,
                           std::vector<PointStore>& points);
 sim::Truth read_truth(const std::filesystem::path& path);
-/// Stores the rows of the truth on disk in the folder `scratch`; memory contains one MiB of the truth.
+/// Stores the rows of the truth on disk in the folder `scratch`, so memory contains one MiB of the truth.
 StoredTruth read_truth(const std::filesystem::path& path, const std::filesystem::path& scratch);
 
 }  // namespace tumble::scenarios

@@ -21,8 +21,7 @@ class SizeBound {
   void point(const char*, const Eigen::Vector3d&, const char*) { bytes += kHead_bytes; }
   template <template <class...> class Rows, class Row, class... More>
   void rows(const char*, const Rows<Row, More...>& rows, const char*, const char*, Storage) {
-    // HDF5 stores a chunk without compression if deflate does not shrink it, and pads the last chunk. The chunk index
-    // needs less than 0.1 % of the data.
+    // HDF5 stores a chunk without compression if deflate does not shrink the chunk, and pads the last chunk.
     const std::uint64_t plain = std::uint64_t{rows.size()} * sizeof(Row);
     bytes += plain + plain / 1000 + hdf5::kChunkBytes + kHead_bytes;
   }

@@ -8,7 +8,6 @@
 
 namespace tumble::scenarios {
 
-/// Returns an upper bound of the file size of a recording [bytes]: uncompressed numbers, full chunks, large headers.
 std::uint64_t size_bound(const RecordingInfo& info, const sim::Sensors& sensors, const std::vector<PointStore>& points,
                          const sim::Truth* truth);
 

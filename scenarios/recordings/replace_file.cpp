@@ -27,7 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kLinksMax = 40;  // limit of the operating system for symbolic links
+constexpr int kLinksMax = 40;  // as in the operating system
 
 [[noreturn]] void fail(const fs::path& path, const std::string& reason) {
   throw BadInput(path.string() + ": cannot be written: " + reason);
@@ -78,7 +78,6 @@ void require_replaceable(const fs::path& given, const fs::path& place) {
   if (access(place.c_str(), W_OK) != 0) fail(given, errno);
 }
 
-/// Inputs must not change, so an output in an input folder throws BadInput.
 void require_outside(const fs::path& output, std::span<const fs::path> inputs) {
   std::error_code error;
   const fs::path place = fs::canonical(output, error);
@@ -95,12 +94,12 @@ void require_outside(const fs::path& output, std::span<const fs::path> inputs) {
 }
 
 std::string process_mark(const std::string& pid) {
-  std::array<char, 17> host{};  // longer names are truncated
+  std::array<char, 17> host{};
   if (gethostname(host.data(), host.size() - 1) != 0) host[0] = '\0';
   return ".tumble-" + std::string(host.data()) + "-" + pid + ".";
 }
 
-/// Removes temporary files that killed processes (SIGKILL) of this computer left behind, once per folder.
+/// Removes, once per folder, temporary files that killed processes (SIGKILL) of this computer left behind.
 void remove_abandoned(const fs::path& folder) {
   static std::mutex mutex;
   static std::set<fs::path> cleaned;

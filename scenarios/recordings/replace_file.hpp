@@ -11,10 +11,8 @@
 
 namespace tumble::scenarios {
 
-/// OutputFile writes to a temporary file next to its final path. A temporary file that is not moved to the final path
-/// is removed, even if a signal ends the program; after SIGKILL, the next process that writes to the folder removes it.
-/// OutputFile follows symbolic links and keeps mode and owner of an existing target. Throws BadInput with the system's
-/// reason (missing folder, no permission, disk full, not a regular file).
+/// A temporary file that is not moved to its final path is removed, even if a signal ends the program. OutputFile
+/// follows symbolic links and keeps mode and owner of an existing target.
 class OutputFile {
  public:
   explicit OutputFile(const std::filesystem::path& path);
@@ -33,9 +31,8 @@ class OutputFile {
   bool moved_ = false;
 };
 
-/// OutputFolder is a missing or empty folder for all files of one output. A non-empty folder throws BadInput, because
-/// users could mistake old files for new ones. The content of an incomplete output is removed, even if a signal ends
-/// the program.
+/// A non-empty output folder throws BadInput, because users could mistake old files for new ones. The content of an
+/// incomplete output folder is removed, even if a signal ends the program.
 class OutputFolder {
  public:
   explicit OutputFolder(const std::filesystem::path& folder);

@@ -16,8 +16,6 @@ constexpr std::size_t kLeast = 100;  // smallest number of stamps that is tested
 constexpr double kReach_s = 0.5;
 constexpr std::int64_t kStampGap_ns = kLongestStep_ns + 2 * kRaster_ns;  // longer than any regular step
 
-/// StampLine contains prefix sums over a series of stamps: n, i, v, i i, i v, where v is the deviation of stamp i from
-/// a constant period.
 class StampLine {
  public:
   explicit StampLine(std::span<const std::int64_t> piece) : piece_(piece) {

@@ -7,13 +7,13 @@
 
 namespace tumble::scenarios {
 
-/// Returns true if all stamps are whole milliseconds after the first, with steps of n or n + 1 ms, n up to 4. Each of
-/// the two steps must occur at least once in fifty steps; longer steps are gaps. Periods within 0.02 ms of a whole
-/// millisecond are not detected. The cost is O(N).
+/// Returns true if all stamps are whole milliseconds after the first stamp, with steps of n or n + 1 ms, n up to 4.
+/// Each of the two step lengths must occur at least once in fifty steps; longer steps are gaps. Sample periods within
+/// 0.02 ms of a whole millisecond are not detected.
 bool are_rounded(std::span<const std::int64_t> stamps_ns);
 
-/// Returns increasing time stamps at the true period of the IMU. Each stamp moves by at most a millisecond, to a line
-/// that is fitted to the half second on either side, up to the next gap. The cost is O(N).
+/// Each stamp moves by at most a millisecond, to a line that is fitted to the stamps within half a second, up to the
+/// next gap.
 std::vector<std::int64_t> evened(std::span<const std::int64_t> stamps_ns);
 
 std::int64_t mean_step_ns(std::span<const std::int64_t> stamps_ns);

@@ -45,7 +45,7 @@ void ScratchFile::write(std::uint64_t at, std::span<const std::byte> bytes) {
   while (!bytes.empty()) {
     const ssize_t written = pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(at));
     if (written < 0 && errno == EINTR) continue;
-    if (written < 0) fail(folder_, "cannot write points to a temporary file in this folder", errno);
+    if (written < 0) fail(folder_, "cannot write temporary data to a file in this folder", errno);
     bytes = bytes.subspan(static_cast<std::size_t>(written));
     at += static_cast<std::uint64_t>(written);
     bytes_ = std::max(bytes_, at);

@@ -12,11 +12,9 @@
 
 namespace tumble::scenarios {
 
-/// Returns the nearest existing parent folder of an output path, so that temporary data are on the disk of the output.
 std::filesystem::path scratch_folder_of(const std::filesystem::path& output);
 
-/// ScratchFile is an unnamed temporary file that disappears with the object or the process. Throws BadInput with the
-/// folder and the system's reason (missing folder, no permission, disk full).
+/// ScratchFile is an unnamed temporary file that disappears with the object or the process.
 class ScratchFile {
  public:
   explicit ScratchFile(std::filesystem::path folder);
@@ -41,7 +39,6 @@ class ScratchFile {
   std::uint64_t bytes_ = 0;
 };
 
-/// ColumnFile stores a column of a recording on disk. A column without a folder must stay empty.
 template <class Row>
 class ColumnFile {
  public:

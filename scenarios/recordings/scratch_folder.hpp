@@ -12,7 +12,6 @@ namespace tumble::scenarios {
 /// ScratchFolder is removed with the object, even if a signal ends the program.
 class ScratchFolder {
  public:
-  /// Throws std::filesystem::filesystem_error if the folder cannot be created.
   explicit ScratchFolder(const std::string& use);
   ~ScratchFolder();
   ScratchFolder(const ScratchFolder&) = delete;

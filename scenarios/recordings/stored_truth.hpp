@@ -40,8 +40,6 @@ struct StoredLidarTruth {
 };
 
 struct StoredTruth {
-  /// Returns the body states of the rows `first` to `last` - 1, with the mountings and `p_BG_m`, but without sensors
-  /// and contacts.
   sim::Truth states(std::size_t first, std::size_t last) const;
   std::size_t size() const { return p_WB_m.size(); }
 
@@ -55,7 +53,7 @@ struct StoredTruth {
   std::vector<std::string> surfaces;
   std::vector<StoredImuTruth> imus;
   std::vector<StoredLidarTruth> lidars;
-  std::vector<sim::SeriesTruth> series;  ///< in memory: only a few numbers per second
+  std::vector<sim::SeriesTruth> series;  ///< few numbers per second
 };
 
 }  // namespace tumble::scenarios

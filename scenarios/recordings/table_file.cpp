@@ -37,8 +37,8 @@ std::vector<std::string> split(const std::string& line, char separator) {
   return cells;
 }
 
-/// A pose with covariance has less than a thousand bytes. The limit protects the memory from files without line ends
-/// and endless devices.
+/// The limit of the line length protects the memory from files without line ends; a pose with covariance has less than
+/// 1000 bytes.
 constexpr std::size_t kLineMax = 1 << 20;
 
 bool read_line(std::istream& file, const std::filesystem::path& path, int number, std::string& line) {

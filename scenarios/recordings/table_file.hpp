@@ -11,12 +11,11 @@
 
 namespace tumble::scenarios {
 
-/// TableWriter writes numbers as TUM (blanks, no header) or CSV (commas, one header line). Reading restores doubles
-/// exactly.
+/// TableWriter writes numbers as TUM (blanks, no header) or CSV (commas, one header line) such that reading restores
+/// doubles exactly.
 class TableWriter {
  public:
-  /// An empty `header` is not written. Only `close` replaces an existing file; without `close`, the table is discarded.
-  /// Throws BadInput if the file cannot be opened.
+  /// Only `close` replaces an existing file; without `close`, the table is discarded.
   TableWriter(const std::filesystem::path& path, char separator, const std::string& header);
   void integer(std::int64_t value);
   void number(double value);
@@ -34,7 +33,7 @@ class TableWriter {
 };
 
 /// Empty lines and lines that start with '#' are skipped. If the separator is a blank, tabs, commas and semicolons also
-/// separate cells. Throws BadInput with path and line number for a wrong number of cells or an invalid value.
+/// separate cells.
 struct Table {
   struct Row {
     int line;
@@ -48,7 +47,7 @@ struct Table {
   double number(const Row& row, std::size_t column) const;  ///< any double, also "nan"
   std::int64_t integer(const Row& row, std::size_t column) const;
   std::int64_t time_ns(const Row& row,
-                       std::size_t column) const;  ///< decimal seconds, converted to nanoseconds without a double
+                       std::size_t column) const;  ///< decimal seconds, without rounding
 
  private:
   [[noreturn]] void fail(const Row& row, std::size_t column, const std::string& what) const;

@@ -21,7 +21,7 @@ namespace {
 constexpr std::size_t kPathBytes = 4096;
 constexpr int kPlaces = 64, kDepthMax = 16;
 
-/// The owner is written last and cleared first, so a signal handler never sees a partial entry.
+/// The owner of an entry is written last and cleared first, so a signal handler never sees a partial entry.
 struct Entry {
   std::atomic<bool> taken{false};
   std::atomic<pid_t> owner{0};
@@ -34,7 +34,7 @@ std::array<Entry, kPlaces> entries;
 static_assert(std::atomic<pid_t>::is_always_lock_free && std::atomic<bool>::is_always_lock_free,
               "a signal handler must not wait for a lock");
 
-std::atomic<int> waiting{0}, pending{0};  // number of SignalsWait objects, and signal received during their lifetime
+std::atomic<int> waiting{0}, pending{0};  // SignalsWait objects, delayed signal
 
 /// The signal handler reads directories by the system call getdents64, because readdir allocates memory.
 struct Listed {
@@ -96,7 +96,6 @@ extern "C" void remove_and_end(int number) {
 
 Unfinished::Unfinished(const std::filesystem::path& path, Kind kind) {
   std::error_code ignored;
-  // An absolute path stays valid if the working folder changes.
   const std::string absolute = std::filesystem::absolute(path, ignored).string();
   if (ignored || absolute.size() >= kPathBytes) return;
   for (int place = 0; place < kPlaces; ++place) {

@@ -6,12 +6,11 @@
 namespace tumble::scenarios {
 
 /// Unfinished removes its file or folder if a signal of `remove_unfinished_on_signals` arrives during its lifetime.
-/// Child processes do not remove it.
 class Unfinished {
  public:
-  enum class Kind { file, folder, contents };  ///< contents: content of an existing folder, which itself remains
+  enum class Kind { file, folder, contents };  ///< contents: keeps the folder itself
   Unfinished() = default;
-  /// Signals remove at most 64 paths, with at most 4095 bytes each.
+  /// Signal handlers remove at most 64 paths, with at most 4095 bytes each.
   Unfinished(const std::filesystem::path& path, Kind kind);
   ~Unfinished();
   Unfinished(const Unfinished&) = delete;
@@ -22,7 +21,8 @@ class Unfinished {
   int place_ = -1;
 };
 
-/// SignalsWait delays the signals during its lifetime, to protect a new path that is not yet registered.
+/// SignalsWait delays signals during its lifetime, to protect a new path until an Unfinished object exists for this
+/// path.
 class SignalsWait {
  public:
   SignalsWait();

@@ -7,8 +7,7 @@
 
 namespace tumble::scenarios {
 
-/// For an even number of values, the upper median is the larger of the two middle values, so it is one of the values.
-/// An empty list gives zero. The cost is O(n).
+/// For an even number of values, the upper median is the larger of the two middle values.
 template <class Value>
 Value upper_median(std::vector<Value> values) {
   if (values.empty()) return Value{};

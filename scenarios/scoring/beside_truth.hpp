@@ -22,14 +22,14 @@ const ClippingTruth& clipping_truth(const ScoredEstimate& scored);
 struct PairedRate {
   const RateState* estimate = nullptr;         ///< points into the estimate
   std::optional<ClippingTruth::Sample> truth;  ///< empty if unknown
-  std::size_t sample = 0;                      ///< index of the primary IMU's sample at this time, if known
+  std::size_t sample = 0;                      ///< sample of the primary IMU
 
   std::uint8_t clipped_axes() const { return truth ? truth->clipped_axes : std::uint8_t{0}; }
   /// Returns the unclipped axes whose reading a clipped sensing element disturbs (bit j: axis j), or 0 if the truth is
   /// unknown.
   std::uint8_t cross_axes() const { return truth ? truth->cross_axes : std::uint8_t{0}; }
   bool has_covariance() const { return estimate->covariance_rad2_s2.diagonal().maxCoeff() > 0.0; }
-  /// Returns the estimated minus the true rate, in true IMU axes; the true rate must be known.
+  /// Estimated minus true rate, in true IMU axes; the true rate must be known.
   Eigen::Vector3d error_rad_s() const { return estimate->w_WI_I_rad_s - truth->rate_rad_s; }
 };
 

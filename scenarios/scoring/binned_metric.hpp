@@ -7,10 +7,10 @@
 namespace tumble::scenarios {
 
 /// BinnedMetric is a metric over the samples whose quantity `axis` is in [low, high), for example
-/// "rate_error_median_rad_s@clip_depth_rad_s:1:2". `high` may be infinite.
+/// "rate_error_median_rad_s@clip_depth_rad_s:1:2".
 struct BinnedMetric {
   std::string base;  ///< "rate_error_median_rad_s"
-  std::string axis;  ///< "clip_depth_rad_s"; the name ends in the unit
+  std::string axis;  ///< ends in the unit: "clip_depth_rad_s"
   double low = 0.0, high = 0.0;
   std::string name() const;
 };

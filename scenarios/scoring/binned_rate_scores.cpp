@@ -14,8 +14,6 @@
 #include "scenarios/scoring/families.hpp"
 #include "scenarios/statistics/statistics.hpp"
 
-/// Binned metrics are rate errors over clipped samples with similar clipping depth, clipping duration or number of
-/// clipped axes.
 namespace tumble::scenarios {
 
 namespace {

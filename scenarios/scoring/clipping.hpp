@@ -14,28 +14,29 @@ inline constexpr std::uint8_t kGyroClipFlags = 0b000111;
 
 /// ClippingTruth contains the true rates of the primary gyro, and the clipped axes of each sample.
 ///
-/// Axis j of a sample is clipped if its sensing element is saturated. The saturation deficit of element j is component
-/// j of d = M (unclipped reading - delivered reading), with the misalignment matrix M. An element is saturated if its
-/// deficit exceeds one standard deviation of the gyro's white noise per sample, sqrt(density^2 / period), and 1e-6
-/// rad/s.
+/// Axis j of a sample is clipped if its sensing element is saturated. The saturation deficit of sensing element j is
+/// component j of d = M (unclipped reading - delivered reading), with the misalignment matrix M. A sensing element
+/// counts as saturated if its saturation deficit exceeds one standard deviation of the gyro's white noise per sample,
+/// and 1e-6 rad/s.
 ///
-/// If the elements are tilted (sim/imu/elements.hpp), a saturated element also changes the readings of the other axes.
-/// An unclipped axis has a cross-axis error if such a change exceeds the tolerance.
+/// A saturated sensing element with a tilted axis also changes the readings of the other output axes
+/// (sim/imu/elements.hpp). An unclipped axis has a cross-axis error if a saturated sensing element of another axis
+/// changes its reading by more than the tolerance.
 ///
 /// If the truth comes from a reference instrument, an axis is clipped if the reference confirms saturation
 /// (reference_clipping.hpp), and cross-axis errors are unknown.
 class ClippingTruth {
  public:
   struct Sample {
-    Eigen::Vector3d rate_rad_s;  ///< true mean rate over the averaging window, true IMU axes
-    std::uint8_t clipped_axes;   ///< bit j: the sensing element of axis j is saturated
-    std::uint8_t cross_axes;     ///< bit j: axis j is unclipped and has a cross-axis error
+    Eigen::Vector3d rate_rad_s;  ///< averaging window's mean, true axes
+    std::uint8_t clipped_axes;   ///< bit j: element j is saturated
+    std::uint8_t cross_axes;     ///< bit j: unclipped with cross-axis error
   };
 
   ClippingTruth(const sim::Sensors& sensors, const sim::Truth& truth);
 
-  /// Returns the interpolated true rate, and the clipped axes of the sample whose averaging window contains `time_ns`.
-  /// Returns nothing outside the recording, and where the rate is unknown.
+  /// Interpolated true rate, and clipped axes of the sample whose averaging window contains `time_ns`; nothing where
+  /// the rate is unknown.
   std::optional<Sample> at(std::int64_t time_ns) const;
 
   std::optional<std::size_t> index_at(std::int64_t time_ns) const;
@@ -46,8 +47,7 @@ class ClippingTruth {
   std::size_t known_samples() const;
   std::uint8_t clipped_axes(std::size_t index) const;
   std::uint8_t cross_axes(std::size_t index) const;
-  /// Returns the largest difference, over the axes, between the reading and the unclipped reading (or the reference
-  /// rate).
+  /// Largest difference, over the axes, between the reading and the unclipped reading (or the reference rate).
   double depth_rad_s(std::size_t index) const;
 
  private:
@@ -56,7 +56,7 @@ class ClippingTruth {
 
   const sim::ImuRecord* record_;
   const sim::ImuTruth* truth_;
-  Eigen::Matrix3d elements_ = Eigen::Matrix3d::Identity();  ///< M
+  Eigen::Matrix3d elements_ = Eigen::Matrix3d::Identity();  ///< misalignment
   double tolerance_rad_s_;
   std::vector<std::uint8_t> reference_axes_;
 };

@@ -10,7 +10,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr double kNormalSquareMedian = 0.454936;  // median of the square of a standard normal variable
+constexpr double kNormalSquareMedian = 0.454936;  // for a standard normal variable
 
 }  // namespace
 

@@ -5,15 +5,13 @@
 
 namespace tumble::scenarios {
 
-/// Returns the squared error divided by its reported variance. The variance 0 gives 0 for the error 0, and otherwise
-/// infinity.
+/// The variance 0 gives 0 for the error 0, and otherwise infinity.
 double squared_over(double error, double variance);
 
 /// NaN counts as an error outside three standard deviations.
 bool share_within_3sigma(const std::vector<double>& squares, double& value);
 
-/// Computes the median of the normalised squared errors, divided by the median for a normal variable; in a mean, the
-/// axis with the smallest variance would dominate.
+/// The median is used instead of the mean, because the axis with the smallest variance would dominate a mean.
 bool normalised_median(const std::vector<double>& squares, double& value);
 
 }  // namespace tumble::scenarios

@@ -14,12 +14,12 @@ namespace tumble::scenarios {
 
 namespace {
 
-// Some methods drop a sweep that the primary IMU covers partly, and others shorten it, so the scores end earlier.
+// The primary IMU may cover the last sweep partly; some methods drop this sweep and others shorten it, so the scores
+// exclude it.
 std::int64_t last_sweep_before_ns(const sim::Sensors& sensors) {
   constexpr std::int64_t kAll = std::numeric_limits<std::int64_t>::max();
   if (sensors.lidars.empty() || sensors.imus.empty() || sensors.imus.front().time_ns.empty()) return kAll;
   const sim::LidarRecord& lidar = sensors.lidars.front();
-  // If the lidar points have no individual times, the sweep has zero length.
   const std::int64_t length_ns = lidar.point_times == sim::PointTimes::measured ? lidar.sweep_period_ns : 0;
   const std::int64_t covered_ns = sensors.imus.front().time_ns.back() - length_ns;
   const auto after = std::upper_bound(lidar.sweep_start_ns.begin(), lidar.sweep_start_ns.end(), covered_ns);
@@ -27,7 +27,6 @@ std::int64_t last_sweep_before_ns(const sim::Sensors& sensors) {
   return *(after - 1) + length_ns + lidar.sweep_period_ns / 4;
 }
 
-// The scores of all methods end at the last sweep that the IMU covers and for which the truth is known.
 const LidarInertialOdometry::SweepReport* last_covered(const ScoredEstimate& scored) {
   const Estimate& estimate = scored.estimate();
   const TruthTrack& truth = truth_track(scored);
@@ -93,8 +92,8 @@ bool rotation_error_end(const ScoredEstimate& scored, double& value) {
   return true;
 }
 
-// Computes the normalised squared error of the pose at the last sweep, after alignment at the first pose; its mean is 1
-// if the covariance is consistent.
+// Squared error of the last pose over its covariance, after alignment at the first pose; the mean is 1 if the
+// covariance is consistent.
 bool pose_nees(const ScoredEstimate& scored, double& value) {
   if (scored.estimate().sweeps.empty() || scored.estimate().poses.empty()) return false;
   const auto* last_sweep = last_covered(scored);
@@ -106,7 +105,6 @@ bool pose_nees(const ScoredEstimate& scored, double& value) {
   const PoseState true_pose = truth_track(scored).pose(last.time_ns);
   Eigen::Matrix<double, 6, 1> error;
   error << true_pose.p_WA_m - aligned.p_WA_m, so3::log((true_pose.q_WA * aligned.q_WA.conjugate()).normalized());
-  // The covariance is in axes of the estimate's world, so the pose error is rotated to these axes.
   const Eigen::Matrix3d back = alignment.transform().linear().transpose();
   error << Eigen::Vector3d(back * error.head<3>()), Eigen::Vector3d(back * error.tail<3>());
   const Eigen::LLT<Eigen::Matrix<double, 6, 6>> factor(last.covariance);

@@ -22,7 +22,6 @@ namespace {
 
 constexpr std::int64_t kHole_ns = 200000000;
 
-/// Returns the pose of the estimate's frame (an IMU, a lidar or a centre) relative to the body.
 Eigen::Isometry3d mounting_of(const Estimate& estimate, const sim::Sensors& sensors, const StoredTruth* truth) {
   Eigen::Isometry3d T_BA = Eigen::Isometry3d::Identity();
   switch (estimate.frame) {
@@ -87,7 +86,6 @@ BagTrack::Pose body_pose(const PoseState& moved, const Eigen::Isometry3d& T_AB) 
 class BodyAt {
  public:
   explicit BodyAt(const std::vector<BagTrack::Pose>& poses) : poses_(poses) {}
-  /// Returns false unless there are poses both before and after `time_ns`.
   bool operator()(std::int64_t time_ns, Eigen::Isometry3d& T_WB) const {
     const auto after = std::lower_bound(poses_.begin(), poses_.end(), time_ns,
                                         [](const BagTrack::Pose& pose, std::int64_t t) { return pose.time_ns < t; });

@@ -13,12 +13,9 @@
 namespace tumble::scenarios {
 
 /// Converts an estimate to a track of body poses, with the sensor mounting that the estimator used, aligned with the
-/// truth as for the scores. The interpolated lidar pose of the estimate transforms each point of the first lidar, and
-/// the stamp of a cloud is the end of its sweep. Points outside the time of the poses, or in gaps of the poses longer
-/// than 0.2 s, are omitted. The field `error_m` is the distance between a point and the true hit of its ray, including
-/// range noise. The clouds are computed when the bag is written, so `sensors`, `points` and `truth` must live until
-/// then. Throws BadInput if the estimate has no pose, no pose within the time of the truth, or the frame of a missing
-/// sensor.
+/// truth as for the scores. Points outside the time of the poses, or in gaps of the poses longer than 0.2 s, are
+/// omitted. The field `error_m` is the distance between a point and the true hit of its ray, including range noise. The
+/// clouds are computed when the bag is written, so `sensors`, `points` and `truth` must live until then.
 BagTrack in_bag(const std::string& name, const Estimate& estimate, const sim::Sensors& sensors,
                 const std::vector<PointStore>* points, const StoredTruth* truth);
 

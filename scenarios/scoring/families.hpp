@@ -18,7 +18,7 @@ std::vector<Metric> end_pose_metrics();
 std::vector<Metric> map_metrics();
 std::vector<Metric> sweep_border_metrics();
 std::vector<Metric> time_offset_metrics();  ///< for all kinds
-std::vector<Metric> health_metrics();       ///< for all kinds: does the health detect wrong estimates?
+std::vector<Metric> health_metrics();       ///< does the health detect errors?
 
 std::vector<MetricInfo> cost_quantities();
 std::vector<MetricInfo> motion_quantities();

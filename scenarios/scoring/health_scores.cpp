@@ -16,10 +16,10 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr double kWrongDeviations = 5.0;
-// Independent of its covariance, an estimate is wrong if more than half of the samples during motion exceed an error
-// limit.
+// An estimate is wrong, independent of its covariance, if more than half of the samples during motion exceed this
+// relative rate error or tilt.
 constexpr double kWrongRateShare = 0.2, kWrongTilt_rad = 0.5;
-constexpr double kMoves_rad_s = 1.0;  // samples with a smaller true rate do not count
+constexpr double kMoves_rad_s = 1.0;  // smaller rates do not count
 
 /// `deviations` are errors in standard deviations; `gross` are relative rate errors or tilt errors [rad].
 struct Errors {
@@ -35,8 +35,8 @@ bool quantile_exceeds(double limit, std::vector<double> values, double share) {
   return quantile(values, share) > limit;
 }
 
-/// Suspected faults increase the covariances; the increase is subtracted here, because with it a reported error would
-/// not count as wrong.
+/// Health findings increase the reported covariances; the increase is subtracted, because otherwise a reported error
+/// would not count as wrong.
 Errors rate_errors(const ScoredEstimate& scored) {
   const std::vector<Eigen::Matrix3d>& suspect = scored.estimate().suspect_rad2_s2;
   const std::vector<PairedRate>& pairs = paired_rates(scored);
@@ -70,8 +70,6 @@ bool are_wrong(const Errors& errors, double gross_limit) {
   return quantile_exceeds(kWrongDeviations, errors.deviations, 0.9) || quantile_exceeds(gross_limit, errors.gross, 0.5);
 }
 
-/// Returns whether the error of the last pose exceeds five standard deviations; empty for an estimate without
-/// covariances.
 std::optional<bool> pose_is_wrong(const ScoredEstimate& scored, Kind kind) {
   double nees = 0.0;
   for (const Metric& metric : metrics()) {

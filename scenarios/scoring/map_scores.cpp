@@ -10,19 +10,18 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr float kToleranceM = 0.25f;     // map points farther from the surface are outliers (Deschenes et al.)
-constexpr float kFineToleranceM = 0.1f;  // stricter tolerance, for the sharpness of the map
-constexpr double kOutliersMax = 0.15;    // a map with a larger fraction of outliers has failed (Deschenes et al.)
-constexpr double kCoverageMin = 0.5;     // a map that covers a smaller fraction of the seen surface has failed
-constexpr float kSurfaceCellM = 0.1f;    // each cell of the seen surface counts once
-constexpr float kErrorLimitM = 0.5f;     // larger distances of map points are limited to this value
-constexpr float kSamePointM = 1e-3f;     // points in one cell of this size are duplicates
-constexpr double kSeenRangeM = 100.0;    // surface points farther from the start need not be in the map
+constexpr float kToleranceM = 0.25f;     // limit for outliers (Deschenes et al.)
+constexpr float kFineToleranceM = 0.1f;  // for the sharpness of the map
+constexpr double kOutliersMax = 0.15;    // failed above (Deschenes et al.)
+constexpr double kCoverageMin = 0.5;     // failed below
+constexpr float kSurfaceCellM = 0.1f;    // each surface cell counts once
+constexpr float kErrorLimitM = 0.5f;     // upper bound of an error
+constexpr float kSamePointM = 1e-3f;     // cell of duplicate points
+constexpr double kSeenRangeM = 100.0;    // farther surfaces are not required
 
 static_assert(kErrorLimitM > kToleranceM && kErrorLimitM > kFineToleranceM,
               "the limit of map errors must exceed both tolerances of map points");
 
-// The map's position and yaw are aligned with the true pose at the start.
 std::vector<Eigen::Vector3f> map_in_world(const ScoredEstimate& scored) {
   const Estimate& estimate = scored.estimate();
   const Eigen::Isometry3d to_world = paired_track(scored).alignment.transform();
@@ -87,7 +86,7 @@ bool unique_share(const ScoredEstimate& scored, double& value) {
   return true;
 }
 
-// Returns the fraction of the surface seen by the lidar that the map covers; empty without a map or without true hits.
+// Fraction of the surface seen by the lidar that the map covers; empty without a map or without true hits.
 std::optional<double> covered_share(const ScoredEstimate& scored) {
   if (scored.estimate().map.empty() || scored.truth().lidars.empty()) return std::nullopt;
   const std::vector<Eigen::Vector3f> surface = seen_surface(scored.truth());

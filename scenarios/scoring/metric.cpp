@@ -31,7 +31,6 @@ std::vector<std::string> metrics_from(Kind kind, Place least) {
   return names;
 }
 
-/// Half and twice a positive target have equal distances from the target.
 double distance(double value, double target) {
   return value > 0.0 && target > 0.0 ? std::abs(std::log(value / target)) : std::abs(value - target);
 }

@@ -14,21 +14,22 @@ namespace tumble::scenarios {
 /// of the reference).
 enum class Sense { lower, higher, two_sided, none };
 
-/// A `verdict` is 0, or 1 for a failure. A `time_offset` is signed, stored in seconds and displayed in milliseconds.
+/// A `verdict` is 0, or 1 for a failure; a `time_offset` is signed, stored in seconds and displayed in milliseconds.
 enum class Unit { number, share, verdict, rad, rad_s, m, m_s, m_s2, s, time_offset, mib };
 const char* symbol(Unit unit);
 
-/// Compared states how a gate compares two values on one simulated run: by ratio (errors, normalised errors) or by
-/// difference (fractions, signed values).
+/// Two values on one simulated run are compared by ratio (errors, normalised errors) or by difference (fractions,
+/// signed values).
 enum class Compared { by_ratio, by_difference };
 
-/// Place states where a metric appears: only in the full table, also in gates, or also first in the report.
+/// A metric appears only in the full table, also in the comparison with accepted results (gate), or also first in the
+/// report.
 enum class Place { detail, held, headline };
 
 inline constexpr double kNoTarget = std::numeric_limits<double>::quiet_NaN();
 
 struct MetricInfo {
-  std::string name;  ///< name, which ends in the unit
+  std::string name;  ///< ends in the unit
   Unit unit = Unit::number;
   std::string doc;
   Sense sense = Sense::none;
@@ -37,7 +38,6 @@ struct MetricInfo {
   Compared compared = Compared::by_ratio;
 };
 
-/// For an unknown name, for example from a database of another version, returns a description with Sense::none.
 const MetricInfo& metric_info(const std::string& name);
 
 struct MetricStyle {
@@ -48,19 +48,16 @@ MetricStyle style_of(Unit unit);
 
 std::string sense_text(const MetricInfo& metric);
 
-/// For a metric with a target, the closer value is better; closeness is a ratio if both values are positive.
 bool is_better(const MetricInfo& metric, double a, double b);
 
 /// Returns the badness of a value: the value if lower is better, the negative value if higher is better, or the
-/// distance from the target. If value and target are positive, the distance is a difference of logarithms. For an
-/// unranked metric, the badness is NaN.
+/// distance from the target. If value and target of a metric are positive, the distance from the target is a difference
+/// of logarithms. For an unranked metric, the badness is NaN.
 double how_bad(const MetricInfo& metric, double value);
 
-/// Returns the value of a failed run: infinity, or minus infinity if higher is better; NaN for two-sided and unranked
-/// metrics.
+/// Value of a failed run: infinity, or minus infinity if higher is better; NaN for two-sided and unranked metrics.
 double worst_value(const MetricInfo& metric);
 
-/// headline_metrics returns the metrics that a report shows first; held_metrics returns all metrics that gates compare.
 std::vector<std::string> headline_metrics(Kind kind);
 std::vector<std::string> held_metrics(Kind kind);
 

@@ -66,7 +66,7 @@ bool Nearness::has_neighbour(const Eigen::Vector3f& point_m) const {
 std::vector<Eigen::Vector3f> one_per_cell(std::span<const Eigen::Vector3f> points_m, float cell_m) {
   SpatialHash taken;
   std::vector<Eigen::Vector3f> kept;
-  std::optional<std::uint64_t> last;  // neighbouring points of a sweep often share a cell
+  std::optional<std::uint64_t> last;  // neighbouring points often share a cell
   for (const Eigen::Vector3f& point : points_m) {
     if (!point.allFinite()) continue;
     const std::uint64_t cell = key_of(point, cell_m);

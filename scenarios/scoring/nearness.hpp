@@ -11,7 +11,6 @@
 
 namespace tumble::scenarios {
 
-/// The points are in cells as wide as the distance, so each query checks 27 cells.
 class Nearness {
  public:
   Nearness(std::span<const Eigen::Vector3f> points_m, float distance_m);

@@ -10,9 +10,9 @@ namespace tumble::scenarios {
 
 namespace {
 
-// Shortest path for which a relative position error is computed
+// Shortest path for which a relative position error is computed [m]
 constexpr double kPathMinM = 0.05;
-constexpr double kUnmovedM = 0.02;  // errors before the first motion of this size are not scored
+constexpr double kUnmovedM = 0.02;  // scores start after this motion
 
 bool end_error(const ScoredEstimate& scored, double& value) {
   const std::vector<PairedPose>& poses = paired_track(scored).poses;
@@ -22,7 +22,8 @@ bool end_error(const ScoredEstimate& scored, double& value) {
 }
 
 /// Divides the end error by the path length of the body's centre: the centre of a sphere, or else the centre of mass. A
-/// sensor that turns around the centre has a longer path, so relative errors in different frames are not comparable.
+/// sensor that turns around the body's centre has a longer path, so relative errors in different frames are not
+/// comparable.
 bool end_error_share(const ScoredEstimate& scored, double& value) {
   const std::vector<PairedPose>& poses = paired_track(scored).poses;
   if (poses.empty()) return false;
@@ -66,7 +67,6 @@ bool rest_drift(const ScoredEstimate& scored, double& value) {
   return any;
 }
 
-/// Returns squared position errors divided by their reported variances, in the axes of the estimate's world.
 std::vector<double> normalised_position_errors(const ScoredEstimate& scored) {
   const Estimate& estimate = scored.estimate();
   const PairedTrack& track = paired_track(scored);

@@ -77,8 +77,8 @@ bool in_contact(const ScoredEstimate& scored, std::int64_t time_ns) {
   return false;
 }
 
-// Squared rate errors divided by their reported variances: clipped axes at all samples (`all`), in flight (`flight`)
-// and in contact (`impact`); and unclipped axes that a clipped element disturbs (`cross_axis`).
+// Squared rate errors divided by their reported variances, for clipped axes (`all`, `flight`, `impact`: contact) and
+// unclipped axes that a clipped sensing element disturbs (`cross_axis`).
 struct NormalisedErrors {
   std::vector<double> all, flight, impact, cross_axis;
 };

@@ -74,7 +74,6 @@ Eigen::Vector3d reference_variance(const ScoredEstimate& scored, const ClippingT
   return variance;
 }
 
-/// The variance of the reference instrument is added to the reported covariance.
 bool reference_coverage(const ScoredEstimate& scored, double& value) {
   const ClippingTruth& truth = clipping_truth(scored);
   if (!truth.is_reference()) return false;
@@ -101,7 +100,6 @@ bool called_measured(const ScoredEstimate& scored, double& value) {
     for (unsigned j = 0; j < 3; ++j) {
       if ((pair.clipped_axes() & (1u << j)) == 0) continue;
       axes += 1.0;
-      // A method may mark a whole sample as suspect although it detects no clipped axis.
       const bool doubted = rate.clipped_axes == 0 && rate.source != RateSource::measured;
       missed += (rate.clipped_axes & (1u << j)) == 0 && !doubted ? 1.0 : 0.0;
     }
@@ -135,7 +133,6 @@ void add_pair(const std::string& name, const std::string& doc, std::vector<Metri
                  clipped_error<kError, 90, kAxes>});
 }
 
-/// Metrics that describe the reference instrument and not the method are not ranked.
 template <ErrorOf kError>
 void add_reference(const std::string& name, const std::string& doc, std::vector<Metric>& all) {
   all.push_back({{"rate_" + name + "_median_rad_s", Unit::rad_s, "median " + doc, Sense::none},

@@ -100,7 +100,6 @@ bool poses_reach_and_hold(Kind kind, const ScoredEstimate& scored) {
          poses_hold(scored);
 }
 
-// The end error needs six registered sweeps; an external trajectory without sweeps is accepted.
 bool sweeps_hold(const ScoredEstimate& scored) {
   const Estimate& estimate = scored.estimate();
   for (const auto& sweep : estimate.sweeps) {

@@ -23,7 +23,6 @@ double value_of(std::span<const Score> scores, const std::string& metric);
 struct Metric {
   MetricInfo info;
   Kind kind;
-  /// Returns false if the metric does not apply, for example without a clipped sample or a map.
   bool (*compute)(const ScoredEstimate& scored, double& value);
 };
 

@@ -10,15 +10,12 @@
 
 namespace tumble::scenarios {
 
-/// If `surface` is null, map scores are omitted.
 struct ScoringInput {
   const sim::Sensors* sensors = nullptr;
   const sim::Truth* truth = nullptr;
   const sim::Surface* surface = nullptr;
 };
 
-/// ScoredEstimate refers to an estimate and its recording, and caches results that several metrics share.
-/// ScoredEstimate is not thread-safe.
 class ScoredEstimate {
  public:
   ScoredEstimate(const Estimate& estimate, const ScoringInput& input);

@@ -10,17 +10,14 @@
 #include "scenarios/scoring/beside_truth.hpp"
 #include "scenarios/scoring/families.hpp"
 
-/// The slip metrics compare the slip and slide events that a position method detects with the true events.
-///
 /// A slip event is a time interval with the contact labels slip and slide. A slip event may contain up to kBridge_ns of
-/// grip, and up to kHop_ns of air in total, because an unbalanced spinning sphere hops. A true event is scored if it
-/// lasts at least kShortest_ns and the contact speed reaches kLeastSpeed_m_s. Weaker events cannot be distinguished
-/// from grip and cause no position error.
+/// grip, and up to kHop_ns of air in total, because an unbalanced spinning sphere hops. A true slip event is scored if
+/// it lasts at least kShortest_ns and the contact speed reaches kLeastSpeed_m_s; weaker events cause no position error.
 ///
-/// An estimated event is correct if true events, widened by kMargin_ns, cover at least half of it. A true event is
-/// detected if correct estimated events cover at least half of it.
+/// An estimated slip event is correct if true events, widened by kMargin_ns, cover at least half of it. A true slip
+/// event is detected if correct estimated events cover at least half of it.
 ///
-/// The position is lost in a true event if the horizontal error grows by more than kLost_m during the event. The
+/// The position is lost in a true slip event if the horizontal error grows by more than kLost_m during the event. The
 /// estimate reports the loss if its horizontal standard deviation grows by more than kFlagged_m.
 namespace tumble::scenarios {
 
@@ -56,7 +53,7 @@ class Events {
 
  private:
   std::vector<SlipSpan> spans_;
-  std::int64_t gripped_ns_ = 0;  ///< grip since the last interval of slip or slide
+  std::int64_t gripped_ns_ = 0;  ///< grip since the last slip
 };
 
 std::vector<SlipSpan> true_spans(const sim::Truth& truth) {
@@ -82,7 +79,6 @@ bool counts(const SlipSpan& span, const sim::Truth& truth) {
   return false;
 }
 
-/// A contact label of the estimate applies until the time of the next label.
 std::vector<SlipSpan> claimed_spans(const Estimate& estimate) {
   if (estimate.contacts.size() != estimate.poses.size()) {
     throw BadInput(fmt::format("the estimate has {} contact labels for {} poses; the two numbers must be equal",

@@ -24,7 +24,6 @@ Jumps border_jumps(const ScoredEstimate& scored) {
   for (std::size_t k = 1; k < estimate.sweeps.size(); ++k) {
     const auto& before = estimate.sweeps[k - 1].trajectory;
     const auto& after = estimate.sweeps[k].trajectory;
-    // If a sweep is missing between two listed sweeps, the sweeps have no common boundary.
     if (before.size() < 2 || after.size() < 2) continue;
     if (after.front().time_ns - before.back().time_ns > after[1].time_ns - after[0].time_ns) continue;
     const PoseState poses[4] = {before[before.size() - 2], before.back(), after[0], after[1]};
@@ -33,7 +32,7 @@ Jumps border_jumps(const ScoredEstimate& scored) {
     for (int j = 0; j < 4; ++j) {
       covered = covered && truth.covers(poses[j].time_ns);
       if (covered) truths[j] = truth.pose(poses[j].time_ns);
-      covered = covered && truths[j].v_WA_m_s.allFinite();  // a reference has no velocity next to its gaps
+      covered = covered && truths[j].v_WA_m_s.allFinite();  // velocity unknown next to gaps
     }
     if (!covered) continue;
     const Eigen::Isometry3d to_world = alignment.transform();

@@ -9,8 +9,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// OffsetFit fits a time offset by least squares to `behind = offset * change`: `behind` is the error of the estimate,
-/// and `change` is the rate of change of the truth.
+/// OffsetFit fits a time offset by least squares: error of the estimate = offset * rate of change of the truth.
 class OffsetFit {
  public:
   void add(const Eigen::Vector3d& behind, const Eigen::Vector3d& change_per_s) {

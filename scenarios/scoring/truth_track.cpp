@@ -96,7 +96,6 @@ Eigen::Vector3d TruthTrack::position(std::size_t index) const {
 TruthTrack::Between TruthTrack::between(std::int64_t time_ns) const {
   const auto index = static_cast<std::size_t>(time_ns / truth_->period_ns);
   const double share = static_cast<double>(time_ns % truth_->period_ns) / static_cast<double>(truth_->period_ns);
-  // At the exact time of a truth sample, the next sample is not used, because it may be unknown.
   return {index, share > 0.0 ? std::min(index + 1, truth_->p_WB_m.size() - 1) : index, share};
 }
 

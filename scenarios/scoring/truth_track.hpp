@@ -20,19 +20,17 @@ class TruthTrack {
   static constexpr double kRestSpeedMS = 0.03;
   static constexpr double kRestRateRadS = 0.05;
 
-  /// Throws BadInput if the arrays of the truth are empty or differ in length, or if the truth lacks the sensor of the
-  /// frame.
   TruthTrack(const sim::Truth& truth, Frame frame);
 
   std::int64_t last_ns() const { return last_ns_; }
   bool covers(std::int64_t time_ns) const;
   bool covers_attitude(std::int64_t time_ns) const;
 
-  /// Returns the pose of the frame in W and the velocity of its origin; NaN where the position is unknown.
+  /// Pose of the frame in W and velocity of its origin; NaN where the position is unknown.
   PoseState pose(std::int64_t time_ns) const;
-  /// Returns the angular rate of the frame, in its axes [rad/s]; NaN where the rate is unknown.
+  /// Angular rate of the frame, in its axes [rad/s]; NaN where the rate is unknown.
   Eigen::Vector3d rate_rad_s(std::int64_t time_ns) const;
-  /// Returns the path length of the frame's origin since time 0 [m]; the pose must be known at `time_ns`.
+  /// Path length of the frame's origin since time 0 [m]; the pose must be known at `time_ns`.
   double path_m(std::int64_t time_ns) const;
   bool at_rest(std::int64_t time_ns) const;
 
@@ -73,14 +71,13 @@ struct Alignment {
   PoseState apply(const PoseState& pose) const;
 };
 
-/// Returns the twist angle of a rotation about z, in (-pi, pi].
 double twist_about_z_rad(const Eigen::Quaterniond& q);
 
 /// Returns the angle of a rotation, in [0, pi], accurately for small angles and near pi.
 double rotation_angle_rad(const Eigen::Quaterniond& q);
 
-/// Returns the horizontal part of the attitude error phi with q_true = Exp(phi) q, after alignment of the heading, in
-/// the estimate's world.
+/// Horizontal part of the attitude error phi with q_true = Exp(phi) q, after alignment of the heading, in the
+/// estimate's world.
 Eigen::Vector2d tilt_error_rad(const Eigen::Quaterniond& q_estimate, const Eigen::Quaterniond& q_true);
 
 struct PairedTrack {

@@ -20,7 +20,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr std::size_t kValuesMin = 6;  // smallest number of values for a 95 % interval of the median: 2 / 2^5 > 5 %
+constexpr std::size_t kValuesMin = 6;  // for a 95 % interval: 2 / 2^5 > 5 %
 
 using Quick = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
 

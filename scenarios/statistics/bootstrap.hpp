@@ -9,22 +9,21 @@
 
 namespace tumble::scenarios {
 
-/// MedianBootstrap computes bootstrap confidence intervals of the median for samples of one size, by equations (S1) to
-/// (S4) of statistics.md. The intervals are bias-corrected and accelerated (BCa; Efron, JASA 82:171, 1987). The ranks
-/// of the middle values of a resample do not depend on the values, so the constructor draws the ranks once. For a given
-/// sample size, the ranks are equal on every machine.
+/// MedianBootstrap computes bias-corrected and accelerated (BCa; Efron, JASA 82:171, 1987) bootstrap confidence
+/// intervals of the median, by equations (S1) to (S4) of statistics.md. The ranks of the middle values of a resample do
+/// not depend on the values, so the constructor draws the ranks once.
 class MedianBootstrap {
  public:
   explicit MedianBootstrap(std::size_t size, std::size_t resamples = 4000);
 
   /// Returns the median of `values` with its confidence interval of level 1 - `risk`. Infinite values rank like finite
-  /// values, so an end of the interval can be infinite. With fewer than six values, both ends are infinite. Throws
-  /// BadInput for NaN, a wrong number of values, or a risk outside (0, 1).
+  /// values, so an end of the confidence interval can be infinite. With fewer than six values, both ends of the
+  /// confidence interval are infinite.
   Interval interval(std::span<const double> values, double risk = 0.05) const;
 
  private:
   struct Middle {
-    std::size_t below, above;  ///< zero-based ranks in the sorted sample; equal if the size is odd
+    std::size_t below, above;  ///< zero-based; equal for odd sizes
   };
   std::size_t size_;
   std::vector<Middle> middles_;

@@ -110,7 +110,7 @@ Correlation rank_correlation(std::span<const double> x, std::span<const double> 
   Correlation out;
   if (pairs.size() < kIntervalMin) return out;
   const std::vector<double> a = mean_ranks(column(pairs, &Pair::first)), b = mean_ranks(column(pairs, &Pair::second));
-  const double middle = mean(a);  // mean of all ranks, equal for both variables
+  const double middle = mean(a);  // equal for both variables
   double ab = 0.0, aa = 0.0, bb = 0.0;
   for (std::size_t i = 0; i < a.size(); ++i) {
     ab += (a[i] - middle) * (b[i] - middle);

@@ -16,22 +16,24 @@ std::vector<double> mean_ranks(std::span<const double> values);
 struct Correlation {
   double rho = 0.0;
   double low = -1.0, high = 1.0;  ///< 95 % interval
-  double chance = 1.0;            ///< p-value of the hypothesis rho = 0; 1 for fewer than ten pairs
+  double chance = 1.0;            ///< p-value of rho = 0
 };
 
 /// Computes Spearman's rank correlation with its confidence interval (Bonett and Wright, Psychometrika 65:23, 2000;
-/// equation (S16) of statistics.md). For fewer than four pairs or a constant variable, the interval is [-1, 1].
+/// equation (S16) of statistics.md). For fewer than four pairs or a constant variable, the confidence interval of the
+/// correlation is [-1, 1].
 Correlation rank_correlation(std::span<const double> x, std::span<const double> y);
 
 struct FirstOrder {
-  double index = 0.0;       ///< fraction of the variance of y that x alone explains, in [0, 1]
-  double chance = 1.0;      ///< p-value of the hypothesis that y does not depend on x
-  std::size_t classes = 0;  ///< number of classes of x; 0 if there are too few pairs
+  double index = 0.0;       ///< explained variance, in [0, 1]
+  double chance = 1.0;      ///< p-value of independence
+  std::size_t classes = 0;  ///< 0: too few pairs
 };
 
 /// Estimates the first-order (Sobol') index of y with respect to x from existing data (Plischke, Borgonovo, Smith, EJOR
 /// 226:536, 2013). The estimator divides x into equally large classes, and computes the variance of the class means of
-/// y, equation (S18) of statistics.md. The variance that is expected without dependence, equation (S19), is subtracted.
+/// y, equation (S18) of statistics.md. The estimator subtracts the variance of the class means that is expected if y
+/// does not depend on x, equation (S19).
 FirstOrder first_order_index(std::span<const double> x, std::span<const double> y);
 
 /// The 95 % interval is Student's for the mean, from order statistics for the median, and Clopper and Pearson's for the
@@ -47,8 +49,8 @@ struct DependenceClass {
 inline constexpr std::size_t kDependenceClassesMax = 8, kDependenceDrawsMin = 12;
 
 /// Computes the partial dependence of y on x: a statistic of y per class of x, equations (S22) and (S23) of
-/// statistics.md. The data must come from simulated runs with independent random numbers. There are at most
-/// `kDependenceClassesMax` equally large classes, with at least `kDependenceDrawsMin` runs each.
+/// statistics.md. The data of a partial dependence must come from simulated runs with independent random numbers. There
+/// are at most `kDependenceClassesMax` equally large classes of x, with at least `kDependenceDrawsMin` runs each.
 std::vector<DependenceClass> partial_dependence(std::span<const double> x, std::span<const double> y, Centre centre);
 
 }  // namespace tumble::scenarios

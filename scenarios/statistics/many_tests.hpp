@@ -6,9 +6,9 @@
 
 namespace tumble::scenarios {
 
-/// Corrects the p-values `chances` for multiple tests, for any dependence between the tests (Holm, Scandinavian Journal
-/// of Statistics 6:65, 1979; equation (S8) of statistics.md). Rejecting all hypotheses with a corrected p-value below a
-/// risk gives a probability of at most this risk for any false rejection.
+/// Corrects p-values for multiple tests, for any dependence between the tests (Holm, Scandinavian Journal of Statistics
+/// 6:65, 1979; equation (S8) of statistics.md). After the correction of the p-values, the probability of any false
+/// rejection is at most the chosen risk.
 std::vector<double> holm(std::span<const double> chances);
 
 }  // namespace tumble::scenarios

@@ -16,11 +16,10 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Ranks are doubled, because twice the mean of several ranks is an integer.
 struct SignedRanks {
   std::vector<std::size_t> doubled;
   std::size_t total = 0, positive = 0;  ///< sums of the doubled ranks
-  double ties = 0.0;                    ///< sum of t^3 - t over groups of t equal values
+  double ties = 0.0;                    ///< over groups of t equal values
 };
 
 SignedRanks signed_ranks(std::span<const double> differences) {
@@ -46,7 +45,7 @@ SignedRanks signed_ranks(std::span<const double> differences) {
 }
 
 double exact_chance(const SignedRanks& ranks, std::size_t sum) {
-  std::vector<double> chance(ranks.total + 1, 0.0);  // probability of each sum of the positive ranks
+  std::vector<double> chance(ranks.total + 1, 0.0);  // of each sum of positive ranks
   chance[0] = 1.0;
   std::size_t reached = 0;
   for (const std::size_t rank : ranks.doubled) {

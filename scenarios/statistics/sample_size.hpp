@@ -4,13 +4,13 @@
 #include <cstdint>
 #include <span>
 
-/// The functions compute how many pairs a test needs to detect an effect as large as the observed one. If the observed
-/// effect is due to chance, the computed number is too small.
+/// Each function computes how many pairs a test needs to detect an effect as large as the observed one; if the observed
+/// effect is due to chance, the number is too small.
 namespace tumble::scenarios {
 
 struct Plan {
-  double risk = 0.05;  ///< probability of a false positive, two-sided; (0, 1)
-  double power = 0.8;  ///< probability of detecting the observed effect; (0, 1)
+  double risk = 0.05;  ///< false positive, two-sided; (0, 1)
+  double power = 0.8;  ///< detection of the effect; (0, 1)
 };
 
 /// Returns the number of pairs for the two-sided signed-rank test (Noether, JASA 82:645, 1987), equations (S10) and

@@ -19,7 +19,7 @@ double spent_by(double risk, double share) {
 
 SequentialSignTest::SequentialSignTest(double risk) : risk_(risk) {
   if (!(risk > 0.0 && risk < 1.0))
-    throw BadInput(fmt::format("sequential test: the risk of a wrong answer is {}; it must be within (0, 1)",
+    throw BadInput(fmt::format("sequential test: the risk of a wrong verdict is {}; it must be within (0, 1)",
                                std::to_string(risk)));
 }
 
@@ -30,10 +30,10 @@ SequentialSignTest::Verdict SequentialSignTest::look(double share, std::int64_t 
                     "must not decrease",
                     std::to_string(share)));
   if (negative < 0 || positive < 0 || negative + positive < pairs_)
-    throw BadInput(
-        fmt::format("sequential test: the numbers of negative and positive pairs are {} and {}, but the previous "
-                    "analysis had {} pairs in total; the total must not decrease",
-                    negative, positive, pairs_));
+    throw BadInput(fmt::format(
+        "sequential test: {} pairs have a negative difference and {} pairs have a positive difference, but the "
+        "previous analysis had {} pairs in total; the total must not decrease",
+        negative, positive, pairs_));
   if (verdict_ != Verdict::open) return verdict_;
   share_ = share;
   toss(negative + positive - pairs_);

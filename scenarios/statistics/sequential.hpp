@@ -6,18 +6,18 @@
 
 namespace tumble::scenarios {
 
-/// Returns the probability of a false verdict that one side of a two-sided test may have used when the fraction `share`
-/// of the simulated runs is complete. The function is that of Lan and DeMets (Biometrika 70:659, 1983) with O'Brien and
-/// Fleming's bounds, equation (S13) of statistics.md.
+/// Error probability that one side of a two-sided sequential test may have spent when the fraction `share` of the
+/// simulated runs is complete (Lan and DeMets, Biometrika 70:659, 1983, with O'Brien and Fleming's bounds; equation
+/// (S13) of statistics.md).
 double spent_by(double risk, double share);
 
 /// SequentialSignTest is a sign test with interim analyses (Armitage, McPherson, Rowe, JRSS A 132:235, 1969), equations
-/// (S13) to (S15) of statistics.md. Each analysis sets a threshold for the number of positive and of negative signs. If
-/// the methods do not differ, the probability of having reached a threshold is at most the risk that may be spent so
-/// far. The number and times of the analyses are free, but must not depend on the results.
+/// (S13) to (S15) of statistics.md. Each interim analysis sets a threshold for the number of positive and of negative
+/// signs. If the two methods are equally good, the probability of having reached a threshold is at most the risk that
+/// may be spent so far. The number and times of the interim analyses are free, but must not depend on the results.
 class SequentialSignTest {
  public:
-  enum class Verdict { open, negative, positive };  ///< sign that occurs significantly more often
+  enum class Verdict { open, negative, positive };  ///< significantly more frequent sign
 
   explicit SequentialSignTest(double risk);
 

@@ -17,7 +17,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr double kTail = 0.025;  // probability of each tail of a 95 % interval
+constexpr double kTail = 0.025;  // tail of a 95 % interval
 
 std::vector<double> numbers_of(std::span<const double> values) {
   std::vector<double> numbers;
@@ -73,7 +73,6 @@ std::size_t tail_rank(std::size_t values) {
     const auto count = static_cast<double>(k);
     return std::lgamma(n + 1) - std::lgamma(count + 1) - std::lgamma(n - count + 1) - n * std::log(2.0);
   };
-  // The terms of the binomial sum increase up to n / 2; for large n, most terms underflow to 0 and are skipped.
   constexpr double kNothing = -750.0;
   std::size_t first = 0;
   for (std::size_t above = values / 2; first < above;) {

@@ -12,7 +12,7 @@ struct Interval {
   double value, low, high;
 };
 
-/// Returns the sample quantile (Hyndman and Fan type 7) of the values other than NaN; NaN without such a value.
+/// Returns the sample quantile (Hyndman and Fan type 7) of the values other than NaN, or NaN if all values are NaN.
 /// Infinite values rank like finite values, so that failures are worst.
 double quantile(std::span<const double> values, double share);
 std::optional<double> quantile_of_all(std::span<const double> values, double share);
@@ -26,13 +26,13 @@ double median_of(const std::vector<Row>& rows, double Row::*member) {
 }
 
 /// Returns the median with its distribution-free confidence interval from order statistics (binomial). With too few
-/// values, the ends of the interval are infinite.
+/// values, the ends of the confidence interval of the median are infinite.
 Interval median_interval(std::span<const double> values);
 
 /// Returns the fraction of successes with its exact confidence interval (Clopper and Pearson).
 Interval share_interval(std::int64_t count, std::int64_t total);
 
-/// Returns the values, with `worst` appended once for each failed run; a NaN in `worst` appends nothing.
+/// Appends `worst` once for each failed run; a NaN in `worst` appends nothing.
 std::vector<double> with_failures(std::vector<double> values, std::size_t failed, double worst);
 
 }  // namespace tumble::scenarios

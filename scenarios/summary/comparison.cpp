@@ -128,8 +128,6 @@ class Comparing {
       for (double& each : relieved) each = -each;
       row.not_inferior_chance = signed_rank_chance(relieved);
     }
-    // 1 if the method tends to be worse by the signed-rank test, -1 if it tends to be better, 0 if the metric is not
-    // ranked
     tends_.push_back(!contested ? 0.0 : signed_rank_chance(worse_by) < 0.5 ? 1.0 : -1.0);
     differences_.push_back(std::move(contested ? worse_by : raw));
     out_.metrics.push_back(std::move(row));
@@ -217,7 +215,7 @@ class Comparing {
   const ComparisonOptions& options_;
   Comparison out_;
   std::vector<std::vector<double>> differences_;  ///< one list per row of the metric table
-  std::vector<double> tends_;                     ///< 1: method tends to be worse, -1: better, 0: metric not ranked
+  std::vector<double> tends_;                     ///< 1: worse, -1: better, 0: unranked
   std::map<std::size_t, MedianBootstrap> bootstraps_;
 };
 

@@ -18,17 +18,17 @@ struct Margin {
   bool relative = false;
 };
 
-/// Returns how much worse `own` is than `other` on a simulated run, minus the margin. The result is infinite if only
-/// `own` is a failed run, and 0 if both runs failed.
+/// Returns how much worse `own` is than `other` on a simulated run, minus the margin. The difference is infinite if
+/// only `own` is a failed run, and 0 if both runs failed.
 double worse_by(const MetricInfo& info, double own, double other, const Margin& allowed);
 
 struct ComparisonOptions {
-  std::vector<std::string> methods;  ///< "rate/tumble" or "tumble"; empty: all methods without truth
-  std::string against;               ///< reference method; empty: the baseline of each section
-  std::vector<std::string> metrics;  ///< empty: the headline metrics of each kind
+  std::vector<std::string> methods;  ///< empty: all methods without truth
+  std::string against;               ///< empty: the section's reference method
+  std::vector<std::string> metrics;  ///< empty: the headline metrics
   std::optional<Margin> margin;      ///< empty: no non-inferiority test
-  double risk = 0.05;                ///< probability of any false finding in one table
-  double power = 0.8;                ///< power from which `pairs_needed` is computed
+  double risk = 0.05;                ///< probability of any false result
+  double power = 0.8;                ///< power for `pairs_needed`
 };
 
 enum class Finding { undecided, better, worse };
@@ -44,23 +44,22 @@ inline bool one_section(const Contest& a, const Contest& b) {
   return a.scenario == b.scenario && a.kind == b.kind && a.against == b.against;
 }
 
-/// MetricComparison compares one metric over the simulated runs on which both methods have a value. A failed run has
-/// the worst value; if both runs failed or have equal values, neither method is better.
+/// A failed run has the worst value; if both runs failed or have equal values, neither method is better.
 struct MetricComparison {
   Contest contest;
   std::string metric;
   std::int64_t pairs = 0, better = 0, worse = 0;
   double median = 0.0, against_median = 0.0;
-  /// Median of the paired differences, method minus reference, with its BCa interval. For a metric with a target, the
-  /// differences are those of the distances from the target.
+  /// Median of the paired differences, method minus reference, with its BCa interval (bias-corrected bootstrap); for a
+  /// metric with a target, of the distances from the target.
   Interval difference{};
-  double sign_chance = 1.0, rank_chance = 1.0;  ///< two-sided p-values of the sign test and the signed-rank test
-  double corrected = 1.0;                       ///< `rank_chance` corrected by Holm over all metrics of the comparison
+  double sign_chance = 1.0, rank_chance = 1.0;  ///< two-sided p-values
+  double corrected = 1.0;                       ///< `rank_chance` after Holm's correction
   Finding finding = Finding::undecided;         ///< conclusion from `corrected`
-  double not_inferior_chance = 1.0;             ///< one-sided p-value of the hypothesis "worse than the margin"
-  double not_inferior_corrected = 1.0;          ///< `not_inferior_chance` corrected by Holm
-  bool not_inferior = false;                    ///< true if `not_inferior_corrected` is below the risk
-  double pairs_needed = 0.0;  ///< pairs needed at the risk divided by the number of tests; may be infinite
+  double not_inferior_chance = 1.0;             ///< one-sided p-value of inferiority
+  double not_inferior_corrected = 1.0;          ///< after Holm's correction
+  bool not_inferior = false;                    ///< `not_inferior_corrected` is below the risk
+  double pairs_needed = 0.0;                    ///< may be infinite
 };
 
 /// FailureComparison compares the failures of two methods: runs whose status is not ok, or runs with 1 in a pass-fail
@@ -69,7 +68,7 @@ struct FailureComparison {
   Contest contest;
   std::string what;  ///< "not ok", "map_failed"
   std::int64_t pairs = 0, only_method = 0, only_against = 0;
-  Interval share{}, against_share{};  ///< fractions of failures of method and reference; Clopper and Pearson, 95 %
+  Interval share{}, against_share{};  ///< Clopper and Pearson, 95 %
   double chance = 1.0, corrected = 1.0;
   Finding finding = Finding::undecided;
   double pairs_needed = 0.0;
@@ -80,8 +79,7 @@ struct Comparison {
   std::vector<FailureComparison> failures;
 };
 
-/// Costs and other unranked metrics are compared only if the caller names them; they give no finding. Throws BadInput
-/// for a method or metric that the results lack, and for a risk, power or margin out of range.
+/// Costs and other unranked metrics are compared only if the caller names them, and without a conclusion.
 Comparison compare(const Summary& summary, const ComparisonOptions& options);
 
 }  // namespace tumble::scenarios

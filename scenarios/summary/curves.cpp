@@ -104,7 +104,6 @@ PickedRuns all_of(const Runs& runs) {
   return all;
 }
 
-/// If no method has a value of the metric on a simulated run, failures on this run do not count.
 bool is_scored(const PickedRuns& runs, const std::string* metric, std::uint64_t seed) {
   return std::any_of(runs.begin(), runs.end(), [&](const auto& entry) {
     const auto& own = entry.second;
@@ -185,7 +184,6 @@ std::string bin_label(const BinnedMetric& bin, double factor) {
 using Bins =
     std::map<std::pair<std::string, std::string>, std::map<double, std::pair<BinnedMetric, const std::string*>>>;
 
-/// Empty bins are included, so that a curve shows where samples are missing.
 Bins bins_of(const Runs& runs, Names& names) {
   std::set<const std::string*> metrics;
   for (const auto& [method, own] : runs) {
@@ -224,7 +222,6 @@ void add_sample_curves(const RunsBySetting& plain, Names& names, std::vector<Cur
   }
 }
 
-/// Each bin of simulated runs has the median of the quantity `measure`, and its ascending seeds.
 std::vector<std::pair<double, std::vector<std::uint64_t>>> bins_of_draws(std::span<const DrawValues> draws,
                                                                          const std::string& scenario,
                                                                          const std::string& measure) {

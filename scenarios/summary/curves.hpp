@@ -12,15 +12,14 @@
 
 namespace tumble::scenarios {
 
-/// CurvePoint summarises one method at one x value of a curve, over all simulated runs. Failed runs rank worst, so a
-/// quantile can be infinite.
+/// Failed runs rank worst, so a quantile can be infinite.
 struct CurvePoint {
   double x = 0.0;
-  std::string label;  ///< label of a bin: "0.5 – 1"; empty for a varied parameter
+  std::string label;  ///< label of a bin: "0.5 – 1"
   std::int64_t draws = 0, failed = 0;
   Interval failed_share{};  ///< Clopper and Pearson, 95 %
   double quantile_25 = 0.0, median = 0.0, quantile_75 = 0.0;
-  double worst_5 = 0.0;  ///< 95 % quantile, or 5 % quantile if higher values are better
+  double worst_5 = 0.0;  ///< 95 % (or 5 %) quantile
 };
 
 struct CurveLine {
@@ -29,11 +28,9 @@ struct CurveLine {
 };
 
 struct Curve {
-  /// The x axis of a curve is a parameter that the suite varies, a quantity of binned samples, or a quantity of whole
-  /// simulated runs.
   enum class Source { set, samples, draws };
   Source source = Source::set;
-  std::string axis;  ///< varied parameter or binned quantity; the name ends in the unit
+  std::string axis;  ///< ends in the unit
   std::string scenario;
   Kind kind = Kind::rate;
   std::string metric;

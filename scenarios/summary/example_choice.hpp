@@ -22,17 +22,14 @@ struct ExampleDraw {
   auto operator<=>(const ExampleDraw&) const = default;
 };
 
-/// Finds the simulated run on which the baseline of the scenario has its median headline score.
 bool typical_seed(const Summary& summary, const std::string& scenario, std::uint64_t& seed);
 
-/// Returns at most `count` typical simulated runs: first one scenario of each robot, then a second scenario of each
-/// robot, and so on.
 std::vector<ExampleDraw> choose_examples(const Summary& summary, std::span<const ExampleCandidate> candidates,
                                          std::size_t count);
 
 struct FailedOn {
   ExampleDraw draw;
-  std::size_t methods = 0;  ///< number of failed methods without truth
+  std::size_t methods = 0;  ///< failed methods without truth
 };
 
 std::vector<FailedOn> rank_failures(const Summary& summary);

@@ -17,18 +17,18 @@ struct InputWorth {
   std::string scenario;  ///< empty: all scenarios
   std::string input, doc;
   std::int64_t draws = 0;
-  std::int64_t failed = 0;             ///< runs that fail with the estimated input
-  std::int64_t cured = 0;              ///< of these, runs that succeed with the true input
-  std::int64_t broken = 0;             ///< runs that fail only with the true input
-  Interval cured_share{};              ///< `cured` / `failed` (Clopper and Pearson, 95 %); NaN if `failed` is 0
+  std::int64_t failed = 0;             ///< with the estimated input
+  std::int64_t cured = 0;              ///< successes with the true input
+  std::int64_t broken = 0;             ///< failures only with the true input
+  Interval cured_share{};              ///< `cured` / `failed`, 95 % interval
   std::int64_t better = 0, worse = 0;  ///< runs with a better or worse metric
-  /// Median decrease of the metric's badness (`how_bad`), with its BCa interval; runs that are not ok rank worst.
+  /// Median decrease of the metric's badness (`how_bad`), with its BCa interval (bias-corrected bootstrap); runs that
+  /// are not ok rank worst.
   Interval improvement{};
-  double chance = 1.0;     ///< p-value of the two-sided signed-rank test
-  double corrected = 1.0;  ///< `chance` corrected by Holm over all rows
+  double chance = 1.0;     ///< two-sided signed-rank test
+  double corrected = 1.0;  ///< `chance` after Holm's correction
 };
 
-/// The list is sorted by the fraction of prevented failures, then by p-value.
 std::vector<InputWorth> worth_of_inputs(std::span<const DrawTriage> draws, const std::string& metric);
 
 }  // namespace tumble::scenarios

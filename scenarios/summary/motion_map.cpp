@@ -82,7 +82,7 @@ std::vector<MotionPoint> thinned(const std::vector<MotionPoint>& points) {
 }
 
 /// The ICRA 2024 paper by Deschênes et al. reports rates and forces of the rig; the CRV 2021 paper reports an angular
-/// acceleration, and forces (in its abstract).
+/// acceleration and forces.
 std::vector<PublishedExtreme> published() {
   return {{"rig, 32 tumbles down a hill",
            "Deschênes and others, ICRA 2024: up to 18.6 rad/s and 157.8 m/s² (the accelerometer has a range of 16 g)",

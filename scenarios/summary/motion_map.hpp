@@ -16,8 +16,8 @@ struct MotionPoint {
 
 struct MotionCloud {
   std::string scenario;
-  std::size_t draws = 0;            ///< number of runs with both maxima above 0
-  std::vector<MotionPoint> points;  ///< at most `kPointsMax` points, evenly spaced over the runs
+  std::size_t draws = 0;            ///< runs with positive maxima
+  std::vector<MotionPoint> points;  ///< evenly spaced over the runs
 };
 
 struct PublishedExtreme {
@@ -30,16 +30,16 @@ struct PublishedExtreme {
 struct MotionMap {
   static constexpr std::size_t kCells = 48;  ///< number of cells per axis
   static constexpr std::size_t kPointsMax = 500;
-  std::vector<MotionCloud> clouds;         ///< in the order of the scenarios in `draws`
-  std::vector<double> rate_rad_s;          ///< centres of the columns, ascending; empty without runs
+  std::vector<MotionCloud> clouds;         ///< in the order of `draws`
+  std::vector<double> rate_rad_s;          ///< column centres, ascending
   std::vector<double> force_m_s2;          ///< centres of the rows, ascending
-  std::vector<double> share;               ///< fraction of the runs per cell, row by row; their sum is 1
+  std::vector<double> share;               ///< by rows; sum 1
   std::vector<PublishedExtreme> extremes;  ///< published values for the plot
 };
 
-/// Computes the density of the runs: counts in cells, smoothed along both logarithmic axes by a Gaussian. The width of
-/// the Gaussian is Scott's sigma n^(-1/6) (Multivariate Density Estimation, 1992, section 6.3), but at least half a
-/// cell. The two maxima of a run may occur at different times.
+/// The density of the runs is a histogram, smoothed along both logarithmic axes by a Gaussian. The width of the
+/// Gaussian is Scott's sigma n^(-1/6) (Multivariate Density Estimation, 1992, section 6.3), but at least half a cell.
+/// The maximum rate and the maximum force of a run may occur at different times.
 MotionMap motion_map(std::span<const DrawValues> draws);
 
 }  // namespace tumble::scenarios

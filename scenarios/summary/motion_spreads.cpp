@@ -16,8 +16,6 @@ namespace {
 
 enum class Over { draws, share_of_draws, clipped_samples };
 
-/// The figures of motions show published values of the tumbling rig (32 tumbles down a hill, ICRA 2024), and the target
-/// of this project.
 struct Quantity {
   const char* metric;
   const char* name;
@@ -53,7 +51,7 @@ constexpr std::array kQuantities = {
 /// Samples within a run are correlated, so the weighted mean has the interval of the ratio estimator of a cluster
 /// sample (Cochran, Sampling Techniques, 1977, section 9A.2).
 Interval pooled(std::span<const DrawValues* const> draws, const std::string& metric) {
-  std::vector<std::pair<double, double>> weighted;  // clipped samples of a run, and fraction with the property
+  std::vector<std::pair<double, double>> weighted;  // clipped samples, fraction
   double samples = 0.0, hits = 0.0, square = 0.0;
   for (const DrawValues* draw : draws) {
     const double weight = value_of(draw->values, "motion_clipped_samples"), share = value_of(draw->values, metric);
@@ -72,7 +70,7 @@ Interval pooled(std::span<const DrawValues* const> draws, const std::string& met
 }  // namespace
 
 std::vector<Spread> motion_spreads(std::span<const DrawValues> draws) {
-  std::vector<std::string> names;  // scenarios, in the order of `draws`
+  std::vector<std::string> names;  // in the order of `draws`
   std::map<std::string, std::vector<const DrawValues*>> by_scenario;
   for (const DrawValues& draw : draws) {
     std::vector<const DrawValues*>& own = by_scenario[draw.scenario];

@@ -15,12 +15,12 @@ struct Spread {
   std::string metric;    ///< "motion_peak_rate_rad_s"
   std::string quantity;  ///< "largest rate"
   std::string unit;
-  std::string published;  ///< text about the published value; empty if none
+  std::string published;  ///< empty if none
   /// Published range in `unit`: equal limits mean one number, NaN means no published value
   double published_low = std::numeric_limits<double>::quiet_NaN();
   double published_high = std::numeric_limits<double>::quiet_NaN();
   double factor = 1.0;         ///< conversion from SI to `unit`
-  bool of_draws = true;        ///< true: one value per run; false: fraction of runs or samples
+  bool of_draws = true;        ///< false: fraction of runs or samples
   std::vector<double> values;  ///< values in SI units
   double median = 0, quantile_05 = 0, quantile_95 = 0;
 };
@@ -28,7 +28,6 @@ struct Spread {
 inline constexpr const char* kPublishedMotion =
     "the published campaign of the rig (32 tumbles down a hill) and the target of the scenario 'hill'";
 
-/// For a fraction of all clipped samples, each run is weighted by its number of clipped samples.
 std::vector<Spread> motion_spreads(std::span<const DrawValues> draws);
 
 }  // namespace tumble::scenarios

@@ -130,8 +130,8 @@ void require_sound(const Question& question) {
     throw BadInput(fmt::format("the margin of the question (--until) is {}; it must be finite and at least 0",
                                std::to_string(question.margin.value)));
   if (!(question.risk > 0.0 && question.risk < 1.0))
-    throw BadInput(
-        fmt::format("the risk of a wrong answer is {}; it must be within (0, 1)", std::to_string(question.risk)));
+    throw BadInput(fmt::format("the risk of a wrong answer to the question (--until) is {}; it must be within (0, 1)",
+                               std::to_string(question.risk)));
   if (question.looks < 1 || question.looks > kLooksMax)
     throw BadInput(
         fmt::format("the number of interim analyses is {}; it must be within [1, {}]", question.looks, kLooksMax));

@@ -18,33 +18,31 @@ inline constexpr const char* kQuestionNote = "until";
 struct Question {
   std::string method, against;  ///< "rate/tumble"; both methods are of one kind
   std::string metric;
-  Margin margin;       ///< smallest improvement that counts; 0: any improvement
-  double risk = 0.05;  ///< probability of a wrong answer over all scenarios and analyses
-  int looks = 20;      ///< number of interim analyses, at equal intervals of the seeds
+  Margin margin;       ///< 0: any improvement
+  double risk = 0.05;  ///< of any wrong answer
+  int looks = 20;      ///< at equal intervals of the seeds
   std::uint64_t first_seed = 1, last_seed = 1;
   std::vector<std::string> scenarios;
 
-  /// Returns the ascending seeds after which the results are analysed.
   std::vector<std::uint64_t> look_seeds() const;
   std::string describe() const;
 };
 
 struct Answer {
   std::string scenario;
-  Finding finding = Finding::undecided;  ///< with a margin, `worse` means "not better by more than the margin"
-  std::uint64_t seeds = 0;               ///< number of seeds at the analysis with the answer, or at the last analysis
-  std::int64_t better = 0, worse = 0;    ///< pairs at that analysis, without ties
-  std::int64_t needed = 0;               ///< pairs of one sign that the analysis required for an answer
+  Finding finding = Finding::undecided;  ///< `worse`: not better by the margin
+  std::uint64_t seeds = 0;               ///< at the last analysis
+  std::int64_t better = 0, worse = 0;    ///< without ties
+  std::int64_t needed = 0;               ///< required pairs of one sign
 };
 
-/// Throws BadInput for equal methods, methods of two kinds, an unranked metric, or a margin or risk out of range.
 void require_sound(const Question& question);
 
 /// Stores the question in the results database before the first simulated run. Throws BadInput if the database contains
 /// another question or any run, because the risk is only valid if the question precedes the results.
 void claim(Results& results, const Question& question, const std::filesystem::path& database);
 
-/// All runs up to `last_seed` must be complete; later runs have no effect.
+/// All simulated runs up to the seed `last_seed` must be complete; later runs have no effect.
 std::vector<Answer> answers(const Results& results, const Question& question, std::uint64_t last_seed);
 
 const char* finding_text(const Answer& answer, const Question& question);

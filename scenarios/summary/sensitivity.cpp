@@ -24,7 +24,6 @@ Scored scored(const MetricSummary& metric, const MetricInfo& info) {
   for (const RankedValue& each : ranked_values(metric, worst_value(info))) {
     out.seeds.push_back(each.seed);
     out.values.push_back(info.unit == Unit::verdict && each.value != 0.0 ? 1.0 : each.value);
-    // For unranked metrics such as costs, larger values count as worse.
     const bool contested = info.sense != Sense::none;
     out.badness.push_back(contested ? how_bad(info, each.value) : each.value);
   }

@@ -27,18 +27,15 @@ NumbersOfDraws numbers_of_motion(std::span<const DrawValues> draws, const std::s
 
 struct Influence {
   std::string number;
-  Correlation correlation;  ///< with the badness; positive if larger parameter values are worse
-  FirstOrder first_order;   ///< first-order index of the ranks of the score
-  double corrected = 1.0;   ///< p-value of both statistics, corrected by Holm over all parameters of the row
+  Correlation correlation;  ///< positive: larger is worse
+  FirstOrder first_order;   ///< of the score's ranks
+  double corrected = 1.0;   ///< p-value after Holm's correction
   /// Median scores over the quarters of the runs with the lowest and with the highest parameter values
   double median_low = 0.0, median_high = 0.0;
   std::vector<DependenceClass> dependence = {};
-  /// Returns the larger of the first-order index and the squared rank correlation.
   double strength() const;
 };
 
-/// Sensitivity contains the influence of all random parameters on one metric of one method in one scenario. For the
-/// influence on failures, `metric` is "not ok".
 struct Sensitivity {
   std::string scenario;
   Kind kind = Kind::rate;
@@ -48,14 +45,13 @@ struct Sensitivity {
 };
 
 struct SensitivityOptions {
-  std::vector<std::string> methods;  ///< "rate/tumble" or "tumble"; empty: all methods without truth
-  std::vector<std::string> metrics;  ///< empty: the headline metrics of each kind
+  std::vector<std::string> methods;  ///< empty: all methods without truth
+  std::vector<std::string> metrics;  ///< empty: the headline metrics
 };
 
 inline constexpr std::size_t kSensitivityDrawsMin = 12, kSensitivityFailuresMin = 5;
 
-/// Rows with too few simulated runs are omitted, and failed runs rank worst. Throws BadInput for a method or metric
-/// that the results lack.
+/// Rows with too few simulated runs are omitted, and failed runs rank worst.
 std::vector<Sensitivity> sensitivities(const Summary& summary, const std::map<std::string, NumbersOfDraws>& numbers,
                                        const SensitivityOptions& options);
 

@@ -28,8 +28,7 @@ const MethodInfo* registered(Kind kind, const std::string& name) {
   return rank < methods().size() ? &methods()[rank].info : nullptr;
 }
 
-/// The baseline is the registered baseline if the results contain it, and otherwise the first registered method without
-/// access to the truth.
+/// If the results lack the reference method of this kind, the first method without access to the truth replaces it.
 std::string choose_baseline(Kind kind, const std::vector<MethodSummary>& methods) {
   for (const MethodSummary& method : methods) {
     const MethodInfo* info = registered(kind, method.method);

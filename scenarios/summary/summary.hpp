@@ -26,29 +26,29 @@ struct Wins {
 
 /// Failed outcomes rank worst in all statistics, so the median is infinite if half of the runs fail.
 struct MetricSummary {
-  Interval centre{};  ///< median, or fraction of failures of a pass-fail metric, with 95 % interval
+  Interval centre{};  ///< median or fraction, 95 % interval
   double quantile_95 = 0.0;
   std::vector<std::uint64_t> seeds;   ///< ascending
   std::vector<double> values;         ///< parallel to `seeds`
   std::vector<std::uint64_t> failed;  ///< seeds of failed outcomes, ascending
-  Wins wins;                          ///< against the baseline; no pairs for the baseline itself
+  Wins wins;                          ///< against the reference method
 };
 
 struct MethodSummary {
   std::string method;
-  bool needs_truth = false;  ///< true for an oracle, which is not available on a real robot
+  bool needs_truth = false;  ///< true for an oracle
   std::int64_t outcomes = 0, not_ok = 0;
   Interval not_ok_share{};                         ///< Clopper and Pearson, 95 %
   std::vector<std::uint64_t> seeds, not_ok_seeds;  ///< seeds of all and of failed outcomes; ascending
   std::map<std::string, MetricSummary> metrics;
-  std::string what;  ///< description and source, as registered; empty for an external method
+  std::string what;  ///< empty for an external method
   const MetricSummary* find(const std::string& metric) const;
 };
 
 struct Section {
   std::string scenario;
   Kind kind = Kind::rate;
-  std::string baseline;                ///< reference for the comparisons, without treatment of saturation or slip
+  std::string baseline;                ///< reference method
   std::vector<MethodSummary> methods;  ///< in the order of the registry
   std::vector<std::string> metrics;    ///< in the order of the registry, then by name
   const MethodSummary* find(const std::string& method) const;

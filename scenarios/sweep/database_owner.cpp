@@ -26,7 +26,6 @@ namespace fs = std::filesystem;
   throw BadInput(path.string() + ": cannot be locked: " + std::generic_category().message(error));
 }
 
-/// Symbolic links to the database are followed, so each database has exactly one lock file.
 fs::path lock_of(const fs::path& database) {
   std::error_code error;
   fs::path place = fs::weakly_canonical(database, error);
@@ -86,7 +85,6 @@ DatabaseOwner::DatabaseOwner(const fs::path& database) : database_(database), lo
   if (fd_ < 0) fail_to_lock(lock_, EAGAIN);
   on_signal_.emplace(lock_, Unfinished::Kind::file);
   const std::string text = who_we_are() + "\n";
-  // The lock on the database is valid even if the text of the lock file cannot be written.
   if (ftruncate(fd_, 0) == 0 && pwrite(fd_, text.data(), text.size(), 0) < 0) return;
 }
 

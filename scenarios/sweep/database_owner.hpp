@@ -12,7 +12,6 @@ namespace tumble::scenarios {
 /// no lock. The operating system releases the lock when the process ends.
 class DatabaseOwner {
  public:
-  /// Throws BadInput if another process owns the database, or if the lock file cannot be created.
   explicit DatabaseOwner(const std::filesystem::path& database);
   ~DatabaseOwner();
   DatabaseOwner(const DatabaseOwner&) = delete;

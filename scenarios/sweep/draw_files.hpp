@@ -20,11 +20,10 @@ struct Keeping {
   When when = When::never;
   std::filesystem::path folder;  ///< FOLDER/SCENARIO/SEED
   std::string command;           ///< command that reproduces the run
-  RecordingInfo versions;        ///< versions of program and physics engine, for the metadata of the recording
-  bool lidars = false;           ///< a method of the run reads lidars, in this or in another task
+  RecordingInfo versions;        ///< for the recording's metadata
+  bool lidars = false;           ///< a method of the run reads lidars
 };
 
-/// A write error in the kept files of a simulated run does not change the outcomes of the run.
 class DrawFiles {
  public:
   explicit DrawFiles(const Keeping& keeping);

@@ -88,7 +88,6 @@ bool reads_lidars(const MethodInfo& info) {
   return info.kind == Kind::slam || (info.kind != Kind::rate && !info.version.empty());
 }
 
-/// A kept recording contains lidar sweeps if a method of the simulated run reads them.
 Lidars lidars_for(const DrawTask& task, bool recordings_unseen) {
   const bool kept = task.keeping.when != Keeping::When::never && task.keeping.lidars;
   const bool read =
@@ -177,7 +176,6 @@ std::unique_ptr<MadeDraw> made_draw(const DataRoot& data, const DrawTask& task, 
   return nullptr;
 }
 
-/// The changed sensor data of the previous method are reused if the settings are equal.
 Outcome run_one(const DrawTask& task, const DrawTask::Run& run, const MadeDraw& made, double timeout_s, Given& given,
                 DrawFiles& files) {
   Outcome outcome;
@@ -210,7 +208,6 @@ Outcome run_isolated(const Method& method, const SimulatedDraw& draw, const Simu
                      const sim::Surface* surface, double timeout_s, const std::filesystem::path& folder,
                      std::string* not_kept) {
   const double before_mib = resident_mib();
-  // A killed child process cannot remove its temporary files, so the parent removes them.
   const ScratchFolder temporary("run");
   Process process(
       [&](int fd) {

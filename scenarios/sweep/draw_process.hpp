@@ -20,10 +20,10 @@ struct DrawTask {
   Setting setting;  ///< setting of the simulation
   struct Run {
     const Method* method;
-    Setting setting;  ///< setting of the simulation, or a setting that does not affect it
+    Setting setting;  ///< of the simulation and the methods
   };
   std::vector<Run> runs;
-  Keeping keeping;  ///< only for unmodified scenarios and methods
+  Keeping keeping;  ///< only for unmodified scenarios
 };
 
 /// Longest wait for messages from workers before the deadlines are checked [ms]
@@ -39,8 +39,8 @@ std::vector<Outcome> without_answer(const DrawTask& task, OutcomeStatus status, 
 void run_draw(const DataRoot& data, const DrawTask& task, double timeout_s, int fd, bool recordings_unseen = false);
 
 /// Runs one method in a separate process for at most `timeout_s` of wall time; a crash, a time-out or an exception
-/// becomes an outcome. The estimate is compared with the truth in `scored`, which equals `draw` unless the sensor data
-/// were changed.
+/// becomes an outcome. `scored` contains the truth for the scores, and equals `draw` unless the sensor data were
+/// changed.
 Outcome run_isolated(const Method& method, const SimulatedDraw& draw, const SimulatedDraw& scored,
                      const sim::Surface* surface, double timeout_s, const std::filesystem::path& folder = {},
                      std::string* not_kept = nullptr);

@@ -33,7 +33,7 @@ void serve(const WorkerTerms& terms, int tasks, int fd) {
   while (const std::optional<std::string> line = next_line(tasks, buffer)) {
     if (line->empty()) return;
     run_draw(terms.data, terms.plan.from_line(*line), terms.timeout_s, fd, terms.recordings_unseen);
-    malloc_trim(0);  // an idle worker must not hold the memory of its last run
+    malloc_trim(0);  // an idle worker must free memory
     // The final message of a worker's task follows all destructors; if the worker dies before this message, the task
     // fails.
     write_all(fd, to_line({}));
@@ -76,7 +76,7 @@ void DrawWorker::take_up(const Message& message) {
              run.setting == message.outcome->setting;
     });
   } else if (message.rejected) {
-    draw_.runs.clear();  // methods without a message get no result
+    draw_.runs.clear();  // methods without a message fail
   } else if (message.is_last()) {
     busy_ = false;
   }

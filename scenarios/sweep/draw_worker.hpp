@@ -16,14 +16,12 @@ struct WorkerTerms {
   const DataRoot& data;
   const SweepPlan& plan;
   double timeout_s;                ///< time limit of a method
-  double memory_mib;               ///< memory limit of the worker and of each process that it starts
+  double memory_mib;               ///< of the worker and its children
   bool recordings_unseen = false;  ///< see SweepOptions
-  /// A killed worker cannot remove its temporary files, so the parent removes this folder.
   std::filesystem::path temporary = {};
 };
 
-/// Tasks and results are lines of text, so no state of a run remains for the next run. The worker ends after
-/// `kDrawsPerWorker` runs, or after a run in which a child process ended abnormally.
+/// The worker ends after `kDrawsPerWorker` runs, or after a run in which a child process ended abnormally.
 class DrawWorker {
  public:
   static constexpr int kDrawsPerWorker = 200;

@@ -14,18 +14,17 @@ namespace tumble::scenarios {
 struct SimulatedDraw {
   std::string scenario;
   std::uint64_t seed = 0;
-  std::optional<sim::BuiltSituation> built;  ///< set for simulations; contains the true surface
+  std::optional<sim::BuiltSituation> built;  ///< for simulations: true surface
   sim::Recording recording;
   std::string recording_digest;
   double simulate_cpu_s = 0;
-  bool has_truth = true;  ///< a recording without truth is estimated but not scored
+  bool has_truth = true;  ///< false: estimated, not scored
 };
 
 /// The simulation of lidars is slow, and methods of kind `rate` do not read lidars.
 enum class Lidars { simulated, left_out };
 
-/// Without lidars, motion and IMU readings are bit-identical, but the digest of the recording differs. Throws BadInput,
-/// sim::InvalidSituation or sim::SimulationFailure if the simulation is impossible.
+/// Without lidars, motion and IMU readings are bit-identical, but the digest of the recording differs.
 SimulatedDraw simulate_draw(const DataRoot& data, const Scenario& scenario, std::uint64_t seed, int threads,
                             Lidars lidars = Lidars::simulated);
 
@@ -39,14 +38,14 @@ void require_applies(const Method& method, const Scenario& scenario);
 
 Estimate run_method(const Method& method, const SimulatedDraw& draw, Outcome& outcome);
 
-/// A built-in method's estimate counts as diverged without the truth if its health reports a fault that invalidates the
-/// estimate.
+/// Without the truth, the estimate of a built-in method counts as diverged if its health reports a fault that
+/// invalidates the estimate.
 void judge_without_truth(const MethodInfo& info, const Estimate& estimate, Outcome& outcome);
 
 void assess(const Method& method, const SimulatedDraw& draw, const sim::Surface* surface, const Estimate& estimate,
             Outcome& outcome);
 
-/// Returns the original run `draw` with the IMU time stamps of `given`, so that each estimate is compared with the
+/// Returns the simulated run `draw` with the IMU time stamps of `given`, so that each estimate is compared with the
 /// truth of its IMU sample.
 SimulatedDraw scored_by(const SimulatedDraw& draw, const SimulatedDraw& given);
 

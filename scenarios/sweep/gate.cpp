@@ -42,7 +42,6 @@ double difference(const MetricInfo& info, double before, double now) {
   return std::log(now / before);
 }
 
-/// The badness of a fraction is one minus the fraction; that of a signed value is its distance from the target.
 double badness(const MetricInfo& info, double value) {
   if (!by_difference(info)) return value;
   return info.unit == Unit::share ? 1.0 - value : std::abs(value - info.target);
@@ -50,10 +49,9 @@ double badness(const MetricInfo& info, double value) {
 
 struct GatePair {
   std::uint64_t seed = 0;
-  double before = 0.0, now = 0.0;  ///< infinite (worst) if the run was not ok
+  double before = 0.0, now = 0.0;  ///< infinite if not ok
 };
 
-/// `lost` contains the seeds of simulated runs that are ok in both results but have no new value.
 struct GatePairs {
   std::vector<GatePair> pairs;
   std::vector<std::uint64_t> lost;
@@ -71,7 +69,6 @@ GatePairs pairs_of(const GateRun& all, const MethodRun& before, const MethodRun&
     GatePair pair{all.seeds[k], value_at(before, info.name, k), value_at(now, info.name, k)};
     if (was_ok && std::isnan(pair.before)) continue;
     if (was_ok && is_ok && std::isnan(pair.now)) out.lost.push_back(pair.seed);
-    // A simulated run that is not ok ranks worst, even if it has a value of the metric.
     if (!was_ok) pair.before = worst_value(info);
     if (!is_ok) pair.now = worst_value(info);
     if (!std::isnan(pair.before) && !std::isnan(pair.now)) out.pairs.push_back(pair);
@@ -101,8 +98,8 @@ void hold_worst_draw(const MetricInfo& info, const std::vector<GatePair>& pairs,
                              three_digits(now.now), now.seed, three_digits(before.before));
 }
 
-/// In a gate, each metric counts as one statistical test: for a two-sided metric, the p-value is twice the smaller
-/// one-sided p-value.
+/// For a two-sided metric, the p-value is twice the smaller one-sided p-value, so that each metric counts as one
+/// statistical test.
 void hold_middle(const std::vector<GatePair>& pairs, const MetricInfo& info, const GatePolicy& policy,
                  std::size_t tests, GateResult& result) {
   result.draws = pairs.size();
@@ -170,7 +167,6 @@ GateResult hold_outcomes(const GateRun& all, const MethodRun& before, const Meth
       fault = condemned(now);
     was += was_good ? 0 : 1;
     is += fault.empty() ? 0 : 1;
-    // A missing simulated run is a fault even if the run failed in the accepted results.
     if (result.fault.empty() && !fault.empty() && (was_good || !now.status[k])) {
       result.fault = fault + seed;
       result.seed = all.seeds[k];
@@ -227,12 +223,12 @@ const MethodRun* GateRun::find(const std::string& scenario, Kind kind, const std
 
 std::vector<GateResult> hold_to_gate(const GateRun& run, const Gate& gate) {
   if (gate.accepted.methods.empty())
-    throw BadInput(fmt::format(
-        "the gate of {} has no accepted results; run 'tumble gate SUITE --accept' to create them", gate.suite));
+    throw BadInput(
+        fmt::format("suite {} has no accepted results; run 'tumble gate SUITE --accept' to create them", gate.suite));
   if (run.seeds != gate.accepted.seeds) {
     throw BadInput(fmt::format(
-        "the accepted results of gate {} contain {} simulated runs with other seeds than the {} simulated runs of this "
-        "comparison; use the same seeds, or run 'tumble gate {} --accept' to accept the new results",
+        "the accepted results of suite {} contain {} simulated runs with other seeds than the {} simulated "
+        "runs of this comparison; use the same seeds, or run 'tumble gate {} --accept' to accept the new results",
         gate.suite, gate.accepted.seeds.size(), run.seeds.size(), gate.suite));
   }
   std::vector<Pooled> all = pooled_metrics(gate.accepted);

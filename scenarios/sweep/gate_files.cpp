@@ -19,7 +19,7 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr std::array kKinds = {Kind::rate, Kind::attitude, Kind::position, Kind::slam};
-constexpr std::size_t kKeyCells = 4;  // cells of the key of a row: scenario, kind, method, metric
+constexpr std::size_t kKeyCells = 4;  // scenario, kind, method, metric
 constexpr const char* kStatusRow = "status";
 
 std::string number_text(double value) {
@@ -98,7 +98,7 @@ void read_values(const GateLine& line, MethodRun& run) {
   const std::vector<std::string> known = held_metrics(run.kind);
   const std::string& metric = line.cells[3];
   if (std::find(known.begin(), known.end(), metric) == known.end()) {
-    line.fail(fmt::format("'{}' is not a metric that the gate checks for methods of kind {}{}", metric,
+    line.fail(fmt::format("'{}' is not a metric that 'tumble gate' checks for methods of kind {}{}", metric,
                           to_string(run.kind), suggestion(metric, known)));
   }
   const auto [place, is_new] = run.values.try_emplace(metric);
@@ -137,7 +137,7 @@ void read_row(const GateLine& line, std::span<const MethodPointer> described, Ga
 double within(const YamlNode& node, double low, double high) {
   const double value = node.number();
   if (!(value >= low && value <= high)) {
-    node.fail(fmt::format("the limit of the gate is {}; it must be within [{}, {}]", number_text(value),
+    node.fail(fmt::format("the limit for new results is {}; it must be within [{}, {}]", number_text(value),
                           number_text(low), number_text(high)));
   }
   return value;

@@ -12,7 +12,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr std::uint64_t kDrawsMax = 1000;  // limit on runs: the exact tests take cubic time
+constexpr std::uint64_t kDrawsMax = 1000;  // the exact tests take cubic time
 
 MethodRun& method_run(const Outcome& outcome, GateRun& run) {
   for (MethodRun& each : run.methods) {
@@ -44,7 +44,7 @@ void add(const Outcome& outcome, GateRun& run) {
 GateRun gate_run(std::span<const Outcome> outcomes, std::uint64_t first, std::uint64_t last) {
   if (last < first || last - first >= kDrawsMax) {
     throw BadInput(
-        fmt::format("a gate compares 1 to {} seeds, but the given range is {} to {}", kDrawsMax, first, last));
+        fmt::format("'tumble gate' compares 1 to {} seeds, but the given range is {} to {}", kDrawsMax, first, last));
   }
   GateRun run;
   for (std::uint64_t seed = first; seed <= last; ++seed) run.seeds.push_back(seed);

@@ -30,7 +30,7 @@ sim::ImuRecord& primary(sim::Sensors& sensors, const sim::Truth& truth) {
   return sensors.imus.front();
 }
 
-/// Shifts the calibrated centre of mass, and thus the lever arm of every sensor.
+/// An error of the calibrated centre of mass changes the lever arm of every sensor.
 void lever_arm(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situation& situation, double size) {
   const Eigen::Vector3d given_m = primary(sensors, truth).T_BI.translation();
   const Eigen::Vector3d shift_m =

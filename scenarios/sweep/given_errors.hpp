@@ -9,11 +9,11 @@
 namespace tumble::scenarios {
 
 /// GivenError is an error of chosen size in the sensor data or the calibration that methods receive. The simulated
-/// motion and measurements are unchanged, so one simulation serves all sizes.
+/// motion and measurements are unchanged, so one simulation serves all sizes of the error.
 struct GivenError {
-  sim::Parameter parameter;  ///< size of the error; the default means no error
+  sim::Parameter parameter;  ///< size; the default means no error
   bool needs_lidar = false;
-  /// A random direction of the given error depends on the seed of the situation and not on the size of the error.
+  /// A random direction of the error depends on the seed of the simulated run and not on the size of the error.
   void (*put_in)(sim::Sensors& sensors, const sim::Truth& truth, const sim::Situation& situation,
                  double size) = nullptr;
   void (*tune)(std::span<const sim::Parameter> known, double size, sim::Values& given) = nullptr;

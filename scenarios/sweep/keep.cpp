@@ -58,7 +58,7 @@ class Worst {
   const std::set<std::pair<double, std::uint64_t>>& draws() const { return draws_; }
 
  private:
-  std::set<std::pair<double, std::uint64_t>> draws_;  // sorted from worst to best, then by seed
+  std::set<std::pair<double, std::uint64_t>> draws_;  // worst first, then by seed
 };
 
 std::set<DrawName> worst_draws(const Results& results, std::size_t count) {

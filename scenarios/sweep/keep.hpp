@@ -16,17 +16,17 @@
 
 namespace tumble::scenarios {
 
-/// The selection of kept runs depends only on the results, and not on interruptions or parallel parts of the sweep.
+/// The selection of kept simulated runs depends only on the results, and not on interruptions or parallel parts of the
+/// sweep.
 struct Keep {
   enum class Which { none, failed, worst, all };
   Which which = Which::none;
-  std::size_t count = 0;  ///< for `worst`: number of runs per scenario and method
+  std::size_t count = 0;  ///< for `worst`: per scenario and method
   bool operator==(const Keep&) const = default;
 };
 
 inline constexpr const char* kKeepNote = "keep";
 
-/// Parses "none", "failed", "all", or "worst:N" with N from 1 to 1000. Throws BadInput for another text.
 Keep parse_keep(const std::string& text);
 std::string to_string(const Keep& keep);
 
@@ -37,12 +37,11 @@ struct DrawName {
   auto operator<=>(const DrawName&) const = default;
 };
 
-/// `worst` keeps the worst runs per scenario and method (without methods that use the truth), ranked by the first
+/// `worst` selects the worst runs per scenario and method (without methods that use the truth), ranked by the first
 /// headline metric of the method's kind.
 std::set<DrawName> draws_to_keep(const Results& results, const Keep& keep);
 
 /// KeptDraws is the folder of kept runs next to a database, FILE.db.files/kept; each run has a folder SCENARIO/SEED/.
-/// All functions throw BadInput with path and reason on file system errors.
 class KeptDraws {
  public:
   explicit KeptDraws(const std::filesystem::path& database);
@@ -51,7 +50,6 @@ class KeptDraws {
   bool holds(const DrawName& draw, std::span<const Outcome> estimated) const;
   std::vector<DrawName> found() const;
   void remove(const DrawName& draw) const;
-  /// Removes incomplete files that a killed process has left; no other process may write to the folder during the call.
   void discard_unfinished() const;
   /// Copies a kept run, or only its missing estimates, with hard links where possible; returns false if `from` does not
   /// contain the run.

@@ -77,7 +77,6 @@ std::string to_line(const Message& message) {
                       {"setting", to_json(message.draw->setting)}};
   }
   if (message.not_kept) object["not_kept"] = *message.not_kept;
-  // Invalid UTF-8 in a text is replaced, so that every outcome can be stored.
   return object.dump(-1, ' ', false, json::error_handler_t::replace) + "\n";
 }
 

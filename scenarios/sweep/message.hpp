@@ -8,12 +8,12 @@
 
 namespace tumble::scenarios {
 
-/// At most one member is set; none means that the run is complete.
+/// At most one member is set; a message without members means that the run is complete.
 struct Message {
   std::optional<Outcome> outcome;
   std::optional<RejectedDraw> rejected;
   std::optional<DrawValues> draw = std::nullopt;
-  std::optional<std::string> not_kept = std::nullopt;  ///< reason why files of the run could not be kept
+  std::optional<std::string> not_kept = std::nullopt;  ///< why files were not kept
   bool is_last() const { return !outcome && !rejected && !draw && !not_kept; }
 };
 

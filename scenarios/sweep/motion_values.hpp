@@ -12,19 +12,15 @@ namespace tumble::scenarios {
 /// Computes statistics of a simulated motion (scenarios/scoring/motion_summary.hpp) as named numbers for the results
 /// database.
 ///
-/// - `motion_moving_s` is the time between first and last movement, and `motion_path_m` is the path length of the
-///   centre of mass.
-/// - `motion_peak_rate_rad_s` is the largest rate, and `motion_peak_accel_m_s2` is the largest specific force before
-///   saturation.
-/// - `motion_clip_depth_max_rad_s` is the largest saturation deficit, and `motion_clip_length_max_s` is the longest
-///   clipping interval.
-/// - `motion_several_axes_share` is the fraction of the clipped samples with at least two clipped axes.
-/// - `motion_cross_axis_share` is the fraction of the clipped samples in which clipping also disturbs an unclipped
-///   axis.
+/// - `motion_moving_s`: time between first and last movement; `motion_path_m`: path length of the centre of mass
+/// - `motion_peak_rate_rad_s`: largest rate; `motion_peak_accel_m_s2`: largest specific force before saturation
+/// - `motion_clip_depth_max_rad_s`: largest saturation deficit; `motion_clip_length_max_s`: longest clipping interval
+/// - `motion_several_axes_share`: fraction of the clipped samples with at least two clipped axes
+/// - `motion_cross_axis_share`: fraction of the clipped samples in which clipping also disturbs an unclipped axis
 DrawValues motion_values(const std::string& scenario, std::uint64_t seed, const sim::Recording& recording);
 
-/// With reference rates, it also allows `motion_clips`, `motion_clipped_share`, `motion_clipped_samples` and
-/// `motion_clip_depth_max_rad_s`.
+/// The clipping values `motion_clips`, `motion_clipped_share`, `motion_clipped_samples` and
+/// `motion_clip_depth_max_rad_s` need reference rates.
 DrawValues recorded_motion_values(const std::string& scenario, std::uint64_t seed, const sim::Recording& recording);
 
 }  // namespace tumble::scenarios

@@ -11,8 +11,8 @@
 
 namespace tumble::scenarios {
 
-/// Setting is one value of a parameter that a suite varies for a curve; an empty key means an unmodified scenario and
-/// unmodified methods.
+/// Setting is one value of a scenario or method parameter that a suite varies; with an empty key, scenario and methods
+/// are unmodified.
 struct Setting {
   std::string key;
   double value = 0.0;
@@ -27,10 +27,10 @@ struct Outcome {
   Kind kind = Kind::rate;
   std::string method;
   OutcomeStatus status = OutcomeStatus::failed;
-  std::string message;  ///< reason in one line if the status is not ok
+  std::string message;  ///< reason if not ok
   std::vector<Score> scores;
   std::string recording_digest;
-  std::string estimate_digest;  ///< digest of the estimate's numbers, 32 hexadecimal digits
+  std::string estimate_digest;  ///< 32 hexadecimal digits
   Setting setting = {};
 };
 
@@ -44,7 +44,7 @@ struct DrawValues {
 
 bool was_scored(OutcomeStatus status);
 
-/// The order is: a completed run (states most about the method), crashed and timeout, killed (least).
+/// Rank of outcomes for one run of a method: a completed run, then crashed and timeout, then killed.
 bool outranks(OutcomeStatus status, OutcomeStatus other);
 
 bool may_run_again(OutcomeStatus status);

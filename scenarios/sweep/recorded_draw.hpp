@@ -18,18 +18,15 @@ struct RecordedDraw {
   std::filesystem::path path;
   Subject subject;
   std::string digest;      ///< digest of sensors and truth
-  bool simulated = false;  ///< a simulated recording has the truth that oracles need
+  bool simulated = false;  ///< has the truth that oracles need
   bool has_truth = false;
 };
 
-/// A pattern has the syntax of glob(7); a relative pattern starts in `folder`. Throws BadInput for a pattern without a
-/// match, two files with the same name, or an unreadable file.
+/// A pattern has the syntax of glob(7); a relative pattern starts in `folder`.
 std::vector<RecordedDraw> find_recordings(std::span<const std::string> patterns, const std::filesystem::path& folder);
 
-/// Methods that need the truth need a simulated recording.
 std::vector<MethodPointer> applicable(std::span<const MethodPointer> methods, const RecordedDraw& recording);
 
-/// Throws BadInput if the digest of the recording has changed since find_recordings.
 SimulatedDraw read_draw(const RecordedDraw& recording);
 
 }  // namespace tumble::scenarios

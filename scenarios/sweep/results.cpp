@@ -16,7 +16,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-// SQLite has no NaN, so null represents NaN.
 void bind_value(SQLite::Statement& statement, int index, double value) {
   if (std::isnan(value))
     statement.bind(index);

@@ -34,7 +34,7 @@ enum class Rows { plain, curves, all };
 
 struct MergeCounts {
   std::size_t added = 0, replaced = 0, held = 0;
-  std::size_t rejected = 0;  ///< rejected runs among the added rows
+  std::size_t rejected = 0;  ///< among the added rows
 };
 
 using Names = std::set<std::string, std::less<>>;
@@ -42,7 +42,7 @@ using Names = std::set<std::string, std::less<>>;
 /// The pointers in an OutcomeView are valid until the next outcome; pointers to names stay valid.
 struct OutcomeView {
   struct Value {
-    const std::string* metric;  ///< points into the `Names` of the reader
+    const std::string* metric;  ///< points into the reader's `Names`
     double value;
   };
   std::string_view scenario;
@@ -58,21 +58,17 @@ struct OutcomeView {
 std::string method_note(Kind kind, const std::string& name);
 bool is_method_note(const std::string& key);
 
-/// Results is a results database (SQLite) with at most one row per scenario, seed, kind, method and setting. Storing a
-/// row again replaces the old row. Each call of store is one transaction, so completed results survive the end of the
-/// process.
+/// Results is a results database (SQLite) with at most one row per scenario, seed, kind, method and setting. Each call
+/// of store is one transaction, so completed results survive the end of the process.
 class Results {
  public:
-  /// The mode `join` does not check that each score has an outcome.
   enum class Mode { create_or_append, join, read_only };
   /// Throws BadInput for a file that is no results database, an incomplete schema, another build (except read_only), or
-  /// lack of space. All member functions throw BadInput with the path, also if a stored value is not a number.
+  /// lack of space.
   Results(const std::filesystem::path& path, Mode mode);
   ~Results();
   Results(Results&&) noexcept;
 
-  /// Also removes a rejection of the same scenario and seed. Scores without a name are not stored, because an empty
-  /// name marks an outcome without scores.
   void store(const Outcome& outcome);
   bool store(const RejectedDraw& rejected);
   void store(const DrawValues& draw);
@@ -80,11 +76,8 @@ class Results {
   void set_note(const std::string& key, const std::string& text);
   std::string note(const std::string& key) const;
   std::map<std::string, std::string> notes() const;
-  /// Copies all rows of the database `shard` (without notes), with constant memory. Of two rows with the same key, the
-  /// row with the higher-ranked status is kept. Throws BadInput if two scored rows differ in status, digest or a score
-  /// other than cost; with `mixed`, the first row is kept.
+  /// Copies all rows of another results database `shard`, with constant memory.
   void absorb(const Results& shard, bool mixed, MergeCounts& counts);
-  /// If `work` throws, nothing is stored, and the exception is rethrown.
   void in_one_transaction(const std::function<void()>& work);
 
   bool has_rows() const;

@@ -27,7 +27,6 @@ struct ShardRow {
   double setting;
 };
 
-/// New numbers have the order of the old numbers, so scores are only appended.
 class Joining {
  public:
   Joining(SQLite::Database& into, const SQLite::Database& shard, const std::filesystem::path& path, bool mixed,
@@ -274,7 +273,7 @@ class Joining {
                           "SELECT id, status, recording_digest, estimate_digest FROM outcomes WHERE scenario = ? AND "
                           "seed = ? AND kind = ? AND method = ? AND varied = ? AND setting = ?"};
   SQLite::Statement held_scores_{into_, "SELECT metric, value FROM score_values WHERE outcome = ?"};
-  // In Mode::join, the database does not delete the scores of a deleted outcome.
+  // In Mode::join, the database does not delete the scores of a deleted outcome automatically.
   SQLite::Statement remove_scores_{into_, "DELETE FROM score_values WHERE outcome = ?"};
   SQLite::Statement remove_{into_, "DELETE FROM outcomes WHERE id = ?"};
   SQLite::Statement forget_{into_, std::string("DELETE FROM outcomes") + kDraw + "= ''"};

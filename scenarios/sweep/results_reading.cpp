@@ -195,7 +195,6 @@ std::vector<RejectedDraw> Results::rejected_of(const std::string& scenario, std:
 std::vector<DrawValues> Results::draws(Rows rows) const {
   return impl_->guarded([&] {
     std::vector<DrawValues> draws;
-    // Unmodified scenarios all have the same setting, so this order is that of the database key and needs no sorting.
     const char* order = rows == Rows::plain ? " ORDER BY scenario, seed, varied, setting, metric"
                                             : " ORDER BY varied, setting, scenario, seed, metric";
     SQLite::Statement select(

@@ -7,9 +7,8 @@
 
 namespace tumble::scenarios {
 
-// The database stores an unsigned 64-bit seed as a signed number with the same bits. The column `varied` contains the
-// keys of a curve point and `setting` their value; for unmodified scenarios and methods, `varied` is empty. The view
-// `scores` contains only rows with an empty `varied`; the view `curves` contains the others.
+// The database stores an unsigned 64-bit seed as a signed number with the same bits. The columns `varied` and `setting`
+// contain the keys and the value of a varied parameter; for unmodified scenarios and methods, `varied` is empty.
 const char* const kSchema = R"sql(
 CREATE TABLE notes (
   key TEXT PRIMARY KEY NOT NULL,

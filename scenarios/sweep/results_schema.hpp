@@ -12,7 +12,7 @@ namespace tumble::scenarios {
 /// Application id in the SQLite header ("TMBL"), by which the program recognises its databases
 inline constexpr int kApplicationId = 0x544d424c;
 inline constexpr int kSchemaVersion = 4;
-/// Schema version that differs from the current version only in the allowed statuses
+/// Older schema version that differs from the current version only in the allowed statuses
 inline constexpr int kReadableVersion = 3;
 
 extern const char* const kSchema;

@@ -69,8 +69,6 @@ struct DrawValue {
   }
 };
 
-/// RowsInto inserts many rows per SQL statement, because the fixed cost of a statement is as large as the cost of a
-/// row.
 template <typename Row>
 class RowsInto {
  public:

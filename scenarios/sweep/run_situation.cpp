@@ -12,7 +12,7 @@ namespace tumble::scenarios {
 RunResult run_situation(const DataRoot& data, const Scenario& scenario, std::uint64_t seed,
                         std::span<const MethodPointer> methods, int threads, Lidars lidars, const Setting& setting) {
   SimulatedDraw draw = simulate_draw(data, with_setting(scenario, setting), seed, threads, lidars);
-  std::optional<SimulatedDraw> original;  // run for scoring, if the methods get modified sensor data
+  std::optional<SimulatedDraw> original;  // for scoring modified sensor data
   if (reach(setting) == Reach::input) {
     SimulatedDraw given = with_setting(draw, setting);
     original = scored_by(draw, given);

@@ -20,7 +20,7 @@ struct RunResult {
   std::string scenario;
   std::uint64_t seed = 0;
   std::optional<sim::BuiltSituation> built;     ///< the simulated situation
-  std::shared_ptr<const sim::Surface> surface;  ///< true surface for map scores; null if no method builds a map
+  std::shared_ptr<const sim::Surface> surface;  ///< null without maps
   sim::Recording recording;
   std::string recording_digest;
   double simulate_cpu_s = 0;

@@ -38,7 +38,7 @@ void read_seeds(const YamlNode& node, Suite& suite) {
 
 std::vector<std::string> keys_of(const std::string& text, const YamlNode& node) {
   std::vector<std::string> keys;
-  std::stringstream stream(text + "+");  // a trailing "+" gives an empty key, which is rejected later
+  std::stringstream stream(text + "+");  // a trailing "+" gives an empty key
   for (std::string key; std::getline(stream, key, '+');) {
     std::erase(key, ' ');
     if (key.empty() || std::find(keys.begin(), keys.end(), key) != keys.end()) {
@@ -164,7 +164,6 @@ void read_draws(const DataRoot& data, const YamlNode& root, const std::map<std::
   read_scenarios(data, fields.at("scenarios"), suite);
 }
 
-/// Returns the path of an external method relative to the folder of the suite, or the name of a built-in method.
 std::string method_name(const std::string& text, const std::filesystem::path& folder) {
   return is_method_file(text) ? (folder / text).string() : text;
 }

@@ -20,7 +20,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-constexpr char kBetween = '\t';  // separates an input's name from its outcome; names contain no tab
+constexpr char kBetween = '\t';  // names contain no tab
 
 void report_rows(const DataRoot& data, const Scenario& scenario, std::uint64_t seed, const Method& method,
                  const SuiteTriageOptions& options, int fd) {
@@ -79,7 +79,7 @@ void conclude(Worker& worker, bool late, const Failure& failure, DrawTriage& dra
   const Process::End end = worker.process.wait();
   if (read_rows(worker.said, failure, draw)) return;
   draw.error_code = late ? "the simulated run did not end within its time limit"
-                         : "the process of the simulated run " + end.describe();
+                         : fmt::format("the process that computed the simulated run failed: {}", end.describe());
 }
 
 bool begin(std::list<Worker>& workers, std::size_t index, double deadline_s, const std::function<void(int)>& work) {

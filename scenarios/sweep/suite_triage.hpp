@@ -17,8 +17,8 @@ namespace tumble::scenarios {
 
 struct DrawTriage {
   DrawName draw;
-  std::vector<TriageRow> rows;  ///< rows of triage(); the first is the outcome without true inputs
-  std::string error_code;       ///< reason for missing rows: simulation impossible, process died or timed out
+  std::vector<TriageRow> rows;  ///< first: without true inputs
+  std::string error_code;       ///< simulation impossible, process died, time-out
 };
 
 std::vector<DrawName> draws_of(const DataRoot& data, const Suite& suite, const Method& method);
@@ -26,16 +26,15 @@ std::vector<DrawName> draws_of(const DataRoot& data, const Suite& suite, const M
 std::set<DrawName> failed_draws(const Results& results, const Method& method, const Failure& failure);
 
 struct SuiteTriageOptions {
-  TriageOptions triage;                  ///< `on_run` and `on_row` are not called
+  TriageOptions triage;                  ///< without callbacks
   int jobs = 1;                          ///< number of processes
   double memory_mib = kWorkerMemoryMib;  ///< memory limit (RLIMIT_DATA) of each process
   const std::atomic<bool>* stop = nullptr;
   std::function<void(const DrawTriage&)> on_draw;  ///< called after each simulated run
 };
 
-/// Runs the triage of each simulated run in a separate process, whose time limit is that of its method runs plus two
-/// further runs. If the process dies or times out, its results so far are kept, with an error. Throws BadInput for an
-/// unreadable scenario, an invalid memory limit, or if no process can be started.
+/// Runs the triage (replacement of inputs by true values) of each simulated run in a separate process with a time
+/// limit. If the process dies or times out, its results so far are kept, with an error.
 std::vector<DrawTriage> triage_draws(const DataRoot& data, std::span<const DrawName> draws, const Method& method,
                                      const SuiteTriageOptions& options);
 

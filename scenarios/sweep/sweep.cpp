@@ -41,8 +41,6 @@ void claim(Results& results, const DataRoot& data, const Suite& suite, const std
   if (!suite.recordings.empty()) results.set_note("source", kRecordingsSource);
 }
 
-/// The descriptions of external methods are stored with absolute paths, so that each run can be repeated from any
-/// folder.
 void note_descriptions(Results& results, const Suite& suite) {
   for (const std::string& name : suite.methods) {
     if (!is_method_file(name)) continue;
@@ -52,7 +50,6 @@ void note_descriptions(Results& results, const Suite& suite) {
   }
 }
 
-/// Throws BadInput if the results contain another version of an external method.
 void claim_methods(Results& results, std::span<const MethodPointer> methods) {
   for (const MethodPointer& method : methods) {
     if (method->info.version.empty()) continue;
@@ -127,7 +124,6 @@ class Sweep {
       }
       report();
     }
-    // Messages that a worker sent before it was stopped are stored too.
     for (DrawWorker& worker : workers_) {
       const bool busy = worker.is_busy();
       hear(worker);
@@ -166,7 +162,7 @@ class Sweep {
     } catch (const std::system_error& error) {
       if (workers_.empty())
         throw BadInput(fmt::format("cannot start a worker process for simulated runs: {}", error.what()));
-      return false;  // retry after another process has ended
+      return false;  // retry after a process has ended
     }
     return workers_.back().give(task, deadline_s);
   }
@@ -218,8 +214,9 @@ class Sweep {
 
   // If the worker process of a task dies, each of its remaining methods gets an outcome without scores.
   void account_for_death(const DrawTask& draw, bool late, const Process::End& end) {
-    const std::string what = late ? "the simulated run did not end within its time limit"
-                                  : "the process of the simulated run " + end.describe();
+    const std::string what =
+        late ? "the simulated run did not end within its time limit"
+             : fmt::format("the process that computed the simulated run failed: {}", end.describe());
     if (updating_kept_) {
       progress_.not_kept = what;
       return;
@@ -234,7 +231,6 @@ class Sweep {
     if (outcome.status != OutcomeStatus::ok) ++progress_.failures[outcome.status];
   }
 
-  /// Repeats runs whose kept files are missing, and removes runs that the rule does not select.
   void update_kept() {
     updating_kept_ = true;
     const std::set<DrawName> wanted = draws_to_keep(results_, options_.keep);
@@ -299,7 +295,7 @@ class Sweep {
   std::list<DrawWorker> workers_;
   SweepProgress progress_;
   std::uint64_t done_before_ = 0;
-  bool updating_kept_ = false;  ///< runs are repeated only to write their files
+  bool updating_kept_ = false;  ///< only write files
 };
 
 }  // namespace

@@ -33,12 +33,12 @@ struct Suite {
   std::vector<std::string> scenarios;
   std::uint64_t first_seed = 1, last_seed = 1;
   std::vector<std::string> methods;         ///< names for find_methods
-  double timeout_s = 300;                   ///< time limit of one method on one run
-  std::vector<std::string> recordings;      ///< file patterns, instead of scenarios and seeds
-  std::filesystem::path recordings_folder;  ///< base folder of the patterns; default: folder of the suite file
-  std::vector<DrawClass> classes;           ///< key `draws`: only these runs of scenarios x seeds; empty: all
-  std::vector<std::string> shown_metrics;   ///< key `metrics`: shown by `bench`; empty: the headline metrics
-  std::vector<Variation> curves;            ///< key `vary`: {KEY: [values]}; "+" joins keys that change together
+  double timeout_s = 300;                   ///< of one method on one run
+  std::vector<std::string> recordings;      ///< instead of scenarios and seeds
+  std::filesystem::path recordings_folder;  ///< default: folder of the suite
+  std::vector<DrawClass> classes;           ///< key `draws`; empty: all
+  std::vector<std::string> shown_metrics;   ///< key `metrics`; empty: headline metrics
+  std::vector<Variation> curves;            ///< key `vary`: {KEY: [values]}
 
   bool has_draw(const std::string& scenario, std::uint64_t seed) const;
   std::uint64_t draw_count() const;
@@ -48,17 +48,17 @@ void require_seeds(const Suite& suite);
 
 std::vector<std::string> suite_names(const DataRoot& data);
 /// Loads a suite by its name, from a suite file, or from the name of a scenario, which gives a suite of all methods on
-/// this scenario. Throws BadInput if the name is unknown or the file is invalid.
+/// this scenario.
 Suite load_suite(const DataRoot& data, const std::string& name);
 
 struct SweepProgress {
   std::uint64_t draws_done = 0, draws_total = 0;
   std::uint64_t outcomes = 0, rejected = 0;
-  std::map<OutcomeStatus, std::uint64_t> failures;  ///< outcomes that are not ok, by status
-  std::uint64_t kept = 0, to_keep = 0;              ///< kept runs, and runs that should be kept; set at the end
-  std::string not_kept;                             ///< latest error when keeping a run
+  std::map<OutcomeStatus, std::uint64_t> failures;  ///< not ok, by status
+  std::uint64_t kept = 0, to_keep = 0;              ///< set at the end
+  std::string not_kept;                             ///< latest error
   double elapsed_s = 0, left_s = 0;
-  double peak_mib = 0;  ///< largest resident memory of any finished process
+  double peak_mib = 0;  ///< of any finished process
   std::uint64_t not_ok() const;
 };
 
@@ -67,12 +67,12 @@ void require_worker_memory(double mib);
 
 struct SweepOptions {
   int jobs = 1;                             ///< number of workers
-  double memory_mib = kWorkerMemoryMib;     ///< memory limit (RLIMIT_DATA) of a worker and of its child processes
-  const std::atomic<bool>* stop = nullptr;  ///< set to stop after storing completed results
+  double memory_mib = kWorkerMemoryMib;     ///< of a worker and its children
+  const std::atomic<bool>* stop = nullptr;  ///< stops after storing completed results
   std::function<void(const SweepProgress&)> on_progress;
-  std::vector<OutcomeStatus> again;  ///< statuses of rows to repeat: crashed, timeout, killed
-  Keep keep;                         ///< rule for kept runs; `none` leaves kept files unchanged
-  RecordingInfo versions;            ///< versions of program and physics engine, for kept recordings
+  std::vector<OutcomeStatus> again;  ///< to repeat: crashed, timeout, killed
+  Keep keep;                         ///< `none` keeps existing files
+  RecordingInfo versions;            ///< for kept recordings
   /// If true, lidars that no method of a task reads are not simulated; estimates and scores are unchanged, but the
   /// digest of the recording differs.
   bool recordings_unseen = false;
@@ -85,9 +85,7 @@ Results open_results(const DataRoot& data, const Suite& suite, const std::filesy
 
 /// Executes the runs of the suite that the database lacks; worker processes run each method in a separate process. If a
 /// method crashes, times out or exceeds its memory, its outcome is crashed, timeout or killed, and the sweep continues.
-/// Each outcome is stored when it is complete. Simulated runs are planned one at a time, so memory use does not depend
-/// on their number. Throws BadInput if the results of a recording come from other data, or if no method can run on any
-/// scenario.
+/// Memory use does not depend on the number of simulated runs.
 SweepProgress sweep(const DataRoot& data, const Suite& suite, const DatabaseOwner& database,
                     const SweepOptions& options);
 SweepProgress sweep(const DataRoot& data, const Suite& suite, const std::filesystem::path& database,

@@ -19,7 +19,6 @@ std::vector<std::string> commands_of(const std::string& note);
 
 std::string with_commands(const std::string& note, const std::string& more);
 
-/// The word of a POSIX shell is quoted if it contains anything but letters, digits and `_-./:=,+@%`.
 std::string shell_word(const std::string& text);
 
 }  // namespace tumble::scenarios

@@ -50,7 +50,6 @@ SweepPlan::SweepPlan(const DataRoot& data, const Suite& suite, const SweepOption
     throw BadInput(fmt::format(
         "suite {}: none of the suite's methods applies to its scenarios; add a method for this robot", suite.name));
   }
-  // A scenario from which no situation can be drawn must cause an exception, not an outcome.
   for (const Planned& each : scenarios_) draw(data, each.scenario, suite.first_seed);
   next_.seed = suite.first_seed;
   next_.past_seeds = scenarios_.empty();

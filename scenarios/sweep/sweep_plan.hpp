@@ -14,7 +14,6 @@
 
 namespace tumble::scenarios {
 
-/// SweepPlan iterates over the scenarios and seeds of a suite, with the methods to run on each, in constant memory.
 class SweepPlan {
  public:
   SweepPlan(const DataRoot& data, const Suite& suite, const SweepOptions& options,
@@ -35,7 +34,6 @@ class SweepPlan {
   DrawTask next(const Results& results) const;
 
   bool has(const DrawName& draw) const;
-  /// The returned task repeats the completed methods on a scenario and seed, to keep their files.
   DrawTask again(const DrawName& draw, const Results& results) const;
 
   std::string to_line(const DrawTask& task) const;
@@ -58,7 +56,6 @@ class SweepPlan {
     bool past_seeds = false;
   };
 
-  /// A suite without a list of runs contains all scenarios and seeds.
   bool is_wanted() const;
   void step();
   void add_missing(const std::vector<MethodPointer>& methods, const std::vector<Outcome>& held, const Setting& setting,
@@ -71,8 +68,6 @@ class SweepPlan {
   const Suite& suite_;
   const SweepOptions& options_;
   KeptDraws kept_;
-  /// `simulated_` contains the settings that need a separate simulation; `shared_` contains those that reuse the
-  /// unmodified simulation.
   std::vector<Setting> simulated_ = {Setting{}}, shared_;
   std::vector<MethodPointer> methods_;
   std::vector<Planned> scenarios_;

@@ -32,7 +32,7 @@ bool Failure::holds(const Outcome& outcome) const {
   if (std::any_of(outcome.scores.begin(), outcome.scores.end(), is_failed_verdict)) return true;
   if (metric.empty()) return false;
   const Score* score = find_score(outcome.scores, metric);
-  if (score == nullptr || std::isnan(score->value)) return true;  // a run without the metric counts as failed
+  if (score == nullptr || std::isnan(score->value)) return true;  // no value counts as failed
   return metric_info(metric).sense == Sense::higher ? score->value < limit : score->value > limit;
 }
 

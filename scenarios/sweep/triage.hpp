@@ -10,7 +10,6 @@
 
 namespace tumble::scenarios {
 
-/// TrueInput is one input of a method, with a function that replaces it by its true value.
 struct TrueInput {
   std::string name;
   std::string doc;
@@ -22,13 +21,13 @@ std::span<const TrueInput> true_inputs();
 bool is_failed_verdict(const Score& score);
 
 struct Failure {
-  std::string metric;  ///< empty: only status and verdicts count
-  double limit = 0.0;  ///< upper limit, or lower limit if higher values are better
+  std::string metric;  ///< empty: only status and verdicts
+  double limit = 0.0;  ///< lower limit if higher is better
   bool holds(const Outcome& outcome) const;
 };
 
 struct TriageRow {
-  std::string input;  ///< replaced input; "none" for the outcome without true inputs
+  std::string input;  ///< "none": without true inputs
   std::string doc;
   Outcome outcome;
   bool fails = false;
@@ -42,8 +41,7 @@ struct TriageOptions {
 };
 
 /// Runs a method on the original sensor data, then with each input replaced by its true value, in separate processes.
-/// All runs are scored against the same truth. If no true input prevents a failure, the cause is the method or the
-/// scenario.
+/// If no true input prevents a failure, the cause is the method or the scenario.
 std::vector<TriageRow> triage(const DataRoot& data, const Scenario& scenario, std::uint64_t seed, const Method& method,
                               const TriageOptions& options);
 

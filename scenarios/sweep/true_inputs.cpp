@@ -14,7 +14,7 @@ namespace {
 using Readings = std::vector<Eigen::Vector3d>;
 
 constexpr std::uint8_t kAccelClipFlags = 0b111000;
-constexpr std::uint32_t kInstant_ns = 1000;  // too short for motion, but time stamps still differ, as mappers require
+constexpr std::uint32_t kInstant_ns = 1000;  // too short for motion
 
 double largest(const Readings& readings) {
   double largest = 0.0;
@@ -92,7 +92,6 @@ bool exact_mounting(sim::Sensors& sensors, const sim::Truth& truth) {
   return changed;
 }
 
-/// Each time stamp becomes the true end of the averaging window.
 bool exact_stamps(sim::Sensors& sensors, const sim::Truth& truth) {
   bool changed = false;
   const std::int64_t end_ns = static_cast<std::int64_t>(truth.q_WB.size() - 1) * truth.period_ns;
@@ -130,7 +129,7 @@ bool exact_ranges(sim::Sensors& sensors, const sim::Truth& truth) {
   return !lidar.range_m.empty();
 }
 
-/// Removes the motion distortion of the sweeps: the true poses move all points to the sensor pose at the last point.
+/// The true poses move all points of a sweep to the sensor pose at the last point, which removes the motion distortion.
 bool unbent_sweeps(sim::Sensors& sensors, const sim::Truth& truth) {
   if (sensors.lidars.empty() || truth.lidars.empty()) return false;
   sim::LidarRecord& lidar = sensors.lidars.front();

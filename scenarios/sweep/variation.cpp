@@ -89,13 +89,14 @@ void check_given(const std::string& key, std::span<const double> values, const S
   for (const double value : values) require_settable(key, error.parameter, value);
   if (scenario.sensors.empty() || scenario.sensors.front().kind != "imu") {
     throw BadInput(
-        fmt::format("key '{}' is an error of the primary IMU, but the first sensor of scenario {} is not an IMU", key,
+        fmt::format("key '{}' sets an error of the primary IMU, but the first sensor of scenario {} is not an IMU", key,
                     scenario.name));
   }
   const bool lidar = std::any_of(scenario.sensors.begin(), scenario.sensors.end(),
                                  [](const Scenario::Sensor& sensor) { return sensor.kind.ends_with("lidar"); });
   if (error.needs_lidar && !lidar)
-    throw BadInput(fmt::format("key '{}' is an error of the lidar, but scenario {} has no lidar", key, scenario.name));
+    throw BadInput(
+        fmt::format("key '{}' sets an error of the lidar, but scenario {} has no lidar", key, scenario.name));
 }
 
 }  // namespace

@@ -24,20 +24,18 @@ struct Variation {
   std::vector<Setting> settings() const;
 };
 
-/// Reach states which part of a run must be repeated for each value of a setting.
 enum class Reach { nothing, simulation, input, method };
 Reach reach(const Setting& setting);
 
 bool needs_lidar(const Setting& setting);
 
-/// Throws BadInput if a key is unknown, is of another sort than the other keys, or does not apply to one of the
-/// scenarios. Throws BadInput if no situation with seed `seed` can be drawn with one of the values.
+/// Throws BadInput if a key is unknown, has another form than the other keys, or does not apply to one of the
+/// scenarios.
 void check(const Variation& variation, const DataRoot& data, std::span<const std::string> scenarios,
            std::uint64_t seed);
 
 Scenario with_setting(Scenario scenario, const Setting& setting);
 
-/// Throws BadInput if the run lacks the sensor, or is a recording: the error depends on the simulated situation.
 SimulatedDraw with_setting(const SimulatedDraw& draw, const Setting& setting);
 
 Method with_setting(const Method& method, const Setting& setting);

@@ -60,7 +60,7 @@ class Cell {
   }
 
   double dx_, dy_, foot_m_, reach_m_;
-  std::array<double, 4> heights_m_;  ///< heights of the corners, anticlockwise from the first
+  std::array<double, 4> heights_m_;  ///< anticlockwise from the first corner
 };
 
 class Touched {

@@ -5,18 +5,17 @@
 
 #include <optional>
 
-/// Contacts between struts (capsules of the robot's cage) and the ground are computed in closed form. MuJoCo's
+/// Contacts between struts (capsules of the robot's cage) and the ground are computed in closed form, because MuJoCo's
 /// iterative method (GJK) would take half of the computing time of a tumble.
 namespace tumble::sim::engine {
 
-/// The contacts agree with those of MuJoCo within MuJoCo's tolerance (1e-6 m). A contact is midway between the two
-/// surfaces, and its normal points from the ground to the axis. Returns nothing if the axis is below the ground
-/// surface, the field is rotated, or the capsule is as low as the field's bottom; the caller must then use MuJoCo's
-/// search.
+/// The computed contacts agree with those of MuJoCo within MuJoCo's tolerance (1e-6 m). A contact is midway between the
+/// two surfaces, and its normal points from the ground to the capsule's axis. Returns nothing if the axis is below the
+/// ground surface, the field is rotated, or the capsule is as low as the field's bottom.
 std::optional<int> field_contacts(const mjModel& model, const mjData& data, int field, int capsule,
                                   mjPreContact* contacts);
 
-/// The collision function is replaced in a table of MuJoCo that the whole process shares.
+/// The new collision function replaces that of MuJoCo in a table that the whole process shares.
 void find_field_contacts_by_geometry();
 
 }  // namespace tumble::sim::engine

@@ -34,8 +34,7 @@ struct Field {
     return scale_m * std::max(heights[row * columns + column], heights[(row + 1) * columns + column]);
   }
 
-  /// Returns the depth of a point below the ground triangle at its position; negative above the ground, and 0 outside
-  /// the field.
+  /// Depth of a point below the ground triangle at its position; negative above the ground, and 0 outside the field.
   double depth_m(const Eigen::Vector3d& p_m) const {
     const double across = (p_m.x() + half_x_m) / cell_x_m, along = (p_m.y() + half_y_m) / cell_y_m;
     if (!(across >= 0.0 && across <= columns - 1 && along >= 0.0 && along <= rows - 1)) return 0.0;
@@ -64,7 +63,7 @@ struct Strut {
     from_m = middle_m - half_m;
     along_m = 2.0 * half_m;
     radius_m = model.geom_size[3 * capsule];
-    constexpr double kSlack_m = 1e-6;  // larger than all rounding errors of this computation
+    constexpr double kSlack_m = 1e-6;  // above all rounding errors
     reach_m = radius_m + kSlack_m;
   }
   bool finite() const { return from_m.allFinite() && along_m.allFinite(); }

@@ -38,7 +38,7 @@ void update_bodies(const mjModel& model, mjData& data) {
 }
 
 BodyState state_on_joints(const mjModel& model, const mjData& data, int body) {
-  mjtNum velocity[6];  // angular velocity, then velocity of the body's origin, both in world axes
+  mjtNum velocity[6];  // angular, then linear, world axes
   mj_objectVelocity(&model, &data, mjOBJ_XBODY, body, velocity, 0);
   BodyState out;
   out.time_s = data.time;

@@ -15,7 +15,7 @@ BodyState state_on_joints(const mjModel& model, const mjData& data, int body);
 BodyState state_at_rest(const World& world);
 
 /// Moves the joints from their current angles so that the sensor body is as close as possible to `T_WB` (least squares
-/// of metres and radians). If two joint configurations reach the pose, the result is the one nearer to the start.
+/// of metres and radians).
 void reach(const World& world, const Eigen::Isometry3d& T_WB, mjData& data);
 
 }  // namespace tumble::sim::engine

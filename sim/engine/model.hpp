@@ -30,11 +30,11 @@ struct World {
   ModelPtr model;
   /// Id of the body that carries the sensors, whose inertial frame is B
   int robot_body = -1;
-  bool free = true;                   ///< true: the robot is a single free body; false: the body is attached by joints
-  std::vector<std::string> surfaces;  ///< surface id -> name; parallel to `surface_geom`
-  std::vector<int> surface_geom;      ///< surface id -> geom id; static geoms that a lidar sees and a robot touches
+  bool free = true;                   ///< false: attached by joints
+  std::vector<std::string> surfaces;  ///< surface id -> name
+  std::vector<int> surface_geom;      ///< static geoms visible to lidars
   std::vector<FrictionPatch> patches;
-  double half_extent_m = 0;  ///< the robot has left the world beyond this |x| or |y|
+  double half_extent_m = 0;  ///< limit of |x| and |y|
   Eigen::Vector3d start_W_m = Eigen::Vector3d::Zero();
   /// True centre of mass in the robot's design frame, in B axes
   Eigen::Vector3d com_offset_m = Eigen::Vector3d::Zero();

@@ -9,8 +9,8 @@
 namespace tumble::sim::engine {
 
 /// NearGeoms restricts MuJoCo's bounding-volume tree of the world to geoms that a free robot may touch soon; the
-/// destructor restores the original tree. MuJoCo tests the remaining pairs as before and sorts contacts by geom, so the
-/// motion stays bit-identical.
+/// destructor restores the original tree. MuJoCo tests the remaining pairs of geoms as before and sorts contacts by
+/// geom, so the motion stays bit-identical.
 class NearGeoms {
  public:
   /// `model` must outlive this object, and must not be copied while this object exists.
@@ -26,7 +26,7 @@ class NearGeoms {
  private:
   struct Leaf {
     int geom;
-    bool always;                      ///< the geom is in the tree at any distance
+    bool always;                      ///< in the tree at any distance
     Eigen::Matrix<double, 6, 1> box;  ///< centre and half sizes, world axes
   };
   using Nodes = std::vector<Leaf>::iterator;
@@ -35,11 +35,11 @@ class NearGeoms {
   int plant(Nodes first, Nodes last);
 
   mjModel& model_;
-  double reach_m_ = -1.0;  ///< reach of the robot about its body; negative if this object does nothing
+  double reach_m_ = -1.0;  ///< negative: object does nothing
   Eigen::Vector3d asked_W_m_;
   std::vector<Leaf> leaves_, near_;
   int planted_ = 0;
-  std::vector<int> own_child_, own_geom_;  ///< the original tree of MuJoCo's compiler
+  std::vector<int> own_child_, own_geom_;  ///< tree of MuJoCo's compiler
   std::vector<mjtNum> own_box_;
 };
 

@@ -136,7 +136,7 @@ void Physics::append_contacts(std::int64_t time_ns, std::vector<ContactTruth>& c
   const Eigen::Vector3d w_W = now.q_WB * now.w_WB_B_rad_s;
   for (int i = 0; i < data_->ncon; ++i) {
     const mjContact& contact = data_->contact[i];
-    if (contact.efc_address < 0) continue;  // detected, but too far apart for a force
+    if (contact.efc_address < 0) continue;  // too far apart for a force
     const bool robot_second = model->geom_bodyid[contact.geom[1]] == world_.robot_body;
     if (!robot_second && model->geom_bodyid[contact.geom[0]] != world_.robot_body) continue;
     mjtNum force[6];

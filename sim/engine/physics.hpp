@@ -24,7 +24,6 @@ class Physics {
   /// current pose.
   void set_state(const BodyState& state);
 
-  /// Throws InvalidSituation if the robot has no hinge of this name.
   double joint_rad(const std::string& name) const;
   double joint_rate_rad_s(const std::string& name) const;
   void set_joint(const std::string& name, double angle_rad, double rate_rad_s);

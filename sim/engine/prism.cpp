@@ -23,8 +23,7 @@ struct Pair {
   }
 };
 
-/// Returns the distance of a point to the left of an edge, seen from above, multiplied by the horizontal length of the
-/// edge.
+/// Distance of a point to the left of an edge, seen from above, multiplied by the horizontal length of the edge.
 double left_of(const Vector3d& edge_m, const Vector3d& beside_m) {
   return edge_m.x() * beside_m.y() - edge_m.y() * beside_m.x();
 }
@@ -48,7 +47,7 @@ class AxisBox {
   }
 
  private:
-  static constexpr double kSlack_m = 1e-9;  // larger than all rounding errors of this computation
+  static constexpr double kSlack_m = 1e-9;  // above all rounding errors
 
   double apart_m(int axis, double low_m, double high_m) const {
     return std::max(std::max(low_m_[axis] - high_m, low_m - high_m_[axis]), 0.0);
@@ -62,7 +61,7 @@ class AxisBox {
 void meet_edge(const Vector3d& p, const Vector3d& u, const Vector3d& q, const Vector3d& v, Pair& closest) {
   const Vector3d r = p - q;
   const double a = u.squaredNorm(), e = v.squaredNorm(), b = u.dot(v), c = u.dot(r), f = v.dot(r);
-  const double apart = a * e - b * b;  // 0 if axis and edge are parallel
+  const double apart = a * e - b * b;  // 0: parallel
   double s = apart > 1e-12 * a * e ? std::clamp((b * f - c * e) / apart, 0.0, 1.0) : 0.0;
   const double t = std::clamp((b * s + f) / e, 0.0, 1.0);
   if (a > 0.0) s = std::clamp((b * t - c) / a, 0.0, 1.0);
@@ -82,7 +81,7 @@ void meet_top(const Vector3d& end_m, const Prism& prism, const Vector3d& normal,
 void meet_side(const Vector3d& end_m, const Prism& prism, int i, Pair& closest) {
   const Vector3d& from_m = prism.top_m[i];
   const Vector3d edge_m = prism.top_m[(i + 1) % 3] - from_m, beside_m = end_m - from_m;
-  if (left_of(edge_m, beside_m) > 0.0) return;  // the end of the axis is on the inner side
+  if (left_of(edge_m, beside_m) > 0.0) return;  // the axis ends inside
   const double share = edge_m.head<2>().dot(beside_m.head<2>()) / edge_m.head<2>().squaredNorm();
   if (share < 0.0 || share > 1.0 || beside_m.z() > share * edge_m.z()) return;
   Vector3d on_face_m = from_m + share * edge_m;

@@ -7,7 +7,7 @@
 namespace tumble::sim::engine {
 
 struct Prism {
-  std::array<Eigen::Vector3d, 3> top_m;  ///< anticlockwise seen from above; no edge is vertical
+  std::array<Eigen::Vector3d, 3> top_m;  ///< anticlockwise from above, never vertical
   double foot_m;
 };
 

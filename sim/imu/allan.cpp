@@ -21,8 +21,6 @@ std::vector<double> integrate(std::span<const double> samples) {
   return sums;
 }
 
-/// The second difference of the integrated samples over `cluster` samples is `cluster` times the difference of two
-/// means.
 double deviation_of(const std::vector<double>& sums, std::size_t cluster) {
   const std::size_t count = sums.size() - 2 * cluster;
   double total = 0.0;
@@ -85,7 +83,7 @@ const AllanPoint& nearest_point(std::span<const AllanPoint> curve, double tau_s)
 }
 
 double degrees_of_freedom(const AllanPoint& point, AllanNoise noise) {
-  const double n = static_cast<double>(point.samples) + 1.0;  // the table of the source counts points of the integral
+  const double n = static_cast<double>(point.samples) + 1.0;  // NIST table counts integral points
   const double m = static_cast<double>(point.cluster);
   double degrees = 0.0;
   switch (noise) {

@@ -5,33 +5,33 @@
 #include <span>
 #include <vector>
 
-/// The source is Riley, "Handbook of Frequency Stability Analysis", NIST Special Publication 1065 (2008), sections
-/// 5.2.5, 5.3.2 and table 5. The names of the noises of a gyroscope are from IEEE Std 952-1997, annex C.
+/// The equations of the Allan deviation are from Riley, "Handbook of Frequency Stability Analysis", NIST Special
+/// Publication 1065 (2008), sections 5.2.5, 5.3.2 and table 5. The names of the noises of a gyroscope are from IEEE Std
+/// 952-1997, annex C.
 namespace tumble::sim {
 
 struct AllanPoint {
   double tau_s = 0.0;
   double deviation = 0.0;   ///< in the unit of the series
-  std::size_t cluster = 0;  ///< number of averaged samples, tau / period
-  std::size_t samples = 0;  ///< number of samples in each series
-  std::size_t series = 1;   ///< number of independent series in the mean
+  std::size_t cluster = 0;  ///< tau / period
+  std::size_t samples = 0;  ///< in each series
+  std::size_t series = 1;   ///< independent series
 };
 
-/// The dominant noise at an averaging time determines the degrees of freedom of the average.
+/// The dominant noise at an averaging time determines the degrees of freedom of the Allan variance.
 enum class AllanNoise {
-  white,    ///< N / sqrt(tau): angle (or velocity) random walk
-  flicker,  ///< minimum of the Allan deviation: bias instability
-  walk,     ///< K sqrt(tau / 3): random walk of the bias
+  white,    ///< N / sqrt(tau): angle random walk
+  flicker,  ///< minimum: bias instability
+  walk,     ///< K sqrt(tau / 3): bias random walk
 };
 
 /// Computes the overlapping Allan deviation of `samples`, which are means over consecutive periods (rates, not angles).
-/// The averaging times range from one period to a ninth of the series, with `per_decade` times per decade. Returns
-/// nothing for fewer than nine samples. Throws std::invalid_argument for a period that is not positive and finite,
-/// `per_decade` outside [1, 100], or a non-finite sample.
+/// The averaging times of the Allan deviation range from one period to a ninth of the series, with `per_decade` times
+/// per decade.
 std::vector<AllanPoint> allan_deviation(std::span<const double> samples, double period_s, int per_decade = 5);
 
 /// Returns the root of the mean Allan variance of several independent series of equal length and period, for example
-/// the axes of a triad. Throws std::invalid_argument if the averaging times differ.
+/// the axes of a triad.
 std::vector<AllanPoint> mean_deviation(std::span<const std::vector<AllanPoint>> series);
 
 const AllanPoint& nearest_point(std::span<const AllanPoint> curve, double tau_s);
@@ -49,12 +49,12 @@ struct AllanInterval {
 /// distribution (3: 99.73 %).
 AllanInterval confidence_interval(const AllanPoint& point, AllanNoise noise, double sigmas = 3.0);
 
-/// Returns the Allan deviation of white noise of density N [unit / sqrt(Hz)].
+/// Allan deviation of white noise of density N [unit / sqrt(Hz)].
 double white_deviation(double density, double tau_s);
-/// Returns the Allan deviation of a random walk with coefficient K [unit / sqrt(s)].
+/// Allan deviation of a random walk with coefficient K [unit / sqrt(s)].
 double walk_deviation(double walk_sqrt_s, double tau_s);
-/// Returns the Allan deviation of a first-order Gauss-Markov process with stationary standard deviation `sigma` and
-/// correlation time `time_s`.
+/// Allan deviation of a first-order Gauss-Markov process with stationary standard deviation `sigma` and correlation
+/// time `time_s`.
 double gauss_markov_deviation(double sigma, double time_s, double tau_s);
 
 }  // namespace tumble::sim

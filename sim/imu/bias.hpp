@@ -15,15 +15,15 @@ namespace tumble::sim {
 /// - a random walk.
 ///
 /// The Allan deviation of the in-run instability is flat at `in_run` within 5 % for averaging times from 1/200 to 1/2
-/// of `in_run_s`. Data sheets call `in_run` the "in-run bias stability" (IEEE Std 952-1997, annex C). The model
-/// excludes temperature and any dependence on earlier motion.
+/// of `in_run_s`. Data sheets call `in_run` the "in-run bias stability" (IEEE Std 952-1997, annex C). The model of the
+/// bias excludes temperature and any dependence on earlier motion.
 class Bias {
  public:
   struct Params {
-    double turn_on = 0.0;      ///< standard deviation of the bias after turn-on [unit of the signal]
-    double in_run = 0.0;       ///< minimum (floor) of the Allan deviation
-    double in_run_s = 1000.0;  ///< longest correlation time of the in-run instability
-    double walk_sqrt_s = 0.0;  ///< standard deviation of the random walk after one second
+    double turn_on = 0.0;      ///< standard deviation [signal unit]
+    double in_run = 0.0;       ///< minimum of the Allan deviation
+    double in_run_s = 1000.0;  ///< longest correlation time
+    double walk_sqrt_s = 0.0;  ///< standard deviation after one second
   };
   Bias(const Params& params, double period_s, const Stream& stream);
   Eigen::Vector3d next();

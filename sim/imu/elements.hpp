@@ -10,28 +10,27 @@
 namespace tumble::sim {
 
 /// Elements models the sensing elements of a triad (gyroscope or accelerometer), each with its own axis, scale, zero
-/// offset and saturation level. Let u be the signal in the device's axes, with all errors except saturation. Sensing
-/// element i measures s_i = m_i . u + o_i, where m_i is row i of the misalignment matrix M, and o_i is the zero offset.
-/// Saturation maps the vector s to c(s). The device then subtracts the offset and inverts the matrix: the reading is y
-/// = M^-1 (c(s) - o).
+/// offset and saturation level. Sensing element i measures s_i = m_i . u + o_i, with the signal u in device axes, the
+/// row m_i of the misalignment matrix M, and the zero offset o_i. The device saturates s to c(s), then subtracts the
+/// offset and inverts the matrix: the reading is y = M^-1 (c(s) - o).
 ///
-/// - While only element j is at its limit r, the reading satisfies m_j . y = +r - o_j or -r - o_j, so the saturated
-///   readings are on two tilted planes.
-/// - While element j is at its limit, the other axes are also wrong, by entries of M^-1 times the saturation deficit of
-///   element j.
+/// - While only sensing element j is at its limit r, the readings y lie on one of two tilted planes, m_j . y = +r - o_j
+///   or -r - o_j.
+/// - A saturated sensing element also changes the readings of the other axes, by entries of M^-1 times its saturation
+///   deficit.
 ///
 /// Measured devices show planes tilted by 0.02 and 0.05, and offsets of 0.05 and 0.14 rad/s
-/// (scenarios/certificate/real_rails.cpp). The model excludes compensation errors that differ at saturation, and
-/// offsets that drift within a recording.
+/// (scenarios/certificate/real_rails.cpp). The model of the sensing elements excludes compensation errors that differ
+/// at saturation, and offsets that drift within a recording.
 class Elements {
  public:
   struct Params {
     /// Standard deviation of each entry off M's diagonal [1], truncated at three standard deviations
     double misalignment = 0.0;
-    double scale = 0.0;   ///< standard deviation of each entry on the diagonal, about 1
-    double offset = 0.0;  ///< standard deviation of each element's offset o [unit of the signal]
+    double scale = 0.0;   ///< of the diagonal, about 1
+    double offset = 0.0;  ///< of the offset o [signal unit]
   };
-  static constexpr double kMisalignmentMax = 0.1;  ///< upper bound of both spreads, for which M is always invertible
+  static constexpr double kMisalignmentMax = 0.1;  ///< M is always invertible
 
   Elements() = default;
   Elements(const Params& params, Stream stream);
@@ -41,7 +40,7 @@ class Elements {
   const Eigen::Vector3d& offset() const { return offset_; }
   bool axis_aligned() const { return axis_aligned_; }
 
-  /// Sets bit `first_bit + i` of `flags` if element i saturated.
+  /// Sets bit `first_bit + i` of `flags` if sensing element i saturated.
   Eigen::Vector3d clip(const Eigen::Vector3d& signal, Rail& rail, int first_bit, std::uint8_t& flags) const;
 
   Eigen::Vector3d with_elements_of(const Eigen::Vector3d& other, std::uint8_t mask,

@@ -12,8 +12,8 @@
 namespace tumble::sim {
 
 /// Glitches replaces one axis of single samples by a wrong reading, as an error on the device's bus does. The wrong
-/// reading is independent of the signal, and uniform within 1.5 times the stated range. The model excludes runs of
-/// several wrong samples, and wrong time stamps.
+/// reading of a glitch is independent of the signal, and uniform within 1.5 times the stated range. The glitch model
+/// excludes runs of several wrong samples, and wrong time stamps.
 class Glitches {
  public:
   Glitches(const Values& values, const Stream& stream);

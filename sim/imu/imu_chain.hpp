@@ -15,19 +15,19 @@
 namespace tumble::sim {
 
 struct TriadReading {
-  Eigen::Vector3d delivered;  ///< reading as delivered by the device
-  Eigen::Vector3d unclipped;  ///< reading with the same errors, but without saturation
-  Eigen::Vector3d bias;       ///< bias at the end of the window
+  Eigen::Vector3d delivered;
+  Eigen::Vector3d unclipped;  ///< same errors, without saturation
+  Eigen::Vector3d bias;       ///< at the end of the window
 };
 
-/// The stages in order are: analogue low-pass, scale and misalignment, bias, external additions (g-sensitivity), white
+/// Order of the stages: analogue low-pass, scale and misalignment, bias, external additions (g-sensitivity), white
 /// noise of the active range, sensing elements with saturation, compensation of the elements, quantum, digital
 /// low-pass, mean over the window.
 ///
-/// If a triad rotates, the mean of the readings differs from the increment of the motion (coning, sculling). The caller
-/// therefore passes the ideal reading of the window, and TriadChain adds the mean of the errors. If an element
-/// saturated in the window, its reading is the plain mean of the chain's output. A second chain with equal stages and
-/// noise, but without saturation, computes the unclipped reading.
+/// If a triad rotates, the mean of the readings differs from the increment of the motion (coning, sculling), so
+/// TriadChain adds the mean of the errors to the ideal reading of the window. If a sensing element saturated in the
+/// averaging window, its reading is the plain mean of the error chain's output. A second error chain with equal stages
+/// and noise, but without saturation, computes the unclipped reading.
 class TriadChain {
  public:
   /// `prefix` and `unit` select the parameters: "gyro" and "rad_s", or "accel" and "m_s2".
@@ -36,7 +36,6 @@ class TriadChain {
 
   /// `ideal` is the ideal mean of the signal over the physics step; `added` is added to the signal before the noise.
   void step(const Eigen::Vector3d& ideal, const Eigen::Vector3d& added);
-  /// Sets bit `first_bit + i` of `flags` for each element i that saturated.
   TriadReading take(const Eigen::Vector3d& exact, int first_bit, std::uint8_t& flags);
 
   const Elements& elements() const { return elements_; }

@@ -184,7 +184,7 @@ void check_rail(const Values& values, const std::string& place, const std::strin
   }
 }
 
-/// The simulation stores the steps between two updates, so a very low update rate would need too much memory.
+/// The simulation stores the steps between two sensor updates, so a very low update rate would need too much memory.
 void check_update(const Values& values, const std::string& place, const std::string& prefix) {
   const std::string name = prefix + "_update_hz";
   const double update_hz = values.at(name);

@@ -10,7 +10,7 @@ namespace tumble::sim {
 
 std::span<const Parameter> imu_parameters();
 
-/// Throws InvalidSituation, with a message that starts with `place`, for these contradictions:
+/// Throws InvalidSituation for these contradictions:
 /// - a kind of saturation without a saturation level
 /// - spreads or offsets that leave no saturation level
 /// - `wrap` together with `slow_recovery`

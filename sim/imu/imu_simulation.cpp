@@ -93,7 +93,7 @@ class Device {
   TimeStamps stamps_;
   Glitches glitches_;
   double g_sensitivity_;
-  std::optional<Eigen::Matrix3d> g_sensitivity_drawn_;  ///< drawn at random; empty without spread
+  std::optional<Eigen::Matrix3d> g_sensitivity_drawn_;  ///< empty without spread
   bool flagged_;
 };
 
@@ -130,8 +130,8 @@ class Compass {
 };
 
 struct Pace {
-  int steps = 1;   ///< steps of the error chain per sample
-  int shares = 1;  ///< steps of the error chain per physics step; above 1 for devices faster than the physics
+  int steps = 1;   ///< of the error chain
+  int shares = 1;  ///< above 1 for fast devices
 };
 
 Pace pace_of(const SensorSpec& sensor, double step_ns) {
@@ -211,7 +211,7 @@ void simulate_imu(const Truth& truth, const SensorSpec& sensor, const Eigen::Iso
     const BodyState after = state_at(truth, k);
     const Ideal step = ideal_between(before, after, T_BI, gravity_m_s2);
     before = after;
-    if (shares > 1) {  // within a physics step, all readings have the rate and force of the whole step
+    if (shares > 1) {  // all readings equal the step's mean
       for (int share = 1; share <= shares; ++share) {
         device.step(step);
         if (compass) compass->step(k);

@@ -16,16 +16,15 @@ struct GivenElements {
   std::optional<Elements> gyro, accel;
 };
 
-/// The ideal reading of an averaging window is the exact increment of the motion. The ideal rate is the rotation
-/// between the attitudes at the window's ends, divided by the duration. The ideal specific force is the change of the
-/// sensor's velocity minus gravity, in the axes of the attitude halfway. The integral of the ideal readings is
-/// therefore the true motion at any output rate, also through impacts.
+/// The ideal rate of an averaging window is the rotation between the attitudes at the window's ends, divided by the
+/// duration. The ideal specific force is the change of the sensor's velocity minus gravity, in the axes of the attitude
+/// halfway. The integral of the ideal readings is the true motion at any output rate, also through impacts.
 ///
-/// The unclipped readings in ImuTruth have the same noise as the readings, but no saturation. The model excludes
+/// The unclipped readings in ImuTruth have the same noise as the readings, but no saturation. The IMU model excludes
 /// temperature, vibration rectification and bending of the mount.
 ///
-/// Clip flags mark windows in which an element saturated at any moment; a saturated tilted element also makes the
-/// readings of unflagged axes wrong.
+/// Clip flags mark windows in which a sensing element saturated at any moment; a saturated tilted element also makes
+/// the readings of unflagged axes wrong.
 void simulate_imu(const Truth& truth, const SensorSpec& sensor, const Eigen::Isometry3d& T_BI, double gravity_m_s2,
                   std::uint64_t seed, ImuRecord& record, ImuTruth& imu_truth, const GivenElements& given = {});
 

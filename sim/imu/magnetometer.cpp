@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kMu0Over4Pi = 1e-7;  // T m / A
 constexpr int kTries = 200;
-constexpr std::size_t kPositions = 500;  // number of positions on the path at which distances are checked
+constexpr std::size_t kPositions = 500;  // checked positions on the path
 
 Eigen::Vector3d random_direction(Stream& stream) {
   const double z = stream.uniform(-1.0, 1.0), turn = stream.uniform(0.0, 2.0 * std::numbers::pi);
@@ -29,7 +29,6 @@ double distance_to_path(std::span<const Eigen::Vector3d> path, const Eigen::Vect
   return nearest;
 }
 
-/// If all random positions of a magnetic source are closer to the path than `nearest_m`, the farthest one is used.
 Eigen::Vector3d draw_position(std::span<const Eigen::Vector3d> path, double nearest_m, double farthest_m,
                               Stream& stream) {
   Eigen::Vector3d best = Eigen::Vector3d::Zero();

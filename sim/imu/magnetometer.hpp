@@ -19,7 +19,7 @@ struct MagneticDipole {
 
 /// MagneticField is the magnetic flux density in the world [T]: the uniform field of the Earth plus point dipoles. The
 /// field of a dipole is B = mu_0 / (4 pi) (3 (m r) r - m r^2) / r^5 (Jackson, Classical Electrodynamics, equation
-/// 5.56). The model excludes induced magnetisation, currents and moving sources.
+/// 5.56). The magnetic model excludes induced magnetisation, currents and moving sources.
 struct MagneticField {
   Eigen::Vector3d earth_W_t = Eigen::Vector3d::Zero();
   std::vector<MagneticDipole> dipoles;
@@ -32,8 +32,8 @@ struct MagneticField {
 MagneticField draw_magnetic_field(const Values& values, std::span<const Eigen::Vector3d> p_W_m, std::uint64_t seed);
 
 /// Magnetometer applies the errors of a magnetometer with three axes: soft iron (scale and misalignment), hard iron (a
-/// constant offset in sensor axes), white noise, saturation, quantisation. The model excludes bandwidth, delay and
-/// temperature.
+/// constant offset in sensor axes), white noise, saturation, quantisation. The magnetometer model excludes bandwidth,
+/// delay and temperature.
 class Magnetometer {
  public:
   Magnetometer(const Values& values, std::uint64_t seed, const std::string& stream_name);

@@ -11,20 +11,19 @@ namespace tumble::sim {
 
 /// Sampling models a device that does not integrate between outputs: each reading is the plain mean of the signal over
 /// the device's averaging window. The device's update rate may be lower or higher than the output rate; the output
-/// repeats the last reading until a new reading is available (sample and hold). The model excludes drift and jitter of
-/// the device's clock, and weighted windows.
+/// repeats the last reading until a new reading is available (sample and hold). The sampling model excludes drift and
+/// jitter of the device's clock, and weighted windows.
 class Sampling {
  public:
   struct Params {
     double window_s = 0.0;   ///< 0: the time between readings
-    double update_hz = 0.0;  ///< number of readings per second; 0: one per output
+    double update_hz = 0.0;  ///< 0: one reading per output
   };
   struct Reading {
     Eigen::Vector3d delivered = Eigen::Vector3d::Zero(), unclipped = Eigen::Vector3d::Zero();
-    std::uint8_t railed = 0;  ///< bits of elements that saturated at any step in the window
+    std::uint8_t railed = 0;  ///< bits of saturated elements
   };
 
-  /// If the device has a separate update rate, the phase of its readings is drawn from `stream`.
   Sampling(const Params& params, double rate_hz, Stream stream);
 
   bool on() const { return !ring_.empty(); }
@@ -35,7 +34,7 @@ class Sampling {
   Reading mean() const;
 
   double readings_per_step_ = 0.0, phase_ = 0.0;
-  std::vector<Reading> ring_;  ///< the most recent steps; empty if the stage is off
+  std::vector<Reading> ring_;  ///< empty if switched off
   std::size_t next_ = 0, filled_ = 0;
   Reading held_;
   bool holding_ = false;

@@ -30,7 +30,7 @@ Eigen::Vector3d DelayLine::operator()(const Eigen::Vector3d& input) {
   if (!started_) std::fill(past_.begin(), past_.end(), input);
   started_ = true;
   past_[next_] = input;
-  next_ = (next_ + 1) % past_.size();  // the oldest sample; the sample after it follows
+  next_ = (next_ + 1) % past_.size();
   const Eigen::Vector3d &oldest = past_[next_], &newer = past_[(next_ + 1) % past_.size()];
   return fraction_ * oldest + (1.0 - fraction_) * newer;
 }
@@ -48,7 +48,7 @@ LowPass::LowPass(double cutoff_hz, double rate_hz) : on_(cutoff_hz > 0.0) {
 
 Eigen::Vector3d LowPass::operator()(const Eigen::Vector3d& input) {
   if (!on_) return input;
-  if (!started_) {  // steady state of the filter (transposed direct form II) for this input
+  if (!started_) {  // steady state for this input
     s1_ = (1.0 - b0_) * input;
     s2_ = (b2_ - a2_) * input;
     started_ = true;

@@ -15,8 +15,8 @@ Eigen::Vector3d normals(Stream& stream, double sigma);
 /// The normally distributed number is truncated at three standard deviations; for `sigma` 0, no random number is drawn.
 double bounded_normal(Stream& stream, double sigma);
 
-/// DelayLine delays a signal by `delay_s`; until the delay has passed, the output is the first value. Values between
-/// samples are interpolated linearly, which preserves the integral of the signal.
+/// DelayLine delays a signal by `delay_s`; until the delay has passed, the output is the first value. DelayLine
+/// interpolates linearly between samples, which preserves the integral of the signal.
 class DelayLine {
  public:
   DelayLine(double delay_s, double rate_hz);
@@ -24,14 +24,14 @@ class DelayLine {
 
  private:
   double fraction_ = 0.0;              ///< fraction of a sample
-  std::vector<Eigen::Vector3d> past_;  ///< ring buffer of the last samples; empty if the stage is off
+  std::vector<Eigen::Vector3d> past_;  ///< ring buffer; empty if off
   std::size_t next_ = 0;
   bool started_ = false;
 };
 
 /// LowPass is a second-order low-pass filter (Butterworth, bilinear transform with prewarped cutoff) with gain 1 for a
-/// constant signal. The filter starts in the steady state of the first sample. A cutoff frequency of 0 switches the
-/// stage off.
+/// constant signal. The low-pass filter starts in the steady state of the first sample. A cutoff frequency of 0
+/// switches the filter off.
 class LowPass {
  public:
   /// `cutoff_hz` must be below half of `rate_hz`.

@@ -11,7 +11,7 @@ namespace tumble::sim {
 namespace {
 
 constexpr double kRevolution_rad = 6.283185307179586;
-constexpr int kAzimuthCells = 2048;  // a strut of 4 cm at a distance of 0.3 m covers about 40 cells of 3 mrad
+constexpr int kAzimuthCells = 2048;  // 3 mrad per cell
 
 std::int64_t period_ns(const Values& values, const char* name) {
   return std::llround(values.at(name) * 1e9);
@@ -50,7 +50,7 @@ SpinningPattern::SpinningPattern(const Values& values)
 }
 
 std::uint32_t SpinningPattern::reported_start_ns(std::int64_t sweep, std::int64_t slot) const {
-  constexpr std::int64_t kPacket = 24;  // sequences per packet (two sequences per block)
+  constexpr std::int64_t kPacket = 24;  // two sequences per block
   std::int64_t start_ns = slot * slot_period_ns_ - sweep * sweep_period_ns_;
   if (driver_stamp_fault_) {
     const std::int64_t in_packet = (slot - first_slot(sweep)) % kPacket;
@@ -187,7 +187,7 @@ RosettePattern::RosettePattern(const Values& values) {
   block.first_slot = slot;
   block.slots = slots;
   const std::int64_t start_ns = slot * slot_period_ns_;
-  alignas(64) double x[kLanes], y[kLanes] = {}, z[kLanes] = {};  // directions of the beam of a unit that is not rotated
+  alignas(64) double x[kLanes], y[kLanes] = {}, z[kLanes] = {};  // beam of an unrotated unit
   for (const Term& term : terms_) {
     const double phase_rad = term.rate_rad_ns * static_cast<double>(start_ns);
     const double cos_start = term.amplitude * std::cos(phase_rad), sin_start = term.amplitude * std::sin(phase_rad);

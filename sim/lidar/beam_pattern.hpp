@@ -20,9 +20,9 @@ struct ChannelFirings {
 struct FiringBlock {
   std::int64_t first_slot = 0;
   int slots = 0;
-  std::array<std::int64_t, kLanes> start_ns{};      ///< true start time of each slot since the start of the recording
-  std::array<std::uint32_t, kLanes> reported_ns{};  ///< reported start of the slot since the start of the sweep
-  std::array<int, kLanes> cell{};                   ///< direction cell of each slot, see BeamPattern::cells()
+  std::array<std::int64_t, kLanes> start_ns{};      ///< true, since the recording's start
+  std::array<std::uint32_t, kLanes> reported_ns{};  ///< reported, since the sweep's start
+  std::array<int, kLanes> cell{};                   ///< see BeamPattern::cells()
   std::array<ChannelFirings, kMaxChannels> channel;
 };
 
@@ -53,14 +53,14 @@ class BeamPattern {
  protected:
   std::int64_t sweep_period_ns_ = 0, slot_period_ns_ = 0, firing_period_ns_ = 0;
   int channels_ = kMaxChannels;
-  int banks_ = 1;  ///< consecutive slots with the same channels of different rings
+  int banks_ = 1;  ///< slots for different rings
   std::array<std::uint16_t, kMaxChannels> ring_{};
 };
 
-/// SpinningPattern is the pattern of a spinning lidar, in which a column of lasers rotates about the z axis. The
-/// azimuth is zero (along x of L) at the start of each sweep, and increases clockwise seen from above. Channel c of
-/// sequence k fires at the time k P + c p, with the sequence period P and the firing period p. The timing and geometry
-/// are from the RoboSense RS-16 User's Guide v4.0 and the published driver.
+/// SpinningPattern is the firing pattern of a spinning lidar, in which a column of lasers rotates about the z axis. The
+/// azimuth of a spinning lidar is zero (along x of L) at the start of each sweep, and increases clockwise seen from
+/// above. Channel c of sequence k fires at the time k P + c p, with the sequence period P and the firing period p.
+/// Timing and geometry are from the RoboSense RS-16 User's Guide v4.0 and the published driver.
 class SpinningPattern final : public BeamPattern {
  public:
   explicit SpinningPattern(const Values& values);
@@ -76,13 +76,13 @@ class SpinningPattern final : public BeamPattern {
   double rate_rad_ns_, sense_, mirror_radius_m_, mirror_drop_m_;
   bool driver_stamp_fault_;
   std::array<double, kMaxChannels> cos_elevation_, sin_elevation_, cos_lag_,
-      sin_lag_;  ///< sine and cosine of the azimuth since the start of the sequence
+      sin_lag_;  ///< of the azimuth within a sequence
 };
 
-/// ColumnPattern is the pattern of a lidar with up to 128 evenly spaced rings, in which a column of lasers rotates
-/// about the z axis. A column fires in banks of 16 rings from bottom to top, evenly distributed over the column's
-/// period. Elevations may rise by a fraction of the ring spacing from sweep to sweep, which approximates patterns that
-/// do not repeat.
+/// ColumnPattern is the firing pattern of a lidar with up to 128 evenly spaced rings, in which a column of lasers
+/// rotates about the z axis. A column fires in banks of 16 rings from bottom to top, evenly distributed over the
+/// column's period. Elevations may rise by a fraction of the ring spacing from sweep to sweep, which approximates
+/// patterns that do not repeat.
 class ColumnPattern final : public BeamPattern {
  public:
   explicit ColumnPattern(const Values& values);
@@ -92,10 +92,10 @@ class ColumnPattern final : public BeamPattern {
   double rate_rad_ns_, sense_, lowest_rad_, spacing_rad_, shift_share_;
 };
 
-/// RosettePattern is the pattern of a rosette lidar with one or several units, in which two prisms that rotate at
-/// constant rates deflect the beam. At the time t since the start of the recording, the direction (x, y, z) of the beam
-/// satisfies y/x + i z/x = A exp(i w1 t) + B exp(i w2 t) + C exp(i (2 w1 - w2) t). The ring number is the number of the
-/// unit, from right (negative yaw) to left.
+/// RosettePattern is the firing pattern of a rosette lidar with one or several units, in which two prisms that rotate
+/// at constant rates deflect the beam. At the time t since the start of the recording, the direction (x, y, z) of the
+/// beam satisfies y/x + i z/x = A exp(i w1 t) + B exp(i w2 t) + C exp(i (2 w1 - w2) t). The ring number is the number
+/// of the unit, from right (negative yaw) to left.
 class RosettePattern final : public BeamPattern {
  public:
   explicit RosettePattern(const Values& values);
@@ -104,7 +104,7 @@ class RosettePattern final : public BeamPattern {
  private:
   struct Term {
     double amplitude, rate_rad_ns;
-    std::array<double, kLanes> cos_lag, sin_lag;  ///< phase of the prisms since the first slot of the block
+    std::array<double, kLanes> cos_lag, sin_lag;  ///< of the prisms in the block
   };
   std::array<Term, 3> terms_;
   std::array<double, 3> cos_yaw_, sin_yaw_;

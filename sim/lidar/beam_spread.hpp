@@ -11,15 +11,15 @@ namespace tumble::sim {
 inline constexpr int kMaxBeamRays = 16;
 
 struct Echoes {
-  RayPacket packet;  ///< range of the echo; reflectivity and cosine of a single surface with equal energy
-  alignas(64) float hit_x[kLanes], hit_y[kLanes], hit_z[kLanes];  ///< hit of the ray with the most energy, world axes
+  RayPacket packet;                                               ///< single surface with equal energy
+  alignas(64) float hit_x[kLanes], hit_y[kLanes], hit_z[kLanes];  ///< strongest ray, world axes
 };
 
 class BeamSpread {
  public:
   explicit BeamSpread(const Values& values);
 
-  int rays() const { return rays_; }  ///< number of rays per beam; 1: no beam width
+  int rays() const { return rays_; }  ///< 1: no beam width
   void bend(const ChannelFirings& axis, int k, ChannelFirings& firings) const;
   void merge(const std::array<RayPacket, kMaxBeamRays>& rays, Echoes& echoes) const;
 

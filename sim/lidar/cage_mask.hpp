@@ -9,8 +9,7 @@
 
 namespace tumble::sim {
 
-/// The cage is rigidly attached to the lidar, and most firings miss it, so the mask saves time. The mask contains every
-/// firing that hits the cage, and some that do not.
+/// The mask contains every firing that hits the robot's own cage; the other firings need no test against the cage.
 class CageMask {
  public:
   CageMask(const SceneGeometry& cage, const BeamPattern& pattern);
@@ -25,7 +24,7 @@ class CageMask {
  private:
   bool is_empty_;
   int cells_;
-  std::vector<std::uint8_t> meets_;  ///< bit per channel and cell, channel by channel
+  std::vector<std::uint8_t> meets_;  ///< bit per channel and cell
 };
 
 }  // namespace tumble::sim

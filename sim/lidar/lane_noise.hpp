@@ -10,7 +10,7 @@
 namespace tumble::sim {
 
 struct LaneNoise {
-  alignas(64) float normal[kLanes];   ///< mean 0, standard deviation 1, tails truncated at 6.6
+  alignas(64) float normal[kLanes];   ///< mean 0, deviation 1
   alignas(64) float uniform[kLanes];  ///< in (0, 1)
 };
 

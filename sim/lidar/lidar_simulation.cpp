@@ -51,7 +51,6 @@ std::int64_t whole_sweeps(const MotionTrack& motion, std::int64_t sweep_period_n
   return static_cast<std::int64_t>(motion.p_WB_m.size()) * motion.period_ns / sweep_period_ns;
 }
 
-/// The device loses sweeps before its start, and random sweeps.
 class Delivery {
  public:
   Delivery(const SensorSpec& sensor, std::uint64_t seed)
@@ -90,9 +89,8 @@ void simulate_lidar(const engine::World& world, const SensorSpec& sensor, const 
   record.sweep_first.push_back(0);
   if (sweeps > 0) reserve(caster.firings(0) * static_cast<std::size_t>(sweeps), record, truth);
 
-  // Only a few sweeps are cast at a time, so that intermediate results need little memory.
   const auto allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
-  threads = std::clamp(threads, 1, static_cast<int>(allowed));  // oneTBB prints a warning for larger numbers
+  threads = std::clamp(threads, 1, static_cast<int>(allowed));  // oneTBB warns above
   const std::int64_t at_once = 2 * threads;
   Delivery delivery(sensor, seed);
   std::vector<SweepPoints> done(static_cast<std::size_t>(at_once));

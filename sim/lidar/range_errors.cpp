@@ -8,7 +8,7 @@ namespace tumble::sim {
 
 namespace {
 
-// Above certain_signal_, a return is always detected, because its loss probability is below the resolution of the
+// Above certain_signal_, a lidar return is always detected, because its loss probability is below the resolution of the
 // random numbers.
 constexpr double kSure = 0.99;
 constexpr double kCertainOdds = 0x1p25;

@@ -16,9 +16,9 @@ struct Returns {
 };
 
 /// RangeErrors applies range errors in this order: loss of weak returns (by range, incidence, reflectivity), random
-/// loss, white noise, range limits, quantum. The intensity is reflectivity times the cosine of incidence, as in devices
-/// that compensate for range. The model excludes range bias by incidence or intensity, cross-talk, and several returns
-/// per firing.
+/// loss, white noise, range limits, quantum. The simulated intensity is reflectivity times the cosine of incidence, as
+/// in devices that compensate for range. The model of range errors excludes range bias by incidence or intensity,
+/// cross-talk, and several returns per firing.
 class RangeErrors {
  public:
   RangeErrors(const Values& values, std::uint64_t seed, std::string_view stream_name);

@@ -11,7 +11,7 @@ using Eigen::Vector3d;
 
 struct Shares {
   alignas(64) double share[kLanes], first[kLanes], second[kLanes];
-  alignas(64) double within[kLanes];  ///< 1 from the first lane of the interval on, 0 before
+  alignas(64) double within[kLanes];  ///< 1 from the interval's first lane
 };
 
 [[gnu::target("avx2")]] void weigh(const TrackCursor::Interval& now, Shares& shares) {

@@ -16,13 +16,13 @@ class BlockPoses {
            RayPacket& rays) const;
 
  private:
-  static constexpr int kPose = 12;  ///< rotation row by row, then position
+  static constexpr int kPose = 12;  ///< rotation by rows, then position
 
   void aim_slowly(const ChannelFirings& firings, int broken, int channel, RayPacket& rays) const;
 
   alignas(64) double pose_[kPose][kLanes], rate_[kPose][kLanes];
   int broken_count_ = 0;
-  int broken_lane_[kLanes];  ///< lanes of the slots in which the rate changes
+  int broken_lane_[kLanes];  ///< lanes with a change of rate
   Pose34 broken_pose_[kLanes][kMaxChannels];
 };
 

@@ -36,7 +36,7 @@ constexpr const char* kDevice =
     "start_threads=0,set_affinity=0,isa=avx2,frequency_level=simd256,ignore_config_files=1";
 constexpr int kKernelLanes = 8;
 static_assert(kKernelLanes == kShapeLanes && NearestHits::kNone == RTC_INVALID_GEOMETRY_ID);
-/// RayScene therefore recomputes all faces within the factor kReach of the nearest hit that Embree reports.
+/// RayScene recomputes all faces within the factor kReach of the nearest hit that Embree reports.
 constexpr float kReach = 1.0f + 4e-6f;
 
 struct MeshLabel {
@@ -51,7 +51,6 @@ struct MeshLabel {
   }
 };
 
-/// Embree passes only the address of the first member to callback functions.
 struct CastContext {
   RTCIntersectContext embree;
   const std::vector<MeshLabel>* meshes;
@@ -104,13 +103,12 @@ double meet_face(const MeshLabel& mesh, unsigned int face, const Ray& ray, bool 
   Vector3d a = corner(0), b = corner(1), c = corner(2);
   if (mesh.as_quads) {
     const Vector3d d = corner(3);
-    // For the quad (b, c, d, a) of the triangles (a, b, c) and (a, c, d), corners 1 and 3 are the ends of the diagonal.
     const Vector3d across = b.cross(d);
     const bool beside_first = across.dot(a) >= 0.0, beside_second = across.dot(c) >= 0.0;
     const bool in_second =
         beside_first == beside_second ? second_half : (across.dot(ray.direction) >= 0.0) == beside_second;
     if (in_second)
-      a = d;  // the triangle (d, b, c) has the same orientation
+      a = d;  // same orientation
     else
       c = d;
   }
@@ -169,9 +167,9 @@ bool approach_shape(RTCPointQueryFunctionArguments* args) {
 struct RayScene::Impl {
   DevicePtr device;
   ScenePtr scene;
-  std::vector<SceneShape> bounded;    ///< shapes of the geometry `shape_geometry`, in the order of its primitives
+  std::vector<SceneShape> bounded;    ///< in the order of Embree's primitives
   std::vector<SceneShape> unbounded;  ///< infinite planes
-  std::vector<MeshLabel> meshes;      ///< meshes, indexed by Embree's geometry id
+  std::vector<MeshLabel> meshes;      ///< by Embree's geometry id
   unsigned int shape_geometry = RTC_INVALID_GEOMETRY_ID;
 
   void add_mesh(const SceneMesh& mesh);
@@ -202,7 +200,7 @@ void RayScene::Impl::add_mesh(const SceneMesh& part) {
   rtcSetGeometryIntersectFilterFunction(geometry, keep_nearest);
   rtcCommitGeometry(geometry);
   const unsigned int id = rtcAttachGeometry(scene.get(), geometry);
-  rtcReleaseGeometry(geometry);  // the scene keeps a reference to the geometry and its buffers
+  rtcReleaseGeometry(geometry);  // the scene keeps a reference
   meshes.resize(std::max<std::size_t>(meshes.size(), id + 1), MeshLabel{});
   meshes[id] = {part.surface_id, part.reflectivity, as_quads,
                 static_cast<const float*>(rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_VERTEX, 0)),
@@ -224,12 +222,11 @@ void RayScene::Impl::add_shapes() {
 
 RayScene::RayScene(const SceneGeometry& geometry) : impl_(std::make_unique<Impl>()) {
   impl_->device.reset(rtcNewDevice(kDevice));
-  // A lack of memory must not be reported as a missing CPU feature.
   if (!impl_->device && rtcGetDeviceError(nullptr) == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
   if (!impl_->device)
     throw std::runtime_error("lidar: the ray-tracing library Embree cannot start; the CPU must have AVX2 and FMA");
   impl_->scene.reset(rtcNewScene(impl_->device.get()));
-  rtcSetSceneFlags(impl_->scene.get(), RTC_SCENE_FLAG_ROBUST);  // no ray passes between two adjacent triangles
+  rtcSetSceneFlags(impl_->scene.get(), RTC_SCENE_FLAG_ROBUST);  // no gaps between triangles
   for (const SceneShape& part : geometry.shapes) {
     (half_extent(part.shape).allFinite() ? impl_->bounded : impl_->unbounded).push_back(part);
   }

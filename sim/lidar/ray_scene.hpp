@@ -18,15 +18,15 @@ struct RayPacket {
   alignas(64) float direction_x[kLanes], direction_y[kLanes], direction_z[kLanes];  ///< unit vectors
   /// Input: maximum range of the ray; output: range of the hit, or unchanged without a hit
   alignas(64) float range[kLanes];
-  alignas(64) float cosine[kLanes];  ///< cosine of the angle of incidence, 0..1
+  alignas(64) float cosine[kLanes];  ///< of the angle of incidence
   alignas(64) float reflectivity[kLanes];
-  alignas(64) std::int32_t surface_id[kLanes];  ///< input: kNothing, or an earlier hit; output: surface of the hit
+  alignas(64) std::int32_t surface_id[kLanes];  ///< input: kNothing or earlier hit
 };
 
 inline constexpr std::int32_t kNothing = -1;
 
-/// Several threads may call const members. The coordinates are float: at 50 m from the origin, a hit is accurate to
-/// about 1e-5 m. The results are bit-identical on every x86-64 CPU with AVX2 and FMA.
+/// Several threads may call const members of RayScene. RayScene uses float coordinates: at 50 m from the origin, a hit
+/// is accurate to about 1e-5 m. The hits are bit-identical on every x86-64 CPU with AVX2 and FMA.
 class RayScene {
  public:
   explicit RayScene(const SceneGeometry& geometry);

@@ -40,8 +40,7 @@ struct SceneGeometry {
 enum class HeightFieldSides { open, closed };
 
 /// Returns the geoms of engine::World::surface_geom in world axes, each with its index in surface_geom as surface id.
-/// Visual geoms (contype and conaffinity zero) and invisible geoms (alpha zero, as in mj_ray) are omitted. Throws
-/// InvalidSituation for a geom type whose surface is not supported (SDF).
+/// Visual geoms (contype and conaffinity zero) and invisible geoms (alpha zero, as in mj_ray) are omitted.
 SceneGeometry static_geometry(const engine::World& world, HeightFieldSides sides);
 
 /// Primitives that contain the origin of L (the housing of the lidar, or a shell around it) are omitted, because they
@@ -50,12 +49,10 @@ SceneGeometry cage_geometry(const engine::World& world, const Eigen::Isometry3d&
 
 Eigen::Isometry3d geom_pose(const mjData& data, int geom);
 
-/// Throws InvalidSituation for a geom type whose surface is not supported (SDF).
 void append_geom(const mjModel& model, int geom, const Eigen::Isometry3d& T_FS, std::int32_t surface_id,
                  HeightFieldSides sides, SceneGeometry& scene);
 
-/// Returns the luminance (ITU-R BT.709) of the geom's colour times the mean colour of its texture, limited to
-/// 0.05..0.95.
+/// Luminance (ITU-R BT.709) of the geom's colour times the mean colour of its texture, limited to 0.05..0.95.
 float geom_reflectivity(const mjModel& model, int geom);
 
 }  // namespace tumble::sim

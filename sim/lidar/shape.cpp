@@ -135,7 +135,8 @@ double signed_box_distance(const Vector& point, const Vector& half) {
   return outside > 0.0 ? outside : beyond.maxCoeff();
 }
 
-/// The nearest point follows from the root of sum (a_i y_i / (t + a_i^2))^2 = 1 for t > -min a_i^2.
+/// The point of the ellipsoid nearest to y follows from the root of sum (a_i y_i / (t + a_i^2))^2 = 1 for t > -min
+/// a_i^2, with half axes a_i.
 double ellipsoid_distance(const Vector3d& size, const Vector3d& point) {
   const double scale = size.maxCoeff();
   const Vector3d a = size / scale, y = point.cwiseAbs() / scale;

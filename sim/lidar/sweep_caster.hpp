@@ -27,10 +27,9 @@ struct SweepPoints {
   void make_room(std::size_t points);
 };
 
-/// All member functions are const, so several threads may cast sweeps.
 class SweepCaster {
  public:
-  /// The construction takes about 0.07 s for a height field of 400 x 400 cells. Throws InvalidSituation.
+  /// The construction of a SweepCaster takes about 0.07 s for a height field of 400 x 400 cells.
   SweepCaster(const engine::World& world, const SensorSpec& sensor, const Eigen::Isometry3d& T_BL,
               const MotionTrack& motion, std::uint64_t seed);
 

@@ -14,17 +14,17 @@ namespace tumble::sim {
 using Pose34 = Eigen::Matrix<double, 3, 4>;
 
 /// TrackCursor interpolates the true pose of a lidar between the samples of the body's motion: position linearly,
-/// attitude at a constant rate about a fixed axis. With samples 0.5 ms apart, the error is a dt^2 / 8 = 3e-8 s^2 times
-/// the acceleration a: 13 um at 400 m/s^2.
+/// attitude at a constant rate about a fixed axis. With samples 0.5 ms apart, the interpolation error is a dt^2 / 8 =
+/// 3e-8 s^2 times the acceleration a: 13 um at 400 m/s^2.
 class TrackCursor {
  public:
   /// At the fraction `x` of the interval between two motion samples, the body has rotated by the angle a = x |turn|
-  /// [rad]. The pose is start + first turned + second rotated_twice + x step_m, with first = x sin(a)/a and second =
-  /// x^2 (1 - cos(a))/a^2 (Rodrigues: exp(x K) = I + first K + second K^2).
+  /// [rad]. The interpolated pose is start + first turned + second rotated_twice + x step_m, with first = x sin(a)/a
+  /// and second = x^2 (1 - cos(a))/a^2 (Rodrigues: exp(x K) = I + first K + second K^2).
   struct Interval {
     std::int64_t start_ns = 0, end_ns = 0;
     double per_ns = 0.0, per_s = 0.0;
-    double angle2 = 0.0;  ///< square of the angle over the whole interval
+    double angle2 = 0.0;  ///< over the whole interval
     Eigen::Vector3d step_m = Eigen::Vector3d::Zero();
     Pose34 start = Pose34::Zero(), turned = Pose34::Zero(), rotated_twice = Pose34::Zero();
 
@@ -49,7 +49,7 @@ class TrackCursor {
     T_BL_ << T_BL.linear(), T_BL.translation();
   }
 
-  /// The returned reference is valid until the next call.
+  /// The reference that interval() returns is valid until the next call.
   const Interval& interval(std::int64_t time_ns) {
     if (!now_.holds(time_ns)) enter_interval(time_ns);
     return now_;
@@ -78,7 +78,6 @@ class TrackCursor {
     now_.step_m = motion_.p_WB_m[i + 1] - motion_.p_WB_m[i];
     Eigen::Quaterniond relative = motion_.q_WB[i].conjugate() * motion_.q_WB[i + 1];
     if (relative.w() < 0.0) relative.coeffs() = -relative.coeffs();
-    // Unlike acos, atan2 is precise at small angles.
     const double sine = relative.vec().norm();
     const Eigen::Vector3d rotation_rad =
         sine > 0.0 ? Eigen::Vector3d(relative.vec() * (2.0 * std::atan2(sine, relative.w()) / sine))

@@ -56,7 +56,6 @@ Wrench Hand::wrench(const BodyState& state, const Reference& reference) {
   const double unsteady = std::min(reference.v_m_s.norm() / kFullTremor_m_s, 1.0);
 
   Wrench out;
-  // The effective mass of a rolling sphere is mass + inertia / radius^2.
   const double rolling_mass_kg = mass_kg_ + inertia_kg_m2_ / (radius_m_ * radius_m_);
   out.force_W_n = values_.at("stiffness_n_m") * (reference.p_m - p_G) +
                   values_.at("damping_n_s_m") * (reference.v_m_s - v_G) + rolling_mass_kg * reference.a_m_s2;
@@ -69,7 +68,6 @@ Wrench Hand::wrench(const BodyState& state, const Reference& reference) {
   return out;
 }
 
-/// A burst of torque spins the sphere faster or slower than rolling while the sphere touches a friction patch.
 Eigen::Vector3d Hand::burst(double time_s, const Eigen::Vector3d& p_G_m, const Eigen::Vector3d& v_m_s,
                             const Eigen::Vector3d& w_W_rad_s) {
   for (std::size_t i = 0; i < std::min(world_.patches.size(), kHandPatches); ++i) {

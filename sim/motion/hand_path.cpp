@@ -72,7 +72,7 @@ class Schedule {
   Eigen::Vector2d point(double s_m) const {
     const auto after = std::upper_bound(arc_length_m_.begin(), arc_length_m_.end(), s_m);
     if (after == arc_length_m_.end()) return nodes_.back();
-    const auto i = static_cast<std::size_t>(after - arc_length_m_.begin());  // arc_length_m_[0] = 0 <= s_m, so i >= 1
+    const auto i = static_cast<std::size_t>(after - arc_length_m_.begin());
     const double u = (s_m - arc_length_m_[i - 1]) / (arc_length_m_[i] - arc_length_m_[i - 1]);
     return nodes_[i - 1] + u * (nodes_[i] - nodes_[i - 1]);
   }
@@ -100,10 +100,9 @@ class Schedule {
         break;
       }
       const double left_m = length_m - s_m;
-      constexpr double kLastTau_s = 0.15;  // time constant of the approach over the last centimetres
+      constexpr double kLastTau_s = 0.15;  // over the last centimetres
       aim_m_s = std::min({aim_m_s, std::sqrt(1.6 * acceleration_m_s2 * left_m), left_m / kLastTau_s});
       const double change = acceleration_m_s2 * kTick_s;
-      // During a push, only the smoothing of the hand's path limits the acceleration.
       v_m_s = std::clamp(aim_m_s, v_m_s - change, pushed ? aim_m_s : v_m_s + change);
       v_m_s = std::max(v_m_s, 1e-3);
       s_m += v_m_s * kTick_s;

@@ -18,7 +18,7 @@ HoldingHand::HoldingHand(const engine::World& world, const Eigen::Quaterniond& q
 }
 
 Wrench HoldingHand::hold(const BodyState& state) const {
-  constexpr double kFrequency_rad_s = 12.0;  // natural frequency of the springs, typical of an arm
+  constexpr double kFrequency_rad_s = 12.0;  // typical of an arm
   const double stiffness_1_s2 = kFrequency_rad_s * kFrequency_rad_s, damping_1_s = 2.0 * kFrequency_rad_s;
   Wrench out;
   out.force_W_n =

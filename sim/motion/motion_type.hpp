@@ -16,8 +16,8 @@ class Motion {
  public:
   virtual ~Motion() = default;
   virtual BodyState start() const = 0;
-  /// Returns the wrench (force and torque) from `state.time_s` to the next step; before time 0, the robot settles into
-  /// its contacts.
+  /// Wrench (force and torque) from `state.time_s` to the next step; before time 0, the robot settles into its
+  /// contacts.
   virtual Wrench wrench(const BodyState& state) = 0;
 };
 
@@ -37,7 +37,6 @@ const MotionType& stroll_motion();
 const MotionType& swing_motion();
 
 std::span<const MotionType* const> all_motion_types();
-/// For an unknown name, throws InvalidSituation with the nearest known name.
 const MotionType& find_motion_type(std::string_view name);
 
 }  // namespace tumble::sim

@@ -46,7 +46,6 @@ Nodes eight(int count) {
   return nodes;
 }
 
-/// The heading of the random path is a sum of slow sinusoids, so the path bends to both sides.
 Nodes free_path(const PathPlan& plan, int count, Stream& stream) {
   struct Bend {
     double turns, phase_rad, amplitude_rad;

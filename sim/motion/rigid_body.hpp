@@ -8,11 +8,9 @@
 
 namespace tumble::sim {
 
-/// Returns the height of the centre of mass at which a body with attitude `q_WB` is `gap_m` above horizontal ground at
-/// height 0.
+/// Height of the centre of mass at which a body with attitude `q_WB` is `gap_m` above horizontal ground at height 0.
 double clearance_m(const mjModel& model, int body, const Eigen::Quaterniond& q_WB, double gap_m);
 
-/// Returns the moment of inertia about the centre of mass, in world axes [kg m^2].
 Eigen::Matrix3d inertia_W_kg_m2(const mjModel& model, int body, const Eigen::Quaterniond& q_WB);
 
 double raised_cosine(double share);

@@ -35,8 +35,7 @@ constexpr std::array kStrollParameters = {
 
 constexpr double kSwayLow_hz = 0.2, kSwayHigh_hz = 1.2;
 
-/// In the motion Stroll, a walker carries the robot along a horizontal figure of eight, from rest to rest. The robot
-/// faces along the path, with the tremor of a hand.
+/// In the motion Stroll, a walker carries the robot along a horizontal figure of eight, from rest to rest.
 class Stroll : public Motion {
  public:
   Stroll(const Values& values, const engine::World& world)
@@ -61,7 +60,7 @@ class Stroll : public Motion {
 
  private:
   double phase_rad(double walked_s) const {
-    const auto begun_s = [this](double t_s) {  // integral of `eased` up to a time within the first `ease_s`
+    const auto begun_s = [this](double t_s) {  // integral of `eased`
       const double u = std::clamp(t_s / ease_s_, 0.0, 1.0);
       return ease_s_ * u * u * u * u * (2.5 + u * (-3.0 + u));
     };
@@ -79,7 +78,6 @@ class Stroll : public Motion {
 
   HandHeldPose path(double time_s) const {
     const double walked_s = time_s - values_.at("rest_s"), phase = phase_rad(walked_s);
-    // The tremor of the hand starts and ends within a second, with continuous acceleration.
     const double share = eased(walked_s) * eased(walk_s_ - walked_s);
     const double step_rad = 2.0 * std::numbers::pi * values_.at("step_hz") * walked_s;
     const Eigen::Vector3d eight_m(half_length_m_ * std::sin(phase), half_width_m_ * std::sin(2.0 * phase),
@@ -96,7 +94,7 @@ class Stroll : public Motion {
   double half_length_m_, half_width_m_, phase_rate_rad_s_, ease_s_, walk_s_;
   HoldingHand hand_;
   Eigen::Matrix3d inertia_B_kg_m2_;
-  std::vector<Tremor> rotations_, positions_;  ///< rotations about z, y and x; displacements along x, y and z
+  std::vector<Tremor> rotations_, positions_;  ///< z, y, x; and x, y, z
 };
 
 std::unique_ptr<Motion> make_stroll(const Values& values, const engine::World& world) {

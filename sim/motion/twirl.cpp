@@ -118,7 +118,7 @@ class Twirl : public Motion {
   Eigen::Vector3d grip_B_m_;
   Eigen::Matrix3d inertia_B_kg_m2_;
   std::vector<Stroke> strokes_;
-  std::vector<Tremor> rotations_, positions_;  ///< rotations about x, z and y; displacements along x, y and z
+  std::vector<Tremor> rotations_, positions_;  ///< x, z, y; and x, y, z
 };
 
 std::unique_ptr<Motion> make_twirl(const Values& values, const engine::World& world) {

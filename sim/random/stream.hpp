@@ -8,8 +8,7 @@
 namespace tumble::sim {
 
 /// The stream is counter-based (Philox 4x32-10, Salmon et al., SC 2011): each number depends only on its index, not on
-/// threads and order. Stream has its own implementation of distributions, because standard libraries have different
-/// ones.
+/// threads and order. Stream implements its distributions, because those of standard libraries differ.
 class Stream {
  public:
   Stream(std::uint64_t seed, std::string_view name);

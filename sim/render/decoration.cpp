@@ -11,7 +11,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kFieldGrid_m = 1.0, kFieldStep_m = 0.2, kPlaneGrid_m = 0.5, kPlaneHalf_m = 10.0;
-constexpr double kLift_m = 0.012;  // height of lines above the surface, which would otherwise hide them
+constexpr double kLift_m = 0.012;  // lines above the surface stay visible
 constexpr float kGridColour[4] = {0.12f, 0.14f, 0.10f, 0.30f};
 constexpr double kGridPixels = 2.0;
 constexpr std::size_t kManyPoints = 4000;
@@ -114,7 +114,7 @@ void add_paths(const View& view, mjvScene& scene) {
       if ((to - *from).norm() < path.width_m && &to != &path.points_W_m.back()) continue;
       if (mjvGeom* geom = next_geom(scene, mjGEOM_CAPSULE, path.rgba.data())) {
         mjv_connector(geom, mjGEOM_CAPSULE, 0.5 * path.width_m, from->data(), to.data());
-        geom->emission = 0.35f;  // the path keeps its colour in the shade
+        geom->emission = 0.35f;  // keeps its colour in shade
         geom->specular = 0.0f;
       }
       from = &to;

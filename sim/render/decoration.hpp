@@ -8,7 +8,6 @@ namespace tumble::sim {
 
 int decoration_size(const engine::World& world, const View& view);
 
-/// Lines are 1 m apart over height fields and 0.5 m apart over planes, to show slope and scale.
 void add_grid(const engine::World& world, const mjData& data, mjvScene& scene);
 void add_paths(const View& view, mjvScene& scene);
 void add_points(const View& view, mjvScene& scene);

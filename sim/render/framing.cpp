@@ -10,8 +10,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Paths are kept in the picture if their distance from the robots is below kNear_m plus a quarter of the robots'
-// extent.
 constexpr double kNear_m = 1.0;
 
 struct Ball {
@@ -38,8 +36,6 @@ std::vector<Ball> content(const View& view, double robot_radius_m) {
       if (near.isEmpty() || near.contains(p)) balls.push_back({p, path.width_m});
     }
   }
-  // Maps (point clouds) are much larger than the motion, so the camera frames them only in a view without robots and
-  // paths.
   if (balls.empty()) {
     for (const DrawnPoints& cloud : view.points) {
       for (const Vector3d& p : cloud.points_W_m) balls.push_back({p, cloud.radius_m});
@@ -52,8 +48,8 @@ std::vector<Ball> content(const View& view, double robot_radius_m) {
 }  // namespace
 
 Framing frame(const View& view, double robot_radius_m, double fovy_rad) {
-  constexpr double kMargin = 0.82;     // usable fraction of the picture's half width and height
-  constexpr double kSmallest_m = 1.2;  // minimum size, so that the surroundings stay visible
+  constexpr double kMargin = 0.82;     // of half width and height
+  constexpr double kSmallest_m = 1.2;  // the surroundings stay visible
   constexpr double kOverview_m = 25.0;
   const std::vector<Ball> balls = content(view, robot_radius_m);
 

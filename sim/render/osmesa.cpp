@@ -37,7 +37,7 @@ OsMesa load() {
 }  // namespace
 
 const OsMesa& osmesa() {
-  static const OsMesa kLoaded = load();  // if load() throws, the next call tries again
+  static const OsMesa kLoaded = load();  // the next call tries again
   return kLoaded;
 }
 

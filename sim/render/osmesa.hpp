@@ -13,7 +13,7 @@ struct OsMesa {
   decltype(&::OSMesaMakeCurrent) make_current;
 };
 
-/// The symbols of OSMesa are then visible to MuJoCo, which looks up OpenGL functions by name. Throws std::runtime_error
+/// The symbols of OSMesa must be visible to MuJoCo, which looks up OpenGL functions by name. Throws std::runtime_error
 /// if loading fails; may be called from any thread.
 const OsMesa& osmesa();
 

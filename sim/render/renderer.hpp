@@ -34,13 +34,13 @@ struct DrawnPoints {
 
 /// The camera looks at the point `look_at_W_m`; if this point is NaN, the camera frames the robots and nearby paths.
 struct View {
-  std::vector<Eigen::Isometry3d> robots_T_WB;  ///< poses at which the robot is drawn
+  std::vector<Eigen::Isometry3d> robots_T_WB;
   std::vector<DrawnPath> paths;
   std::vector<DrawnPoints> points;
   int width = 1280;
   int height = 720;
   Eigen::Vector3d look_at_W_m = Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
-  double distance_m = 0.0;  ///< 0: chosen to frame the content
+  double distance_m = 0.0;  ///< 0: frames the content
   double azimuth_rad = 1.9;
   double elevation_rad = -0.45;
 };

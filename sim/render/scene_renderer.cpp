@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kRadPerDegree = 0.017453292519943295;
 constexpr int kLargestSide = 4096;
-constexpr int kOversampling = 2;  // renders at twice the size and averages, for smooth edges without multisampling
+constexpr int kOversampling = 2;  // averaged, for smooth edges
 
 struct ContextDeleter {
   void operator()(OSMesaContext context) const { osmesa().destroy_context(context); }
@@ -54,7 +54,6 @@ class Scene {
   mjvScene scene_;
 };
 
-/// The picture is flipped vertically, because OpenGL's rows start at the bottom.
 Picture averaged(const std::vector<std::uint8_t>& large, int width, int height) {
   Picture picture{width, height,
                   std::vector<std::uint8_t>(3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height))};
@@ -90,7 +89,6 @@ void set_look(mjModel& model, int shadow_pixels) {
   }
 }
 
-/// The shadow map is restricted to the visible area, because a smaller area gives sharper shadows.
 void aim_sun(const Framing& framing, mjvScene& scene, mjrContext& engine) {
   const double reach_m = 2.0 + framing.distance_m;
   engine.shadowClip = static_cast<float>(reach_m);
@@ -163,7 +161,6 @@ void SceneRenderer::Impl::add_robots(const View& view, const mjvOption& option, 
   if (world.robot_body < 0) return;
   if (!world.free) {
     for (const Eigen::Isometry3d& T_WB : view.robots_T_WB) {
-      // The joint search starts from the previous pose, because neighbouring poses of a film strip are similar.
       engine::reach(world, T_WB, *data);
       mjv_addGeoms(&model, data.get(), &option, nullptr, mjCAT_DYNAMIC, &scene);
     }

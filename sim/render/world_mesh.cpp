@@ -13,7 +13,7 @@ namespace tumble::sim {
 namespace {
 
 constexpr double kUnbounded_m = 60.0;
-constexpr int kGroupsSeen = 3;  ///< number of geom groups in MuJoCo's pictures: 0, 1 and 2
+constexpr int kGroupsSeen = 3;  ///< 0, 1 and 2
 
 std::array<float, 4> colour_of(const mjModel& model, int geom) {
   const int material = model.geom_matid[geom];
@@ -57,7 +57,6 @@ std::vector<MeshPart> body_mesh(const mjModel& model, const mjData& data, int bo
   for (int geom = 0; geom < model.ngeom; ++geom) {
     if (model.geom_bodyid[geom] != body || model.geom_group[geom] >= kGroupsSeen) continue;
     if (colour_of(model, geom)[3] == 0.0f) continue;
-    // A thin strut (capsule) needs fewer pieces about its axis than the shell of a sphere.
     const bool thin = model.geom_type[geom] == mjGEOM_CAPSULE;
     parts.push_back(part_of(model, geom, T_FW * geom_pose(data, geom), thin ? (segments + 2) / 4 * 2 : segments));
   }

@@ -21,8 +21,7 @@ struct MeshPart {
 };
 
 /// Returns the visible parts of the world in frame W, without ceilings and near walls that would hide the inside. Round
-/// parts have `segments` pieces about their axis, capsules half as many. Throws InvalidSituation for a geom without a
-/// surface.
+/// parts have `segments` facets about their axis, capsules half as many.
 std::vector<MeshPart> world_mesh(const BuiltSituation& built, int segments = 12);
 
 std::vector<MeshPart> robot_mesh(const BuiltSituation& built, int segments = 20);

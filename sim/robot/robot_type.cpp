@@ -19,7 +19,7 @@ const RobotType& find_robot_type(std::string_view name) {
 void move_parts(mjsBody* body, const Eigen::Vector3d& shift_m) {
   for (mjsElement* e = mjs_firstChild(body, mjOBJ_GEOM, 0); e; e = mjs_nextChild(body, e, 0)) {
     mjsGeom* geom = mjs_asGeom(e);
-    const bool by_ends = geom->fromto[0] == geom->fromto[0];  // false (NaN) if the geom is defined by its centre
+    const bool by_ends = geom->fromto[0] == geom->fromto[0];  // NaN: defined by its centre
     for (int i = 0; i < 3; ++i) {
       if (by_ends) {
         geom->fromto[i] += shift_m[i];

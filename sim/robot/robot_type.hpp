@@ -15,7 +15,7 @@ struct RobotType {
   void (*shape)(mjSpec* spec, const Values& values, engine::World& world);
   /// Body of the MJCF file that carries all sensor sites, with its origin at its centre of mass
   std::string_view sensor_body = "robot";
-  std::string_view anchor = "";  ///< static body that is moved to the world's start; empty: the robot is free
+  std::string_view anchor = "";  ///< static body; empty: free robot
 };
 
 const RobotType& rig_robot();

@@ -27,8 +27,6 @@ constexpr std::array kSphereParameters = {
     Parameter{"contact_damping_ratio", 1.0, 0.05, 1.5, "1", "damping ratio of a contact (MuJoCo solref[1])"},
 };
 
-/// Returns the inertia of shell and inner ball about their common centre of mass, by the parallel axis theorem
-/// (Steiner).
 Eigen::Matrix3d inertia(double shell_kg, double radius_m, double inner_kg, double inner_radius_m,
                         const Eigen::Vector3d& d_m) {
   const double own =
@@ -47,7 +45,7 @@ void shape_sphere(mjSpec* spec, const Values& values, engine::World& world) {
   body->mass = shell_kg + inner_kg;
   const double full[6] = {J(0, 0), J(1, 1), J(2, 2), J(0, 1), J(0, 2), J(1, 2)};
   std::copy(full, full + 6, body->fullinertia);
-  std::fill(body->inertia, body->inertia + 3, 0.0);  // the compiler accepts only one of two forms of the inertia
+  std::fill(body->inertia, body->inertia + 3, 0.0);  // only one form is accepted
 
   mjs_asGeom(mjs_findElement(spec, mjOBJ_GEOM, "shell"))->size[0] = radius_m;
   set_contact(body, values.at("contact_time_s"), values.at("contact_damping_ratio"));

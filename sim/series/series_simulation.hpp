@@ -31,7 +31,7 @@ inline constexpr std::array kSeriesParameters = {
 
 /// Sizes of the errors of a reading, relative to the true mean over the averaging window; 0 switches an error off
 struct ReadingErrors {
-  double noise = 0.0;  ///< standard deviation of the white noise of each reading
+  double noise = 0.0;  ///< standard deviation per reading
   /// Standard deviation of an error that is constant over a recording
   double bias = 0.0;
   double low = -std::numeric_limits<double>::infinity();  ///< limits of the output range
@@ -43,13 +43,13 @@ struct Measured {
   std::string name;  ///< ends in its unit: "pressure_pa"
   std::string unit;
   ReadingErrors errors;
-  std::function<double(std::size_t k)> exact;  ///< true value at physics sample k of the truth
+  std::function<double(std::size_t k)> exact;  ///< true, at physics sample k
 };
 
 /// A reading is the mean over an averaging window with bias, white noise, range, quantum, time stamps and losses. A
 /// sample that the device loses is also missing in the truth. Throws InvalidSituation if the output period is not a
-/// whole number of physics steps. The model excludes temperature errors, drift, and any bandwidth limit except the
-/// averaging window.
+/// whole number of physics steps. The model of such sensors excludes temperature errors, drift, and any bandwidth limit
+/// except the averaging window.
 void simulate_series(const SensorContext& context, const std::vector<Measured>& quantities,
                      const std::vector<std::string>& constants, Recording& recording);
 

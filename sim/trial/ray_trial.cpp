@@ -57,7 +57,7 @@ struct TrialRay {
 };
 
 Vector3d as_float(const Vector3d& v) {
-  return v.cast<float>().cast<double>();  // rounded to float, so that the ray scene and MuJoCo use the same origin
+  return v.cast<float>().cast<double>();  // same origin for both ray casters
 }
 
 Vector3d origin_above_ground(const EngineRays& rays, double half_extent_m, Stream& stream) {

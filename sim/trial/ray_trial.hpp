@@ -9,10 +9,10 @@ namespace tumble::sim {
 
 struct RayDisagreement {
   std::int64_t rays = 0;
-  std::int64_t hits = 0;  ///< number of hits of the engine's rays
+  std::int64_t hits = 0;
   /// Number of rays for which the lidar and MuJoCo hit different surfaces, or only one of them has a hit
   std::int64_t other_surface = 0;
-  double largest_difference_m = 0.0;  ///< largest difference of ranges on the same surface
+  double largest_difference_m = 0.0;  ///< on the same surface
 };
 
 struct RayTrialOptions {
@@ -20,12 +20,11 @@ struct RayTrialOptions {
   std::uint64_t seed = 1;
   /// Displacement of the lidar's rays: a deliberate error that the comparison with MuJoCo's rays must detect
   double mirror_shift_m = 0.0;
-  int surface_shift = 0;  ///< number added to the surface ids of the ray scene; another deliberate error
+  int surface_shift = 0;  ///< another deliberate error
 };
 
 /// Casts random rays in all directions with the lidar's ray scene and with MuJoCo, without the robot. Half of the rays
-/// start 0.2 to 3 m above the surface at random positions of the world, half near the robot's start. Throws
-/// InvalidSituation for a geom without a surface.
+/// start 0.2 to 3 m above the surface at random positions of the world, half near the robot's start.
 RayDisagreement compare_rays(const BuiltSituation& built, const RayTrialOptions& options);
 
 }  // namespace tumble::sim

@@ -21,10 +21,9 @@ struct TrialOptions {
 };
 
 /// Trial simulates a robot in its world step by step for measurements, with the model and engine of simulate(). The
-/// robot starts without settling; the motion and sensors of the situation are ignored.
+/// robot of a Trial starts without settling; the motion and sensors of the situation are ignored.
 class Trial {
  public:
-  /// Throws InvalidSituation if the time step is outside its limits.
   explicit Trial(const BuiltSituation& built, const TrialOptions& options = {});
   ~Trial();
   Trial(Trial&&) noexcept;
@@ -33,14 +32,12 @@ class Trial {
   double mass_kg() const;
   double gravity_m_s2() const;
   Eigen::Matrix3d inertia_B_kg_m2() const;  ///< about the centre of mass
-  double sphere_radius_m() const;           ///< 0 if the robot is not a sphere
-  Eigen::Vector3d p_BG_m() const;           ///< geometric centre (design origin) in B
-  double half_extent_m() const;             ///< the robot has left its world beyond this |x| or |y|
+  double sphere_radius_m() const;           ///< 0: no sphere
+  Eigen::Vector3d p_BG_m() const;           ///< geometric centre in B
+  double half_extent_m() const;             ///< limit of |x| and |y|
 
-  BodyState state() const;  ///< state of the body that carries the sensors
-  /// Throws InvalidSituation for a robot on joints.
+  BodyState state() const;
   void set_state(const BodyState& state);
-  /// Throws InvalidSituation for an unknown hinge.
   double joint_rad(const std::string& name) const;
   double joint_rate_rad_s(const std::string& name) const;
   void set_joint(const std::string& name, double angle_rad, double rate_rad_s);

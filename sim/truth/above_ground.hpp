@@ -9,14 +9,13 @@
 
 namespace tumble::sim {
 
-/// In a hard impact, the soft contact yields by several centimetres for about 30 ms. A longer penetration means that
+/// In a hard impact, the soft contact yields by several centimetres for about 30 ms; a longer penetration means that
 /// the robot is wedged.
 inline constexpr double kDipDepth_m = 0.01;
 inline constexpr double kDip_s = 0.05;
 
 /// Checks that a sensor stays above the ground, because runs with a wedged robot are useless for judging estimators.
-/// `truth` contains the poses of the body; `p_BX_m` is the position of the sensor on the body. The check covers only
-/// height fields, not planes, rocks, trunks and walls. Throws SimulationFailure with sensor, time, depth and limit.
+/// The check for a wedged robot covers only height fields, not planes, rocks, trunks and walls.
 void require_above_ground(const engine::World& world, const Truth& truth, const std::string& sensor,
                           const Eigen::Vector3d& p_BX_m);
 

@@ -14,8 +14,7 @@ struct Sums {
   double weight = 0.0, slip = 0.0, overspin = 0.0;
 };
 
-/// Returns the slip speed of one contact, and the speed of the rotation minus the speed of the centre, both weighted by
-/// the normal force.
+/// Slip speed of one contact, and speed of the rotation minus speed of the centre, both weighted by the normal force.
 Sums weigh(const Truth& truth, const ContactTruth& contact) {
   const std::size_t k = static_cast<std::size_t>(contact.time_ns / truth.period_ns);
   const Eigen::Vector3d w_W = truth.q_WB[k] * truth.w_WB_B_rad_s[k];

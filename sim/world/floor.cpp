@@ -90,7 +90,6 @@ void add_obstacles(mjSpec* spec, engine::World& world, const Values& values) {
     const Eigen::Vector2d ahead(std::cos(yaw_rad), std::sin(yaw_rad));
     Eigen::Vector2d at(value("x_m"), value("y_m"));
     if (kind == 3) at += half_depth_m * ahead;
-    // Half of the obstacle is below the floor, so that its lower face does not coincide with the floor.
     mjsGeom* geom = kind == 1 ? add_bar(spec, world, name, at, yaw_rad, height_m, kWood)
                               : add_surface(spec, world, name, mjGEOM_BOX, {at.x(), at.y(), 0.0},
                                             {half_depth_m, kObstacleHalfWidth_m, height_m}, yaw_rad, kWood);
@@ -100,7 +99,7 @@ void add_obstacles(mjSpec* spec, engine::World& world, const Values& values) {
 
 void build_floor(mjSpec* spec, const Values& values, std::uint64_t seed, engine::World& world) {
   Stream stream(seed, "terrain");
-  Stream uneven(seed, "terrain.unevenness");  // a separate stream, so that the furniture of a seed does not change
+  Stream uneven(seed, "terrain.unevenness");  // keeps the furniture of a seed
   const double half_m = values.at("room_half_m");
   add_ground(spec, world, values, half_m, half_m, nullptr, {0.62f, 0.6f, 0.57f, 1.0f}, uneven);
   add_room(spec, world, values, stream);

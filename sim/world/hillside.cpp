@@ -13,7 +13,7 @@ namespace tumble::sim::hillside {
 
 namespace {
 
-constexpr double kReach_m = 18.0;  // minimum distance of objects from the rim
+constexpr double kReach_m = 18.0;  // from objects to the rim
 
 double from_start_m(double x_m, double y_m) {
   return std::hypot(x_m - kStart_x_m, y_m);

@@ -15,7 +15,7 @@ inline constexpr double kHalfExtent_m = 20.0;
 /// centimetres into the ground.
 inline constexpr int kSide = 201;
 inline constexpr double kEdge_m = -8.0;    ///< x of the upper edge
-inline constexpr double kSetBack_m = 0.8;  ///< distance of the robot's start behind the edge
+inline constexpr double kSetBack_m = 0.8;  ///< robot's start behind the edge
 inline constexpr double kStart_x_m = kEdge_m - kSetBack_m;
 
 inline constexpr std::array kCoverParameters = {
@@ -40,7 +40,7 @@ inline constexpr std::array kCoverParameters = {
               "1: a building below the slope and a wall next to the slope, which the robot cannot reach; 0: none"},
 };
 
-/// Share returns the fraction of the relief's height that applies at a position, within [0, 1].
+/// Fraction of the relief's height that applies at a position, within [0, 1].
 using Share = std::function<double(double x_m, double y_m)>;
 
 void roughen(Ground& ground, const Values& values, std::uint64_t seed, const Share& share);

@@ -30,7 +30,7 @@ void add_slab(mjSpec* spec, engine::World& world, const Values& values, const st
   mjsGeom* geom =
       add_surface(spec, world, name, mjGEOM_BOX, {middle.x(), 0.0, middle.y()},
                   {0.5 * (to_m - from_m).norm(), kHalfWidth_m, kHalfThickness_m}, 0.0, {0.7f, 0.62f, 0.5f, 1.0f});
-  const double tilt_rad = std::atan2(along.y(), along.x());  // an upward slope is a negative rotation about y
+  const double tilt_rad = std::atan2(along.y(), along.x());  // upward: negative rotation about y
   geom->quat[0] = std::cos(tilt_rad / 2);
   geom->quat[2] = -std::sin(tilt_rad / 2);
   geom->quat[1] = geom->quat[3] = 0.0;

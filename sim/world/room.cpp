@@ -28,7 +28,6 @@ void add_walls(mjSpec* spec, engine::World& world, const Values& values) {
 
 void add_furniture(mjSpec* spec, engine::World& world, const Values& values, Stream& stream) {
   const double reach_m = values.at("room_half_m") - 0.5;
-  // Even if the clear disc is as wide as the room, the corners of the room remain, so a position is always found.
   const auto place = [&] {
     Eigen::Vector2d at;
     do {

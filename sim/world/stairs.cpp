@@ -45,7 +45,6 @@ void add_cheeks(mjSpec* spec, engine::World& world, const Flight& flight, double
 void build_stairs(mjSpec* spec, const Values& values, std::uint64_t seed, engine::World& world) {
   const Flight flight{hillside::kEdge_m, static_cast<int>(values.at("step_count")), values.at("step_rise_m"),
                       values.at("step_tread_m"), values.at("flight_half_width_m")};
-  // At the sides of the stairs, the ground follows their slope; under the stairs, the ground stays below the treads.
   const SlopeProfile slope{flight.edge_x_m, flight.slope_rad(), flight.drop_m(), 0.05};
   const auto beside = [&](double, double y_m) {
     return fade(std::abs(y_m), flight.half_width_m + 0.3, flight.half_width_m + 1.5);

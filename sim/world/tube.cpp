@@ -29,7 +29,7 @@ constexpr std::array kOwnTubeParameters = {
 };
 constexpr std::array kTubeParameters = joined(kGroundParameters, kOwnTubeParameters);
 constexpr Colour kRock = {0.42f, 0.36f, 0.33f, 1.0f};
-constexpr double kOver_m = 0.5;  // the ground extends beyond the walls, so that there is no gap
+constexpr double kOver_m = 0.5;  // no gap at the walls
 
 double middle_m(const Values& values, double x_m) {
   return values.at("bend_m") * std::sin(2.0 * std::numbers::pi * x_m / values.at("bend_length_m"));
@@ -45,7 +45,7 @@ double ground_m(const Values& values, double x_m, double y_m) {
 void add_shell(mjSpec* spec, engine::World& world, const Values& values, int side, const Relief& rough) {
   constexpr double kRing_m = 0.1;
   constexpr int kSteps = 28;
-  constexpr double kBelow_rad = 0.25;  // the wall continues below the ground
+  constexpr double kBelow_rad = 0.25;  // the wall continues below ground
   const int rings = static_cast<int>(std::ceil(values.at("length_m") / kRing_m));
   std::vector<float> vertices;
   for (int ring = 0; ring <= rings; ++ring) {
@@ -79,7 +79,7 @@ void add_shell(mjSpec* spec, engine::World& world, const Values& values, int sid
   mjs_setInt(mesh->userface, faces.data(), static_cast<int>(faces.size()));
   mjsGeom* geom = add_surface(spec, world, name, mjGEOM_MESH, {0, 0, 0}, {0, 0, 0}, 0.0, kRock);
   mjs_setString(geom->meshname, name.c_str());
-  geom->contype = 2;  // the lidar sees geoms that could be touched; the robot's contact bit is 1
+  geom->contype = 2;  // visible to lidars, untouched by robots
   geom->conaffinity = 0;
   if (side < 0) geom->group = kUnseenInPictures;  // cameras look from the right side
 }

@@ -99,10 +99,10 @@ TEST(Page, LinksTheReplayOfAnExampleThatHasOne) {
 TEST(Page, SaysWhatItsRecordingsAre) {
   PageContent content;
   content.summary = page_summary("hill");
-  EXPECT_THAT(page_html(content, ""), HasSubstr("2 draws of hill from simulation with known truth"));
+  EXPECT_THAT(page_html(content, ""), HasSubstr("2 simulated runs of hill with known truth"));
   content.recorded = true;
   EXPECT_THAT(page_html(content, ""), HasSubstr("the same recordings (hill) and are scored against the truth"));
-  EXPECT_THAT(page_html(content, ""), Not(HasSubstr("from simulation")));
+  EXPECT_THAT(page_html(content, ""), Not(HasSubstr("simulated runs of hill")));
 }
 
 TEST(Page, SaysWhatItsTasksAndMethodsAre) {

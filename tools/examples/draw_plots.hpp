@@ -13,18 +13,16 @@ namespace tumble::tools {
 
 std::vector<std::size_t> drawn_of(const std::vector<bool>& first);
 
-/// Paths of methods with access to the truth would hide the true path and are omitted.
 struct RunPaths {
   std::vector<std::string> methods;  ///< for example "slam/icp"
   std::vector<Path> paths;           ///< parallel to `methods`
-  std::size_t left_out = 0;          ///< number of methods that have a path but no colour
+  std::size_t left_out = 0;          ///< methods without a colour
   std::string left_out_text() const;
 };
 RunPaths paths_of(const scenarios::RunResult& run);
 
 double significant(double value);
 
-/// Without clipped samples, the plot has no lines.
 Plot rate_plot(const scenarios::RunResult& run);
 
 Plot path_plot(const scenarios::RunResult& run, const RunPaths& paths);

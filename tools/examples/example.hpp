@@ -19,7 +19,7 @@ struct PlotLine {
   int colour = kTruthColour;
   double width = 1.8;  ///< line width [pixels]
   bool dotted = false;
-  bool hidden = false;  ///< hidden until the reader clicks its entry in the legend
+  bool hidden = false;  ///< hidden until clicked in the legend
   std::vector<double> x, y;
 };
 
@@ -27,10 +27,10 @@ struct Plot {
   std::string name;  ///< for example "path"; unique within the example
   std::string caption;
   std::string x_title, y_title;                   ///< titles of the axes, with unit
-  bool equal_scales = false;                      ///< both axes have equal scales, for a path seen from above
+  bool equal_scales = false;                      ///< for a path seen from above
   bool from_zero = false;                         ///< the y axis includes 0
-  bool over_time = false;                         ///< hovering shows all lines at the same x
-  bool wide = true;                               ///< true: the plot has its own row; false: two plots share a row
+  bool over_time = false;                         ///< hovering shows all lines
+  bool wide = true;                               ///< false: two plots share a row
   std::vector<std::pair<double, double>> shaded;  ///< shaded intervals of x
   std::vector<PlotLine> lines;
 };
@@ -45,45 +45,38 @@ struct ExamplePicture {
 struct Example {
   std::string scenario;
   std::uint64_t seed = 0;
-  std::string motion;       ///< kind of motion of the run: "tumble" or "roll"
-  std::string choice;       ///< reason why this run was chosen, in one sentence
-  bool of_failure = false;  ///< true: shown with the failures, with one picture and a replay
+  std::string motion;       ///< "tumble" or "roll"
+  std::string choice;       ///< reason, in one sentence
+  bool of_failure = false;  ///< shown with the failures
   std::string recording_digest, digest_without_lidars;
-  std::string made_of;  ///< digest of the rows of the results that the example shows
+  std::string made_of;  ///< digest of the shown results
   std::vector<ExamplePicture> pictures;
   std::vector<Plot> plots;
-  std::vector<std::uint8_t> moving;  ///< animated WebP of a part of the run; empty if absent
+  std::vector<std::uint8_t> moving;  ///< animated WebP; empty if absent
   std::string moving_caption;        ///< for example "2.5 s of it at half speed"
-  std::string replay;                ///< file name of the replay in the folder of examples; empty if absent
-  std::string replay_page;           ///< HTML of the replay page; written only
+  std::string replay;                ///< file name; empty if absent
+  std::string replay_page;           ///< HTML of the replay page
 };
 
 std::filesystem::path examples_folder(const std::filesystem::path& database);
 
 std::string to_json(const Example& example);
 
-/// Writes the pictures, animation and replay of an example to FOLDER/.unfinished; `write_examples` later moves them to
-/// FOLDER. Throws BadInput if a file cannot be written.
 void write_pictures(const std::filesystem::path& folder, const Example& example);
 
 void discard_unfinished(const std::filesystem::path& folder);
 
 std::string replay_file(const Example& example);
 
-/// Writes the list of examples, and moves their files from FOLDER/.unfinished to FOLDER. Files that only the previous
-/// list names are removed. Throws BadInput if a file cannot be written.
 void write_examples(const std::filesystem::path& folder, const std::vector<std::string>& examples);
 
 enum class Pictures { read, left_out };
 struct FoundExamples {
   std::vector<Example> examples;        ///< in the order of the list
-  std::vector<std::string> unreadable;  ///< path and reason for each unreadable part of the list
+  std::vector<std::string> unreadable;  ///< path and reason
 };
-/// An unreadable example does not affect other examples.
 FoundExamples read_examples(const std::filesystem::path& folder, Pictures pictures);
 
-/// Copies a damaged list to examples.json.damaged, so that the next list does not overwrite it; returns the path of the
-/// copy.
 std::filesystem::path set_damaged_aside(const std::filesystem::path& folder);
 
 }  // namespace tumble::tools

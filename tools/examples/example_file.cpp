@@ -63,7 +63,6 @@ fs::path list_file(const fs::path& folder) {
   return folder / "examples.json";
 }
 
-/// The "/" in the scenario's name is replaced, so that the file stays in its folder.
 std::string file_of(const Example& example, const std::string& ending) {
   std::string name = example.scenario + "-" + std::to_string(example.seed) + "-" + ending;
   for (char& c : name) {
@@ -85,7 +84,7 @@ std::vector<std::uint8_t> read_bytes(const fs::path& path) {
   if (!file) throw BadInput(fmt::format("{}: the file cannot be read; give a regular file", path.string()));
   try {
     return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  } catch (const std::ios_base::failure& error) {  // opening a folder succeeds, but reading it fails
+  } catch (const std::ios_base::failure& error) {  // opening a folder succeeds
     throw BadInput(fmt::format("{}: the file cannot be read: {}", path.string(), error.what()));
   }
 }
@@ -130,7 +129,7 @@ Example read_example(const fs::path& folder, const json& from, Pictures pictures
   example.seed = from.at("seed");
   example.motion = from.at("motion");
   example.choice = from.at("choice");
-  example.of_failure = from.value("of_failure", false);  // missing in lists of earlier versions
+  example.of_failure = from.value("of_failure", false);  // missing in earlier versions
   example.recording_digest = from.at("recording_digest");
   example.digest_without_lidars = from.at("digest_without_lidars");
   example.made_of = from.at("made_of");

@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kPollMs = 200;
-/// Time limit for simulation and rendering, in addition to the methods, in time limits of one method
+/// Time limit for simulation and rendering, in multiples of the time limit of one method
 constexpr double kOtherTimeouts = 3.0;
 constexpr const char* kTypical = "The simulated run with the median score of its scenario";
 constexpr const char* kFailed = "The simulated run on which most methods failed";
@@ -107,7 +107,6 @@ std::vector<Making> plan(const scenarios::DataRoot& data, const scenarios::Suite
   return makings;
 }
 
-/// Examples of scenarios outside the suite come from other sweeps in this database and are kept.
 std::vector<std::string> keep_known(const scenarios::DataRoot& data, const fs::path& folder,
                                     const scenarios::Suite& suite, const LeaveOptions& options,
                                     std::vector<Making>& makings) {

@@ -13,9 +13,9 @@ namespace tumble::tools {
 
 struct LeaveOptions {
   std::size_t count = 3;                       ///< maximum number of typical runs
-  std::size_t failures = 8;                    ///< maximum number of runs with failed methods
+  std::size_t failures = 8;                    ///< with failed methods
   int jobs = 1;                                ///< number of parallel processes
-  const std::atomic<bool>* stop = nullptr;     ///< stops the generation; existing examples are kept
+  const std::atomic<bool>* stop = nullptr;     ///< existing examples are kept
   std::function<void(std::string_view)> note;  ///< receives progress messages; may be empty
 };
 

@@ -85,7 +85,6 @@ void add_path(const scenarios::RunResult& run, const RunPaths& paths, int width,
       {}};
   for (std::size_t i = 0; i < paths.methods.size(); ++i)
     picture.legend.emplace_back(paths.methods[i], static_cast<int>(i));
-  // Many closely spaced spheres would hide the path.
   picture.png = sim::png_bytes(scene_picture(scene_of(run, paths), is_sphere(run) ? 3 : 8, width, height));
   example.pictures.push_back(std::move(picture));
 }

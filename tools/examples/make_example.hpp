@@ -11,8 +11,7 @@ namespace tumble::tools {
 
 enum class Moving { drawn, left_out };
 
-/// Generates the pictures, plots and replay of a completed run; `choice` and `made_of` stay empty. The animation is
-/// optional, because it costs more than the rest. Throws BadInput or std::runtime_error if nothing can be rendered.
+/// Generates the pictures, plots and replay of a completed run; `choice` and `made_of` stay empty.
 Example example_of(const scenarios::RunResult& run, Moving moving);
 
 Example failure_example_of(const scenarios::RunResult& run);

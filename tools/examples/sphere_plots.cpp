@@ -20,7 +20,7 @@ using scenarios::Kind;
 
 constexpr std::int64_t kSpeedHalf_ns = 25'000'000;
 constexpr std::size_t kPointsMax = 700;
-constexpr std::int64_t kBridge_ns = 20'000'000;  // intervals with a shorter gap are shaded as one
+constexpr std::int64_t kBridge_ns = 20'000'000;  // shorter gaps are shaded
 
 double five_decimals(double value) {
   return std::round(value * 1e5) / 1e5;
@@ -41,8 +41,6 @@ struct ShownPath {
   Path path;
 };
 
-/// For each value of MethodInfo::source, only the path of the first position method without truth is shown, because
-/// more paths would hide each other.
 std::vector<ShownPath> shown_paths(const scenarios::RunResult& run) {
   const sim::Recording& recording = run.recording;
   std::vector<ShownPath> all = {{"truth", kTruthColour, 3.5, true_path(recording.sensors, recording.truth, 4)}};

@@ -9,7 +9,6 @@ namespace tumble::tools {
 Plot sphere_track_plot(const scenarios::RunResult& run);
 Plot sphere_speed_plot(const scenarios::RunResult& run);
 Plot sphere_height_plot(const scenarios::RunResult& run);
-/// Plots the tilt relative to its mean over the longest standstill, in the direction in which the tilt varies most.
 Plot sphere_standstill_plot(const scenarios::RunResult& run);
 
 }  // namespace tumble::tools

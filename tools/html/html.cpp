@@ -37,7 +37,6 @@ std::string script_json(const std::string& json) {
   std::string out;
   out.reserve(json.size());
   for (const char c : json) {
-    // In JSON, "<" occurs only in strings, where the escape has the same meaning.
     if (c == '<') {
       out += "\\u003c";
     } else {

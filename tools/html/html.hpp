@@ -13,8 +13,6 @@ std::string escaped(const std::string& text);
 /// Each "<" of the JSON text is escaped, so that the text cannot end a script element in which it is embedded.
 std::string script_json(const std::string& json);
 
-/// Returns a path as a file URL; characters other than letters, digits, "/", "-", ".", "_" and "~" are percent-encoded
-/// (RFC 3986).
 std::string file_address(const std::string& path);
 
 std::string png_address(std::span<const std::uint8_t> png);

@@ -18,7 +18,7 @@ using Eigen::Vector3f;
 
 constexpr std::array<std::uint8_t, 3> kBackground = {24, 26, 30};
 constexpr int kScaleHeight = 14, kPictureMargin = 6;
-constexpr double kFocal = 1.7;  ///< focal length in half smaller sides of the picture: about 60 degrees of view
+constexpr double kFocal = 1.7;  ///< about 60 degrees of view
 constexpr double kElevation_rad = 0.6;
 
 class Camera {

@@ -21,7 +21,7 @@ inline constexpr float kMapErrorMax_m = 1.0f;
 struct ErrorMap {
   std::string name;  ///< for example "slam/icp_raw"
   std::vector<Eigen::Vector3f> points_W_m;
-  std::vector<float> error_m;  ///< distance to the true surface of each point, at most kMapErrorMax_m
+  std::vector<float> error_m;  ///< at most kMapErrorMax_m
   double share_within(float limit_m) const;
 };
 
@@ -30,8 +30,6 @@ ErrorMap map_by_error(const std::string& name, const scenarios::Estimate& estima
 
 std::array<std::uint8_t, 3> error_colour(float error_m);
 
-/// Draws maps next to each other from one viewpoint, limited to the surroundings of the true path. `width` and `height`
-/// are the size of one map. Throws std::invalid_argument if there are no maps or the truth is empty.
 sim::Picture map_picture(const std::vector<ErrorMap>& maps, const sim::Truth& truth, int width, int height);
 
 }  // namespace tumble::tools

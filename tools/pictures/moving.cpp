@@ -12,7 +12,6 @@ namespace tumble::tools {
 
 namespace {
 
-/// The camera looks at the robot's mean position over kFollow_s, so it follows without shaking at impacts.
 constexpr double kFollow_s = 0.4;
 constexpr int kFollowSamples = 9;
 constexpr int kPause_ms = 700;
@@ -64,7 +63,6 @@ std::vector<std::uint8_t> moving_picture(const Scene& scene, const Span& span, c
   const scenarios::TruthTrack track(*scene.truth, scenarios::Frame::body);
   const std::vector<std::int64_t> stands =
       options.strobe > 0 ? instants_along(*scene.truth, options.strobe) : std::vector<std::int64_t>{};
-  // Finer shadows would be invisible in such small frames, and would be most of the cost.
   sim::Renderer renderer(*scene.built, 1024);
   sim::View view;
   view.width = options.width;

@@ -14,18 +14,16 @@ namespace tumble::tools {
 struct MovingOptions {
   int width = 640, height = 360;
   double frames_per_s = 20.0;
-  double speed = 0.5;  ///< seconds of motion per second of playback
-  int strobe = 6;      ///< number of robots along the path, equally far apart; 0: none
+  double speed = 0.5;  ///< motion time per playback time
+  int strobe = 6;      ///< robots along the path
   float quality = 60.0f;
-  std::function<void(std::size_t frames)> drawn;  ///< called after each frame with the number of finished frames
+  std::function<void(std::size_t frames)> drawn;  ///< called after each frame
 };
 
-/// Returns the interval of `length_s` in which the body rotates most; the whole moving interval if it is shorter.
 Span liveliest_span(const sim::Truth& truth, double length_s);
 
 std::size_t frame_count(const Span& span, const MovingOptions& options);
 
-/// Throws scenarios::BadInput if the scene has no truth.
 std::vector<std::uint8_t> moving_picture(const Scene& scene, const Span& span, const MovingOptions& options);
 
 }  // namespace tumble::tools

@@ -29,12 +29,9 @@ Path true_path(const sim::Sensors& sensors, const sim::Truth& truth, std::size_t
 Path estimated_path(const scenarios::Estimate& estimate, const sim::Sensors& sensors, const sim::Truth& truth);
 
 /// Returns `path` up to the first point outside the surroundings of `truth`, because a diverged estimate would fill the
-/// whole picture. The surroundings are the bounding box of `truth`, widened on each side by half of its diagonal, and
-/// by at least 1 m.
+/// whole picture.
 Path near_truth(const Path& path, const Path& truth);
 
-/// The interval is widened by `margin_s` on each side and limited to the time of the truth. Without motion, the
-/// interval is the whole truth.
 struct Span {
   std::int64_t begin_ns = 0, end_ns = 0;
 };

@@ -16,7 +16,6 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
-/// A rig is seen from below the slope, along the lane without trunks; a sphere is shown with the whole room.
 void show_start(const Scene& scene, sim::View& view) {
   const Isometry3d T_WB = sim::start_pose(*scene.built);
   view.robots_T_WB = {T_WB};

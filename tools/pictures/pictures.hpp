@@ -15,16 +15,15 @@ namespace tumble::tools {
 
 struct Scene {
   const sim::BuiltSituation* built = nullptr;
-  const sim::Sensors* sensors = nullptr;  ///< needed with `truth` to draw the robot along the true path
+  const sim::Sensors* sensors = nullptr;  ///< required to draw the robot
   const sim::Truth* truth = nullptr;
-  std::vector<Path> estimates;  ///< estimate i has the colour method_colour(i)
+  std::vector<Path> estimates;  ///< in the order of method_colour
 };
 
 sim::Picture scene_picture(const Scene& scene, int robots, int width, int height);
 
 sim::Picture film_picture(const Scene& scene, int frames, int columns, int width, int height);
 
-/// Throws scenarios::BadInput with the path if the file cannot be written.
 void save_picture(const std::filesystem::path& path, const sim::Picture& picture);
 
 }  // namespace tumble::tools

@@ -18,8 +18,6 @@ double line_width_m(const Scene& scene) {
   return is_sphere(scene) ? 0.012 : 0.03;
 }
 
-/// Points closer than `spacing_m` to the preceding point are dropped, because a drawn line is a chain of bodies, and
-/// thousands of bodies are slow.
 std::vector<Vector3d> thinned(const std::vector<Vector3d>& points, double spacing_m) {
   std::vector<Vector3d> out;
   for (const Vector3d& point : points) {
@@ -59,7 +57,6 @@ std::vector<sim::DrawnPath> drawn_paths(const Scene& scene) {
   const auto add = [&](const Path& path, Colour colour, double width) {
     if (path.points_W_m.size() > 1) paths.push_back({thinned(path.points_W_m, 1.5 * width_m), colour.rgba(), width});
   };
-  // The true path is slightly thicker, so it is visible behind an estimated path that covers it.
   const Path truth = scene.truth == nullptr ? Path() : true_path(*scene.sensors, *scene.truth, 10);
   add(truth, truth_colour(), 1.5 * width_m);
   for (std::size_t i = 0; i < scene.estimates.size(); ++i) {

@@ -18,7 +18,6 @@ std::vector<std::int64_t> instants_along(const sim::Truth& truth, int count);
 
 std::vector<sim::DrawnPath> drawn_paths(const Scene& scene);
 
-/// Slopes are visible in a view across the direction of travel.
 double azimuth_across_rad(const sim::Truth& truth);
 
 Eigen::Isometry3d robot_pose(const scenarios::TruthTrack& track, std::int64_t time_ns);

@@ -16,7 +16,6 @@ namespace tumble::tools {
 class Motion {
  public:
   Motion() = default;
-  /// Poses that are not finite, not later than the preceding pose, or farther than 10 km from the first are dropped.
   Motion(const std::vector<std::int64_t>& time_ns, const std::vector<Eigen::Isometry3d>& T_WB);
 
   bool empty() const { return time_ns_.empty(); }
@@ -33,8 +32,7 @@ class Motion {
 
 Motion true_motion(const sim::Truth& truth, std::int64_t step_ns);
 
-/// The motion is aligned with the truth like the scores, or without a truth (null) with `reference`. The result is
-/// empty without poses, or if the recording lacks the sensor of their frame.
+/// The motion is aligned with the truth like the scores, or without a truth (null) with `reference`.
 Motion estimated_motion(const scenarios::Estimate& estimate, const sim::Sensors& sensors, const sim::Truth* truth,
                         const Motion& reference);
 

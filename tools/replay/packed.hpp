@@ -10,13 +10,12 @@
 namespace tumble::tools {
 
 struct PackedReplay {
-  std::string head;                 ///< JSON with the arrays and their positions in `bytes`
-  std::vector<std::uint8_t> bytes;  ///< little endian; each array starts at a multiple of 4
+  std::string head;                 ///< JSON with array positions
+  std::vector<std::uint8_t> bytes;  ///< little endian, in multiples of 4
 };
 
 /// Packs a replay as integers with scales: int16 for positions of world and points, attitudes and rates; uint32
-/// microseconds for times; uint8 for errors (255: unknown). Positions of tracks are float32, relative to the origin in
-/// the head.
+/// microseconds for times; uint8 for errors (255: unknown).
 PackedReplay packed(const Replay& replay);
 
 }  // namespace tumble::tools

@@ -13,7 +13,6 @@ namespace tumble::tools {
 
 namespace {
 
-/// Each name in double braces in page.html is replaced by its text; inserted texts are not searched.
 std::string filled(std::string_view page, const std::array<std::pair<std::string_view, std::string>, 5>& texts) {
   std::string out;
   for (std::size_t at = 0; at < page.size();) {

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kGoldenRatio = 0.6180339887498949;
 constexpr float kOwn_m = 0.5f;
-constexpr std::int32_t kOwnSurface = -2;  ///< surface id of the robot's own body (FORMAT.md, `/truth/lidars`)
+constexpr std::int32_t kOwnSurface = -2;  ///< robot's own body (FORMAT.md, `/truth/lidars`)
 
 bool is_own(const sim::LidarRecord& lidar, const sim::LidarTruth* truth, std::size_t i) {
   if (truth != nullptr) return truth->surface_id[i] == kOwnSurface;

@@ -13,8 +13,8 @@ namespace tumble::tools {
 /// the truth marks, or without a truth those nearer than 0.5 m.
 ReplayPoints shown_points(const sim::Sensors& sensors, const sim::Truth* truth, std::size_t most);
 
-/// Returns the transform from body axes of the estimator's calibration to body axes of the true mounting; the identity
-/// if the truth has no lidar.
+/// Transform from body axes of the estimator's calibration to body axes of the true mounting; the identity if the truth
+/// has no lidar.
 Eigen::Isometry3d true_from_given_body(const sim::Sensors& sensors, const sim::Truth& truth);
 
 std::vector<float> errors_of(const ReplayPoints& points, const Motion& motion, const Eigen::Isometry3d& T_BB_given,

@@ -21,10 +21,10 @@ namespace {
 
 using Eigen::Isometry3d;
 
-constexpr std::int64_t kStep_ns = 2'000'000;              ///< error at 30 m: at most 1 cm, up to 600 rad/s^2
-constexpr std::size_t kTracksShare = 2, kStripShare = 8;  ///< at most 1/2 of the bytes for tracks, 1/8 for the strip
+constexpr std::int64_t kStep_ns = 2'000'000;              ///< error at 30 m: 1 cm
+constexpr std::size_t kTracksShare = 2, kStripShare = 8;  ///< limits: 1/2 and 1/8
 constexpr std::size_t kPoseBytes = 20, kSampleBytes = 11, kRateBytes = 6, kPointBytes = 10;
-constexpr float kAround_m = 2.5f;  ///< within this distance of the path, the ground has full resolution
+constexpr float kAround_m = 2.5f;  ///< full ground resolution near the path
 
 void require_parallel(const sim::Sensors& sensors) {
   for (const sim::LidarRecord& lidar : sensors.lidars) {
@@ -95,7 +95,6 @@ std::vector<ReplayActor> actors_of(const ReplayInput& input) {
     truth.T_BB_given = true_from_given_body(*input.sensors, *input.truth);
     actors.push_back(std::move(truth));
   }
-  // Estimates with a path come first, so that their colours agree with the pictures of the run.
   const auto with_path = static_cast<std::size_t>(std::ranges::count_if(input.estimates, has_path));
   std::size_t paths = 0, other = with_path;
   for (const ReplayEstimate& given : input.estimates) {

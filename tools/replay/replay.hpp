@@ -25,9 +25,9 @@ struct ReplayInput {
   std::string title;                                       ///< for example "hill, seed 6"
   std::vector<std::pair<std::string, std::string>> facts;  ///< pairs of name and value
   const sim::Sensors* sensors = nullptr;
-  const sim::Truth* truth = nullptr;           ///< null: points are not coloured by error
-  const sim::BuiltSituation* built = nullptr;  ///< null: no world, and a generic body for the robot
-  const sim::Surface* surface = nullptr;       ///< null: points are not coloured by error
+  const sim::Truth* truth = nullptr;           ///< null: colours without error
+  const sim::BuiltSituation* built = nullptr;  ///< null: no world, generic robot
+  const sim::Surface* surface = nullptr;       ///< null: colours without error
   std::vector<ReplayEstimate> estimates;       ///< in the order of their colours
 };
 
@@ -45,18 +45,18 @@ struct ReplayActor {
   std::string name;
   std::string colour;
   bool is_truth = false;
-  ReplayTrack track;  ///< empty if the actor has no positions
+  ReplayTrack track;  ///< empty without positions
   /// Transform from body axes of the estimator's calibration, in which the points are, to the actor's body axes; the
   /// two axes differ for the truth
   Eigen::Isometry3d T_BB_given = Eigen::Isometry3d::Identity();
-  std::vector<float> error_m;               ///< [m]; NaN if unknown; empty without a true surface
-  std::vector<Eigen::Vector3f> rate_rad_s;  ///< in axes of the primary IMU; NaN if unknown
+  std::vector<float> error_m;               ///< [m]; NaN if unknown
+  std::vector<Eigen::Vector3f> rate_rad_s;  ///< axes of the primary IMU; NaN: unknown
 };
 
 struct ReplayPoints {
-  std::vector<Eigen::Vector3f> p_B_m;  ///< in body axes of the estimator's calibration
+  std::vector<Eigen::Vector3f> p_B_m;  ///< body axes of the calibration
   std::vector<std::int64_t> time_ns;
-  std::size_t of = 0;  ///< number of returns in the recording, without those from the robot
+  std::size_t of = 0;  ///< in the recording, without the robot
 };
 
 struct ContactSpan {
@@ -67,10 +67,10 @@ struct ContactSpan {
 struct ReplayStrip {
   std::vector<std::int64_t> time_ns;
   std::vector<Eigen::Vector3f> gyro_rad_s;
-  std::vector<std::uint8_t> clipped_axes;  ///< bit j is set if axis j is clipped
-  std::string clipping;                    ///< source of `clipped_axes`; empty if clipping is unknown
-  std::size_t of = 0;                      ///< number of samples in the recording
-  std::vector<ContactSpan> contacts;       ///< all spans except those in the air
+  std::vector<std::uint8_t> clipped_axes;  ///< bit j: axis j
+  std::string clipping;                    ///< source of `clipped_axes`
+  std::size_t of = 0;                      ///< in the recording
+  std::vector<ContactSpan> contacts;       ///< except in the air
   bool contacts_known = false;
 };
 
@@ -83,14 +83,14 @@ struct Replay {
   std::vector<sim::MeshPart> world;  ///< in axes of W
   Shown triangles;
   std::vector<sim::MeshPart> robot;  ///< in axes of B
-  double robot_radius_m = 0.0;       ///< radius of the robot about the origin of B
-  std::vector<ReplayActor> actors;   ///< the truth is first if there is one
+  double robot_radius_m = 0.0;       ///< about the origin of B
+  std::vector<ReplayActor> actors;   ///< truth first, if present
   ReplayPoints points;
   ReplayStrip strip;
 };
 
 struct ReplayLimits {
-  std::size_t bytes = 2'100'000;  ///< size of all arrays; points use the rest
+  std::size_t bytes = 2'100'000;  ///< all arrays; points use the rest
   std::size_t points = 120'000;
   std::size_t poses = 6'000;  ///< poses per track
   std::size_t strip_samples = 6'000;

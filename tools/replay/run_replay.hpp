@@ -11,7 +11,6 @@ namespace tumble::tools {
 
 inline constexpr std::size_t kRunReplayMethods = kMethodColours;
 
-/// The baseline and `tumble` of each kind have priority, then methods with poses.
 std::vector<std::size_t> shown_methods(const scenarios::RunResult& run);
 
 Replay replay_of_run(const scenarios::RunResult& run);

@@ -85,7 +85,6 @@ std::vector<MeshPart> thinned_world(std::vector<MeshPart> parts, const AlignedBo
     triangles.of += triangle_count(part);
     if (is_field(part)) ++fields;
   }
-  // Three quarters of the page's triangles are for the ground, which is always visible.
   std::size_t left = most;
   for (MeshPart& part : parts) {
     if (!is_field(part)) continue;

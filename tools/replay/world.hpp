@@ -10,8 +10,8 @@ namespace tumble::tools {
 
 std::size_t triangle_count(const sim::MeshPart& part);
 
-/// A height field keeps every node in the box `near`; outside, the step between nodes is one eighth of their distance
-/// from the box. Of the other parts, those with the largest apparent size are kept.
+/// A height field keeps every node in the bounding box `near`; outside, the step between nodes is one eighth of their
+/// distance from `near`.
 std::vector<sim::MeshPart> thinned_world(std::vector<sim::MeshPart> parts, const Eigen::AlignedBox3f& near,
                                          std::size_t most, Shown& triangles);
 

@@ -13,11 +13,10 @@ struct Badge {
   Colour colour = Colour::open;
 };
 
-/// The badge is good if all contests (best method against baseline) are won, and bad if the certificate fails or a
-/// contest is lost.
+/// The badge is good if the best method wins all comparisons with the reference method, and bad if a simulation check
+/// fails or a comparison is lost.
 Badge badge_of(const PageContent& content);
 
-/// Texts in the SVG are embedded as data, never as markup.
 std::string badge_svg(const Badge& badge);
 
 }  // namespace tumble::tools

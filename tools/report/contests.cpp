@@ -55,7 +55,6 @@ ContestResult result_of(const MetricComparison& row) {
     out.better = badness(info, row.difference.value) < 0.0;
   }
   const double scale = info.sense == Sense::two_sided ? kNaN : 100.0 / std::abs(row.against_median);
-  // If half of the baseline's runs failed, its median is infinite and the percentage is undefined.
   const bool known = std::isfinite(row.against_median) && row.against_median != 0.0;
   const double factor = known ? scale : kNaN;
   out.percent = std::isfinite(row.difference.value) ? row.difference.value * factor : kNaN;
@@ -97,7 +96,6 @@ Tally tally(const std::vector<ContestResult>& results) {
     out.won += result.won();
     out.lost += result.lost();
     out.open += !result.won() && !result.lost();
-    // Few runs give no interval, but a difference with the same sign on all runs indicates which method is better.
     const bool on_every_draw = result.certainty == Certainty::open && result.row.better == result.row.pairs;
     if (result.better && (on_every_draw || result.certainty == Certainty::interval)) {
       const std::string& method = result.row.contest.method;

@@ -12,16 +12,17 @@
 namespace tumble::tools {
 
 enum class Certainty {
-  corrected,  ///< significant in the signed-rank test, corrected for all comparisons of the page
-  interval,   ///< the BCa interval of the difference excludes 0, but the corrected test is not significant
+  corrected,  ///< significant in the corrected test
+  interval,   ///< only the BCa interval excludes 0
   open        ///< not significant by either criterion
 };
 
 struct ContestResult {
   scenarios::MetricComparison row;
   Certainty certainty = Certainty::open;
-  bool better = false;  ///< the difference favours the method; if `certainty` is `open`, it may be chance
-  /// Difference in percent of the baseline's median, with its interval; an end is infinite if one run of a pair failed
+  bool better = false;  ///< may be chance if `open`
+  /// Difference in percent of the reference method's median, with its interval; an end is infinite if one run of a pair
+  /// failed
   double percent = 0.0, percent_low = 0.0, percent_high = 0.0;
   double times = std::numeric_limits<double>::quiet_NaN();
   /// The confidence interval alone does not decide, because the method was chosen as the best of several methods on
@@ -35,10 +36,10 @@ std::vector<ContestResult> contests(const scenarios::Summary& summary, const sce
 
 struct Tally {
   std::size_t contests = 0, won = 0, lost = 0, open = 0;  ///< open: neither won nor lost
-  std::size_t ahead = 0;       ///< open contests in which the method is better by its own interval or in every run
-  std::string ahead_by;        ///< the method that is ahead in all of these contests; empty if several or none
-  std::string leader;          ///< the method that wins most contests (first of equals); empty if no contest is won
-  std::size_t leader_won = 0;  ///< number of contests that the leader wins
+  std::size_t ahead = 0;                                  ///< open, but the method is better
+  std::string ahead_by;                                   ///< method ahead in all; may be empty
+  std::string leader;                                     ///< method with most wins
+  std::size_t leader_won = 0;                             ///< number of contests that the leader wins
 };
 Tally tally(const std::vector<ContestResult>& results);
 

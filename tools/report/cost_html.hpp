@@ -12,7 +12,7 @@ namespace tumble::tools {
 
 struct CostRow {
   std::string scenario, method;  ///< method: KIND/NAME
-  double cpu_s = 0.0;            ///< median CPU time of one estimate
+  double cpu_s = 0.0;            ///< of one estimate
   /// Median of recording duration / CPU time over the simulated runs; above 1, the method is faster than real time on
   /// one processor
   double real_time_factor = 0.0;

@@ -16,8 +16,6 @@ using scenarios::Curve;
 using scenarios::CurveLine;
 using scenarios::CurvePoint;
 
-/// The upper plot shows the median, the band between the quartiles and the worst 5 % (dotted); the lower plot shows the
-/// fraction of failures.
 Figure curve_figure(const Curve& curve, const Palette& palette = {});
 std::string curves_html(std::span<const Curve> curves, std::vector<Figure>& figures, const Palette& palette = {});
 Table curve_table(const Curve& curve);

@@ -16,7 +16,7 @@ namespace {
 using scenarios::DependenceClass;
 
 constexpr double kWidth = 150.0, kHeight = 44.0, kPlotMargin = 3.0;
-constexpr double kLeastWidth = 3.0;  // minimum width of a class, which may contain a single value
+constexpr double kLeastWidth = 3.0;  // minimum width of a class
 constexpr double kDecade = 10.0;
 
 struct Axis {
@@ -25,8 +25,7 @@ struct Axis {
   bool logarithmic = false;
 
   double place(double value) const {
-    const double scaled =
-        logarithmic ? std::log10(value) : value;  // log10(0) is -infinity, which is drawn on the frame
+    const double scaled = logarithmic ? std::log10(value) : value;  // log10(0) is drawn on the frame
     const double share = high > low ? (scaled - low) / (high - low) : 0.5;
     return at_low + std::clamp(share, 0.0, 1.0) * (at_high - at_low);
   }

@@ -10,7 +10,7 @@
 namespace tumble::tools {
 
 /// Each class of parameter values is one step from its smallest to its largest value, at the median or fraction, with
-/// its interval. The scale is logarithmic if all centres are positive and span more than a decade.
+/// its interval.
 std::string dependence_svg(std::span<const scenarios::DependenceClass> classes,
                            const std::function<std::string(const scenarios::DependenceClass&)>& label_of);
 

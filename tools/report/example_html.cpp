@@ -47,7 +47,7 @@ std::string plots_html(const Example& example, const Palette& palette, std::vect
 
 std::string example_html(const ShownExample& shown, const Palette& palette, std::vector<Figure>& figures) {
   const Example& example = shown.example;
-  std::string out = fmt::format("<p>{}. The sweep ran this draw again for the page", escaped(example.choice));
+  std::string out = fmt::format("<p>{}. The sweep repeated this simulated run for the page", escaped(example.choice));
   out += shown.of_these_results ? "; the recording has the same digest as in the results.</p>\n"
                                 : ". The pictures do not match these results, because another build or an earlier run "
                                   "created the pictures.</p>\n";
@@ -72,8 +72,6 @@ std::string moving_html(const ShownExample& shown) {
   const bool has_picture = !example.pictures.empty();
   const std::string still = has_picture ? html::png_address(example.pictures.front().png) : "";
   std::string out = "<figure class=\"moving\"><picture>";
-  // Without a script, the browser selects the still or the animated picture; if there is no still picture, it shows the
-  // animation.
   if (!example.moving.empty() && has_picture) {
     out += fmt::format("<source media=\"print, (prefers-reduced-motion: reduce)\" srcset=\"{}\">", still);
   }

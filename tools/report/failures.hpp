@@ -18,19 +18,19 @@ struct FailedRun {
   std::string method;   ///< kind/name
   std::string status;   ///< for example "diverged"
   std::string message;  ///< one line; may be empty
-  std::string command;  ///< command that repeats the run (run_again.hpp)
+  std::string command;  ///< repeats the run (run_again.hpp)
 };
 
 struct FailedDraw {
   std::string scenario;
   std::uint64_t seed = 0;
   std::vector<FailedRun> runs;
-  std::string replay_command;  ///< replay of data that `sweep --keep` stored; empty if none is stored
+  std::string replay_command;  ///< replay of stored data; may be empty
 };
 
 struct FailedDraws {
   std::size_t draws = 0;          ///< total number of failed runs
-  std::vector<FailedDraw> shown;  ///< runs with the most failed methods, at most `kFailedDrawsShown`
+  std::vector<FailedDraw> shown;  ///< at most `kFailedDrawsShown`
 };
 
 FailedDraws failed_draws(const scenarios::Results& results, const scenarios::Summary& summary,

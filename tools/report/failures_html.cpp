@@ -44,7 +44,7 @@ std::string draw_html(const PageContent& content, const FailedDraw& draw) {
            (run.message.empty() ? "" : ": " + escaped(run.message)) + "<pre>" + escaped(run.command) + "</pre></li>";
   }
   if (!draw.replay_command.empty() && (shown == nullptr || shown->replay_address.empty()))
-    out += "<li>The sweep kept the data of this draw. This command writes the replay:<pre>" +
+    out += "<li>The sweep kept the data of this simulated run. The following command writes its replay:<pre>" +
            escaped(draw.replay_command) + "</pre></li>";
   return out + "</ul></li>\n";
 }

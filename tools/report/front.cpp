@@ -39,13 +39,13 @@ std::string draws_text(const Summary& summary) {
   }
   const std::string names = names_text(summary.scenarios, "scenarios");
   const char* each = summary.scenarios.size() > 1 ? "each " : "";
-  return least == most ? fmt::format("{} draw{} {}of {}", most, most == 1 ? "" : "s", each, names)
-                       : fmt::format("{} to {} draws each of {}", least, most, names);
+  return least == most ? fmt::format("{} simulated run{} {}of {}", most, most == 1 ? "" : "s", each, names)
+                       : fmt::format("{} to {} simulated runs each of {}", least, most, names);
 }
 
 std::string data_text(const PageContent& content) {
   if (!content.recorded)
-    return fmt::format("The data are {} from simulation with known truth. All methods received the same recordings.",
+    return fmt::format("The data are {} with known truth. All methods received the same recordings.",
                        draws_text(content.summary));
   return fmt::format(
       "All methods received the same recordings ({}) and are scored against the truth or the reference that each "
@@ -150,7 +150,6 @@ std::string contests_html(const std::vector<ContestResult>& results, std::size_t
   return out + "</section>\n";
 }
 
-/// Typical runs precede failed runs, examples of these results precede others, and animations precede still pictures.
 const ShownExample* example_to_show(const std::vector<ShownExample>& examples) {
   const ShownExample* best = nullptr;
   const auto rank = [](const ShownExample& shown) {

@@ -17,7 +17,6 @@ using scenarios::MotionCloud;
 using scenarios::MotionMap;
 using scenarios::PublishedExtreme;
 
-/// Points differ by symbol and colour, because there may be more scenarios than colours.
 constexpr std::array kSymbols = {"circle", "square", "diamond", "triangle-up", "cross", "x", "star"};
 
 json density(const MotionMap& map) {

@@ -6,7 +6,6 @@
 
 namespace tumble::tools {
 
-/// Plots the density of all runs over rate and specific force (both logarithmic), and the published maxima as outlines.
 Figure motion_figure(const scenarios::MotionMap& map);
 
 }  // namespace tumble::tools

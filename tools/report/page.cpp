@@ -41,7 +41,6 @@ std::string draws_html(const Summary& summary) {
   return out + "</tbody></table></div>\n";
 }
 
-/// The time at the end of a reason for rejection is removed, so that equal reasons count together.
 std::string rejected_html(const std::vector<scenarios::RejectedDraw>& rejected) {
   std::map<std::pair<std::string, std::string>, std::vector<std::uint64_t>> reasons;
   for (const scenarios::RejectedDraw& draw : rejected) {

@@ -21,17 +21,17 @@ namespace tumble::tools {
 
 struct ShownExample {
   Example example;
-  bool of_these_results = false;  ///< rows and digest of the recording agree with the database
-  std::string replay_address;     ///< URL relative to the page, escaped for an attribute; may be empty
+  bool of_these_results = false;  ///< agrees with the database
+  std::string replay_address;     ///< relative to the page; may be empty
 };
 
 using Fact = std::pair<std::string, std::string>;
 
 struct PageContent {
   std::string title;
-  bool recorded = false;  ///< results of recordings instead of simulated runs
+  bool recorded = false;  ///< recordings instead of simulated runs
   scenarios::Summary summary;
-  scenarios::Comparison comparison;    ///< with the baselines, by the headline metrics
+  scenarios::Comparison comparison;    ///< with the reference methods
   std::vector<ShownExample> examples;  ///< single runs with pictures and plots
   scenarios::MotionMap motion_map;     ///< covers all runs, like `motions`
   std::vector<Spread> motions;
@@ -43,7 +43,7 @@ struct PageContent {
   FailedDraws failed;
   std::vector<scenarios::RejectedDraw> rejected;
   std::vector<scenarios::Sensitivity> sensitivity;
-  std::string sensitivity_note;  ///< which runs were used, or why there is no sensitivity
+  std::string sensitivity_note;  ///< used runs, or reason for absence
   std::vector<scenarios::Certificate> certificates;
   std::vector<Fact> methods;          ///< name and description of each method
   std::vector<Fact> versions;         ///< suite, runs, builds, data, date
@@ -52,7 +52,7 @@ struct PageContent {
 };
 
 /// Returns one self-contained page with styles, plots, pictures and the Plotly bundle inside. The Content Security
-/// Policy of the page forbids network access. Texts are embedded as data, never as markup.
+/// Policy of the page forbids network access.
 std::string page_html(const PageContent& content, const std::string& plotly_bundle);
 
 }  // namespace tumble::tools

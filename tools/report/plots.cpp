@@ -82,8 +82,6 @@ class Boxes {
     }
   }
 
-  /// The axis is logarithmic if values are positive and span more than a decade; otherwise, it starts at 0 if
-  /// `from_zero` is set, or else at the smallest value.
   void put_into(Figure& figure, bool from_zero) {
     json data = json::array();
     for (const auto& [name, trace] : traces_) data.push_back(trace);
@@ -106,7 +104,6 @@ class Boxes {
   };
 
   void add_values(json& trace, const std::string& group, const std::vector<double>& values, std::size_t failed) {
-    // If not all runs are drawn, the drawn ones keep the ratio of successful to failed runs.
     const std::size_t all = values.size() + failed;
     const std::size_t shown_failed = all <= kBoxPoints ? failed : (failed * kBoxPoints + all - 1) / all;
     for (const double value : at_most(values, std::max<std::size_t>(2, std::min(all, kBoxPoints) - shown_failed))) {

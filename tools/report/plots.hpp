@@ -15,17 +15,16 @@
 namespace tumble::tools {
 
 struct Figure {
-  std::string id;       ///< id of its HTML element, unique within the page
+  std::string id;       ///< HTML id, unique within the page
   std::string caption;  ///< one or two sentences
-  std::string traces;   ///< JSON array; empty if the figure has no content
+  std::string traces;   ///< JSON array; may be empty
   std::string layout;   ///< JSON object
   bool empty() const { return traces.empty(); }
 };
 
-/// Without traces, the figure stays empty. Invalid UTF-8 in texts is replaced.
 void set_plot(const nlohmann::json& traces, const nlohmann::json& layout, Figure& figure);
 
-/// Maximum number of runs of a box that are drawn as points
+/// Maximum number of runs of a box plot that are drawn as points
 inline constexpr std::size_t kBoxPoints = 1000;
 
 /// Five significant digits are finer than a plot can show, and keep the page small.
@@ -34,7 +33,6 @@ double five_digits(double value);
 /// Plotly interprets some tags in texts, so the characters & < > are escaped.
 std::string plot_text(const std::string& text);
 
-/// Reduces a list to `most` (at least 2) sorted values: the smallest, the largest, and values at equal steps of rank.
 std::vector<double> at_most(std::vector<double> values, std::size_t most);
 
 /// Palette assigns one colour index to each method of a page, in the order of `add`; methods of different kinds with

@@ -152,14 +152,12 @@ void add_examples(const scenarios::Results& results, const ReportOptions& option
     std::string replay = replay_address(options, example);
     content.examples.push_back({std::move(example), of_these, std::move(replay)});
   }
-  // Errors of the pictures must not hide the scores, so they become warnings.
   for (const std::string& what : found.unreadable)
     content.warnings.push_back(fmt::format("The page cannot show some pictures of single simulated runs: {}", what));
   if (!found.unreadable.empty()) return;
   if (content.examples.empty()) content.warnings.push_back(how_to_get_pictures(results, options));
 }
 
-/// The colours in the examples' pictures are taken first, because pictures cannot be recoloured.
 Palette palette_of(const PageContent& content) {
   Palette palette;
   for (const ShownExample& shown : content.examples) {
@@ -202,7 +200,7 @@ PageContent report_content(ReportInput input, const ReportOptions& options) {
   content.commands = commands(results, options, content);
   content.certificates = results.certificates();
   if (content.certificates.empty() && !content.recorded)
-    content.warnings.push_back("These results contain no certificate of the simulation of their build.");
+    content.warnings.push_back("These results contain no checks of the simulation (certificate) for their build.");
   for (const scenarios::Certificate& certificate : content.certificates) {
     content.versions.emplace_back("certificate", certificate_summary(certificate));
     if (!certificate.passes()) content.warnings.push_back("The certificate of build " + certificate.build + " fails.");

@@ -19,19 +19,18 @@ struct ReportInput {
   std::vector<Curve> curves;
   std::vector<Spread> motions;
   std::vector<scenarios::Sensitivity> sensitivity;
-  std::string sensitivity_note;  ///< which runs were used, or why there is no sensitivity
+  std::string sensitivity_note;  ///< used runs, or reason for absence
 };
 
 struct ReportOptions {
-  std::filesystem::path database;  ///< path of the results; examples are next to it
-  std::filesystem::path page;      ///< path of the page; links to replays are relative to it
+  std::filesystem::path database;  ///< examples are next to it
+  std::filesystem::path page;      ///< links to replays are relative
   std::string version;             ///< version of the program
-  std::string data;                ///< digest of the models and scenarios on this machine; may be empty
+  std::string data;                ///< models and scenarios; may be empty
   std::string made_at;             ///< date and time on the page
 };
 
-/// Computes the content of the page from the results, and from the examples that a sweep stored next to them; nothing
-/// is simulated or estimated.
+/// Uses only stored results and stored examples; nothing is simulated or estimated.
 PageContent report_content(ReportInput input, const ReportOptions& options);
 
 }  // namespace tumble::tools

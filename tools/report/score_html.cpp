@@ -24,7 +24,6 @@ using scenarios::Sense;
 std::string plain(double value) {
   if (std::isnan(value)) return "–";
   if (std::isinf(value)) return value > 0.0 ? "∞" : "−∞";
-  // Numbers from a thousandth to a million have no exponent.
   if (value < 0.0) return "−" + plain(-value);
   if (value != 0.0 && (std::abs(value) < 1e-3 || std::abs(value) >= 1e6)) return fmt::format("{:.2e}", value);
   const int digits = value == 0.0 ? 0 : std::max(0, 2 - static_cast<int>(std::floor(std::log10(std::abs(value)))));

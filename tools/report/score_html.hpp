@@ -12,7 +12,6 @@ std::string styled_value(const std::string& metric, double value_si, bool with_u
 
 std::string styled_interval(const std::string& metric, const scenarios::Interval& interval);
 
-/// Each row is a metric, each column a method with median, interval and paired wins; the first row shows the failures.
 std::string score_table_html(const scenarios::Section& section);
 
 }  // namespace tumble::tools

@@ -17,10 +17,9 @@ class Table {
 
   bool empty() const { return rows_.empty(); }
   std::string text() const;
-  /// The cells of a table are escaped, so that their content is not interpreted as markup.
   std::string markdown() const;  ///< a GitHub Markdown table
-  std::string csv() const;       ///< RFC 4180; the title is a comment line, "# title"
-  std::string tex() const;       ///< a LaTeX `tabular` with the rules of `booktabs`
+  std::string csv() const;       ///< RFC 4180; comment line "# title"
+  std::string tex() const;       ///< `tabular` with `booktabs`
 
  private:
   std::string title_;
@@ -37,7 +36,6 @@ std::string number_text(double value);
 
 std::string chance_text(double chance);
 
-/// Formats how many more runs an undecided test needs; "no number" if no number of runs suffices.
 std::string more_draws_text(double needed, std::int64_t draws, bool open);
 
 /// Counts the code points of a UTF-8 string; combining marks count separately.

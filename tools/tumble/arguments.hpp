@@ -19,7 +19,6 @@ namespace tumble::tools {
 std::uint64_t parse_seed(const std::string& text);
 std::pair<std::uint64_t, std::uint64_t> parse_seeds(const std::string& text);
 
-/// The shard "2/8" is the second of eight parts of the work.
 struct Shard {
   std::uint64_t index = 1, count = 1;
 };
@@ -34,7 +33,6 @@ std::vector<scenarios::MethodPointer> select_methods(const std::vector<std::stri
 
 scenarios::MethodPointer one_method(const std::string& name, double time_limit_s);
 
-/// External methods can hang, so their time limit is printed.
 void note_time_limits(const Session& session, std::span<const std::string> names);
 
 std::string metric_of(const scenarios::Method& method, const std::string& name);
@@ -45,7 +43,6 @@ std::uint64_t seed_of(const scenarios::Scenario& scenario, const std::string& te
 std::function<void(const std::string&)> a_scenario(const Session& session);
 std::function<void(const std::string&)> a_suite(const Session& session);
 
-/// The check for a valid recording runs before CLI11 reports missing options.
 void a_recording(const std::string& file);
 
 int available_processors();
@@ -58,8 +55,7 @@ void prepare_output(const std::filesystem::path& output, std::span<const std::fi
 /// another kind.
 void require_ending(const std::filesystem::path& output, std::span<const std::string_view> endings);
 
-/// Checks, before the computation starts, that an output file can be written. Throws BadInput if the output is one of
-/// the inputs or has none of the extensions `endings`.
+/// Checks, before the computation starts, that an output file can be written.
 void prepare_file(const std::filesystem::path& output, std::span<const std::filesystem::path> inputs,
                   const std::vector<std::string_view>& endings);
 

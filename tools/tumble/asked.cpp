@@ -30,7 +30,7 @@ scenarios::Margin parse_margin(const std::string& option, const std::string& tex
 
 Question parse_question(const std::string& text, double risk, const scenarios::Suite& suite) {
   std::vector<std::string> words;
-  std::stringstream stream(text + ":");  // with the extra colon, std::getline returns an empty word after a final colon
+  std::stringstream stream(text + ":");  // keeps a trailing empty word
   for (std::string word; std::getline(stream, word, ':');) words.push_back(word);
   if (words.size() < 3 || words.size() > 4 || std::find(words.begin(), words.end(), "") != words.end())
     throw BadInput(

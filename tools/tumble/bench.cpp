@@ -177,8 +177,7 @@ int bench(const Session& session, const BenchOptions& options) {
   scenarios::SweepOptions how;
   how.jobs = options.jobs;
   how.stop = &interrupt.raised();
-  how.again = {
-      scenarios::OutcomeStatus::killed};  // a run that the operating system killed says nothing about the method
+  how.again = {scenarios::OutcomeStatus::killed};  // independent of the method
   const scenarios::SweepProgress final = sweep_with_progress(session, data, suite, owner, how);
   if (final.draws_done < final.draws_total) return say_stopped(final);
 

@@ -13,10 +13,9 @@ namespace tumble::tools {
 
 struct BenchPage {
   std::vector<scenarios::BenchResult> ran, stored;
-  std::vector<std::string> left_out;  ///< stored results that are not on the page, each with the reason
+  std::vector<std::string> left_out;  ///< with reasons
 };
 
-/// The cells are medians per method and class of simulated runs; failed runs rank worst.
 std::vector<Table> bench_tables(const scenarios::Suite& suite, const BenchPage& page,
                                 std::span<const scenarios::Outcome> outcomes);
 

@@ -26,7 +26,7 @@ int certify(const Session& session, const std::vector<std::string>& rows) {
       scenarios::measure_certificate({session.data(), session.program()}, options);
   session.print({certificate_table(certificate)}, nlohmann::json::parse(to_json(certificate)));
   if (interrupt.raised().load()) {
-    std::fprintf(stderr, "tumble: stopped: the certificate of the simulation is incomplete; run the command again\n");
+    std::fprintf(stderr, "tumble: stopped: the checks of the simulation are incomplete; run the command again\n");
     return kCheckFailed;
   }
   return certificate.passes() ? kDone : kCheckFailed;

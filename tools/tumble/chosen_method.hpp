@@ -9,14 +9,12 @@
 
 namespace tumble::tools {
 
-/// Throws BadInput if the method does not exist, or cannot process this recording without the truth.
 scenarios::MethodPointer chosen_method(const std::string& name, const scenarios::Subject& subject);
 
-/// A failure of an external command becomes a BadInput. `on_sweep` is that of scenarios::OracleInput.
+/// `on_sweep` is that of scenarios::OracleInput.
 scenarios::Estimate run_method(const scenarios::Method& method, const sim::Sensors& sensors,
                                std::function<void(std::size_t done, std::size_t all)> on_sweep = {});
 
-/// If the recording lacks sensors, the message names the required sensors.
 std::string failure_reason(const Status& status, const sim::Sensors& sensors);
 
 }  // namespace tumble::tools

@@ -210,8 +210,8 @@ int compare(const Session& session, const CompareOptions& options) {
     tables.push_back(std::move(table));
   session.print(tables, to_json(comparison, asked.margin.has_value()));
   session.note(fmt::format(
-      "the probability of any false finding is at most {0:g} in the {1} comparisons of metrics, and at most {0:g} in "
-      "the {2} comparisons of failures. Both use Holm's correction; see docs/maths/statistics.md",
+      "the probability of any wrong conclusion is at most {0:g} in the {1} comparisons of metrics, and at most {0:g} "
+      "in the {2} comparisons of failures, by Holm's correction of the p-values (docs/maths/statistics.md)",
       options.risk, comparison.metrics.size(), comparison.failures.size()));
   return kDone;
 }
@@ -223,17 +223,18 @@ Action declare_compare(VerbOptions& verb, const Session& session) {
   verb.add("DATABASE", options->database, "reads this results database, FILE.db").required();
   verb.add("--method", options->methods,
            "compares this method; if the option is repeated, the program compares each method with the method named "
-           "last [default: compares all methods that need no truth with the baseline]")
+           "last [default: compares all methods that need no truth with the baseline method]")
       .one_at_a_time();
-  verb.add("--against", options->against,
-           "sets the method with which the other methods are compared [default: the last --method, or the baseline]");
+  verb.add(
+      "--against", options->against,
+      "sets the method with which the other methods are compared [default: the last --method, or the baseline method]");
   verb.add("--metric", options->metrics,
            "compares this metric; repeat the option for more metrics [default: the most important metrics of the kind]")
       .one_at_a_time();
   verb.add("--margin", options->margin,
            "sets the margin: a smaller loss counts as 'not worse'. Write a number in the metric's unit, or a "
            "percentage of the other method's value, for example 10%");
-  verb.add("--risk", options->risk, "sets the accepted probability of any false finding in a table")
+  verb.add("--risk", options->risk, "sets the accepted probability of any wrong conclusion in a table")
       .within(1e-6, 0.5)
       .shows_default();
   verb.add("--power", options->power,

@@ -114,9 +114,9 @@ class Found {
 
   void add_own_body(const Eigen::AlignedBox3d& box, bool stated) {
     add("robot's own returns",
-        fmt::format("returns inside a box from {} to {} m around the lidar are removed", vector_text(box.min()),
-                    vector_text(box.max())),
-        stated ? kStated : kAssumed, "--own-body X Y Z X Y Z");
+        fmt::format("lidar returns from the robot itself are removed: inside a box from {} to {} m in lidar axes",
+                    vector_text(box.min()), vector_text(box.max())),
+        stated ? kStated : kAssumed, "--own-body X Y Z X Y Z (two opposite corners)");
   }
 
  private:
@@ -187,7 +187,7 @@ class Found {
         fmt::format("{} m/s^2; the first reading measures {} m/s^2 along {}",
                     rounded(recording_.content.sensors.gravity_m_s2), rounded(force.norm()),
                     vector_text(force.normalized())),
-        kMeasured, "no option: any mounting is allowed");
+        kMeasured, "no option is needed, because any mounting is allowed");
   }
 
   static std::string point_times(const sim::LidarRecord& lidar) {

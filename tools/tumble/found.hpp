@@ -13,15 +13,15 @@ namespace tumble::tools {
 
 struct FoundItem {
   std::string item;
-  std::string found;   ///< value, with its evidence or the effect of an assumption
-  std::string sure;    ///< certainty: stated, measured, inferred from the name, or assumed
-  std::string option;  ///< command-line option that changes the property
+  std::string found;   ///< with evidence
+  std::string sure;    ///< stated, measured, inferred or assumed
+  std::string option;  ///< changes the property
 };
 
 /// Detects the data sheets of the first IMU and lidar, and the attitude of a lidar without a known pose, and stores
 /// them in the recording.
 ///
-/// @param own_body_L  Box around the robot in lidar axes, for display only; points inside are dropped.
+/// @param own_body_L  Bounding box of the robot in lidar axes, for display only; points inside are dropped.
 std::vector<FoundItem> complete_recording(const Session& session, OpenRecording& recording,
                                           const Eigen::AlignedBox3d& own_body_L, bool own_body_stated);
 

@@ -73,7 +73,7 @@ void keep_accepted(const scenarios::Gate& gate, const GateOptions& options,
     add(names, run.scenario);
   }
   suite.methods = methods;
-  if (options.accept) return;  // new scenarios of the suite are then accepted too
+  if (options.accept) return;  // accepts new scenarios too
   for (const scenarios::MethodPointer& method : given) {
     if (std::none_of(accepted.begin(), accepted.end(), [&](const auto& run) { return is_of(run, method); }))
       throw scenarios::BadInput(
@@ -155,7 +155,7 @@ std::optional<scenarios::Gate> load(const scenarios::DataRoot& data, const GateO
       scenarios::load_gate(data, options.accepted.empty() ? suite : options.accepted.string(), given);
   if (gate.suite != suite) {
     throw scenarios::BadInput(
-        fmt::format("{}: this file contains the gate of suite '{}', but the requested suite is '{}'",
+        fmt::format("{}: this file contains accepted results of suite '{}', but the requested suite is '{}'",
                     options.accepted.string(), gate.suite, suite));
   }
   return gate;
@@ -167,7 +167,6 @@ void write_accepted(const fs::path& file, const scenarios::Gate& gate) {
   if (!fs::exists(file)) scenarios::replace_file(file, scenarios::to_yaml(gate));
 }
 
-/// The certificate (checks of the simulation) is not measured here, because gates run often.
 std::string certificate_text(const Session& session, const scenarios::DataRoot& data, const fs::path& database) {
   scenarios::Results results(database, scenarios::Results::Mode::create_or_append);
   const auto certificate = scenarios::known_certificate(results, scenarios::CertificateStore(session.cache(), data));

@@ -17,10 +17,10 @@ bool names_cases(const scenarios::DataRoot& data, const std::string& word);
 std::function<void(const std::string&)> a_suite_or_cases(const Session& session);
 
 struct CaseGate {
-  std::string word;  ///< `kAllCases`, or the name of a case
+  std::string word;  ///< `kAllCases`, or a case
   int jobs = 1;
   std::filesystem::path database;  ///< empty: a temporary file
-  bool accept = false;             ///< write the outcomes to the files of the cases as new expectations
+  bool accept = false;             ///< outcomes become expectations
 };
 
 int hold_cases(const Session& session, const scenarios::DataRoot& data, const CaseGate& gate);

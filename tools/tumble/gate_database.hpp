@@ -14,7 +14,6 @@
 
 namespace tumble::tools {
 
-/// The database of the caller, or else a temporary database that is removed afterwards
 class GateDatabase {
  public:
   explicit GateDatabase(const std::filesystem::path& named) : path_(named), own_(named.empty()) {

@@ -16,8 +16,7 @@ struct GivenEstimate {
   scenarios::Frame tum_frame;  ///< frame of the poses in a TUM file
 };
 
-/// Reads an estimate of the recording and converts its stamps to the recording's clock. `truth` may be null. Throws
-/// BadInput for read errors, and if the estimate belongs to other sensor data.
+/// `truth` may be null.
 scenarios::Estimate read_given(const GivenEstimate& given, const sim::Sensors& sensors, const sim::Truth* truth,
                                scenarios::Kind& kind, std::string& method);
 

@@ -77,7 +77,7 @@ int import_from(const Session& session, const ImportOptions& options) {
   try {
     scenarios::write_recording(options.out, imported.info, imported.sensors, imported.points,
                                imported.reference ? &*imported.reference : nullptr);
-  } catch (const std::invalid_argument& error) {  // the content of the file is inconsistent
+  } catch (const std::invalid_argument& error) {  // inconsistent content
     throw BadInput(options.path.string() + ": " + error.what());
   }
   for (const std::string& note : imported.notes) session.note(note);

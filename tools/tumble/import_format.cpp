@@ -82,7 +82,6 @@ std::string format_of_content(const std::filesystem::path& file) {
   return start.starts_with("\x89HDF\r\n") ? "recording" : "";
 }
 
-/// The first line that is no comment decides whether a text file is a table with commas, or poses.
 std::string format_of_text(const std::filesystem::path& file) {
   std::ifstream stream(file);
   std::string line;

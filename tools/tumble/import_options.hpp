@@ -29,7 +29,7 @@ struct ImportOptions {
   bool sorted = false;
   std::vector<std::string> imu_topics, lidar_topics;
   std::string reference_topic, stamps;
-  bool leave_out_topics = false;  ///< skip a faulty topic if another topic of its kind is readable
+  bool leave_out_topics = false;  ///< if another topic is readable
 };
 
 void declare_sensors(VerbOptions& verb, ImportOptions& options);
@@ -37,7 +37,6 @@ void declare(VerbOptions& verb, ImportOptions& options);
 
 std::string format_of(const ImportOptions& options);
 
-/// Throws BadInput for options that have no effect for this format.
 void require_fitting(const ImportOptions& options, const std::string& format);
 
 sim::ImuRecord imu_sheet(const Session& session, const ImportOptions& options);

@@ -88,7 +88,7 @@ void open_own(const Session& session, OpenRecording& out) {
 Imported import_recording(const Session& session, const ImportOptions& options, const std::string& format,
                           scenarios::LidarRotationCheck& rotation) {
   if (format == "recording") {
-    (void)scenarios::read_info(options.path);  // throws for an HDF5 file of another program
+    (void)scenarios::read_info(options.path);  // throws for other HDF5 files
     throw BadInput(options.path.string() + ": this file is already a recording; use the file directly, without import");
   }
   Imported imported = import_format(session, options, format);

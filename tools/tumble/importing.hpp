@@ -23,15 +23,15 @@ struct Repair {
 
 struct OpenRecording {
   ImportOptions options;  ///< options of the user, with the repairs
-  std::string format;     ///< import format, or "recording" for a recording of this program
+  std::string format;     ///< "recording": of this program
   scenarios::Imported content;
-  std::optional<sim::Truth> truth;  ///< reference of an imported recording, for display only
+  std::optional<sim::Truth> truth;  ///< for display only
   std::vector<Repair> repairs;
   scenarios::LidarRotationCheck rotation;
 };
 
 /// If an error names an option that would make the recording readable and the user did not set it, the recording is
-/// read again with this option. If a bag has several topics of a kind, faulty topics are skipped.
+/// read again with this option.
 OpenRecording open_recording(const Session& session, ImportOptions options);
 
 }  // namespace tumble::tools

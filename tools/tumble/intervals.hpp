@@ -9,7 +9,6 @@
 namespace tumble::tools {
 
 std::string interval_text(const scenarios::Interval& interval);
-/// Non-finite values become null, because JSON cannot represent them.
 nlohmann::json finite(double value);
 nlohmann::json interval_json(const scenarios::Interval& interval);
 

@@ -23,7 +23,7 @@ void LearntFile::require_place() const {
 }
 
 std::string LearntFile::caution(const sim::Sensors& sensors) const {
-  constexpr double kLeverArmOff_m = 0.1;  // above the error of any measured mounting
+  constexpr double kLeverArmOff_m = 0.1;  // above mounting errors
   if (!learning_.given || sensors.imus.empty()) return "";
   const Eigen::Vector3d stated = scenarios::bridge::lever_arm_I_m(sensors.imus.front());
   if (stated.isZero(0.0)) return "";  // the recording contains no lever arm
@@ -50,11 +50,10 @@ scenarios::Method LearntFile::wrap(const scenarios::Method& method) {
 void LearntFile::keep(const Session& session) const {
   if (path_.empty()) return;
   if (learning_.found() != nullptr) return scenarios::write_rig_calibration(path_, *learning_.found());
-  session.note(
-      fmt::format("{}: the file {}, because the run produced no calibration of the rig. Possible reasons are too "
-                  "little free flight or "
-                  "contact without an identified saturation limit, a file of another rig, or a failed run",
-                  path_.string(), std::filesystem::exists(path_) ? "is unchanged" : "was not written"));
+  session.note(fmt::format(
+      "{}: the file {}, because the run produced no calibration of the rig. Possible reasons: the run failed, the "
+      "file belongs to another rig, or the motion had little free flight and no gyro saturation",
+      path_.string(), std::filesystem::exists(path_) ? "is unchanged" : "was not written"));
 }
 
 }  // namespace tumble::tools

@@ -14,22 +14,18 @@ namespace tumble::tools {
 /// to this file.
 class LearntFile {
  public:
-  /// An empty path disables the option; a missing file contains no calibration yet. Throws BadInput if the file cannot
-  /// be read.
+  /// An empty path disables the option; a missing file contains no calibration yet.
   explicit LearntFile(std::filesystem::path path);
 
   /// Throws BadInput if the file cannot be written; must be called before the run.
   void require_place() const;
 
-  /// Returns a warning if the lever arms of file and recording differ, because the file probably belongs to another
-  /// rig.
   std::string caution(const sim::Sensors& sensors) const;
 
   static std::string learning_methods();
 
   scenarios::Method wrap(const scenarios::Method& method);
 
-  /// Without a new calibration, the file is unchanged and a note states the reason. Throws BadInput if writing fails.
   void keep(const Session& session) const;
 
  private:

@@ -121,7 +121,7 @@ Listing list_scenarios(const scenarios::DataRoot& data, const std::string& only)
   Listing out;
   std::vector<std::string> names = scenarios::scenario_names(data);
   const std::vector<std::string> cases = scenarios::case_names(data);
-  if (!only.empty()) {  // shows all parameters of one case, as for a scenario
+  if (!only.empty()) {  // as for a scenario
     names.insert(names.end(), cases.begin(), cases.end());
     require_known("scenario", only, names);
   }

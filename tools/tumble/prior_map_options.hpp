@@ -12,13 +12,12 @@ namespace tumble::tools {
 
 struct PriorMapOptions {
   std::filesystem::path map;
-  std::vector<double> pose;  ///< x y z [m] and heading [rad]; optionally two standard deviations [m, rad]
+  std::vector<double> pose;  ///< x y z [m], heading [rad], deviations
   bool frozen = false;
 };
 
 void declare_prior_map(VerbOptions& verb, PriorMapOptions& options);
 
-/// Throws BadInput if the prior map cannot be read, or the method cannot use a map.
 scenarios::Method with_prior_map(const scenarios::Method& method, const PriorMapOptions& options);
 
 std::string localisation_text(const PriorMapOptions& options, const scenarios::Estimate& estimate);

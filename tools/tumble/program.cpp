@@ -27,7 +27,6 @@ namespace {
 
 using scenarios::BadInput;
 
-/// CLI11 would report an unknown verb as a superfluous argument, so the verb is checked first.
 void check_verb(int argc, const char* const* argv) {
   std::vector<std::string> known;
   for (const Verb& verb : verbs()) known.emplace_back(verb.name);
@@ -142,7 +141,7 @@ int dispatch(int argc, const char* const* argv) {
   check_verb(argc, argv);
   try {
     app.parse(argc, argv);
-  } catch (const CLI::Success& done) {  // CLI11 reports --help and --version by this exception
+  } catch (const CLI::Success& done) {  // --help and --version
     return app.exit(done);
   } catch (const CLI::ParseError& error) {
     throw BadInput(usage_line(app, error));
@@ -163,7 +162,6 @@ int run_program(int argc, const char* const* argv) {
   } catch (const std::filesystem::filesystem_error& error) {
     return say("", error.what(), kBadInput);
   } catch (const std::system_error& error) {
-    // A lack of processes, pipes or threads is not a defect of the program.
     return say("", error.what(), kBadInput);
   } catch (const sim::SimulationFailure& error) {
     return say("the simulation rejected the run: ", error.what(), kCheckFailed);

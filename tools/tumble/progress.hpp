@@ -14,17 +14,15 @@ namespace tumble::tools {
 /// negative or not finite.
 std::string duration_text(double seconds);
 
-/// The progress bar has `bar_width` cells; 0 omits the bar.
 std::string progress_line(const scenarios::SweepProgress& progress, int bar_width);
 
 struct RegistrationProgress {
   std::size_t done = 0, all = 0;
-  double elapsed_s = 0.0;  ///< time since the first sweep of this pass
+  double elapsed_s = 0.0;  ///< since the first sweep
 };
 
 std::string progress_line(const RegistrationProgress& progress, int bar_width);
 
-/// A terminal shows one progress line that is overwritten; other outputs get a new line every ten seconds.
 class ProgressDisplay {
  public:
   using Write = std::function<void(std::string_view)>;

@@ -18,7 +18,6 @@ scenarios::RecordingInfo recording_info(const sim::ResolvedSituation& situation,
 /// scenario's `duration_s` may be too short.
 std::string end_in_motion(const sim::Truth& truth);
 
-/// Sensors are omitted, so that unknown sensor parameters cause no error.
 sim::BuiltSituation built_from(const scenarios::RecordingInfo& info, const std::string& place,
                                const scenarios::DataRoot& data);
 

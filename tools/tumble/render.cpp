@@ -61,7 +61,6 @@ void load_situation(const scenarios::DataRoot& data, const RenderOptions& option
                     options.what));
   content.built = built_from(info, options.what, data);
   content.sensors = scenarios::read_sensors(options.what);
-  // The truth provides the poses of the robot, and aligns the estimates in the picture.
   if (!info.has_truth)
     throw BadInput(
         fmt::format("{}: this recording contains no truth, so its path cannot be shown; give a recording with truth",

@@ -114,7 +114,6 @@ std::string read_text(const std::filesystem::path& path) {
   return text;
 }
 
-/// A report does not need the data, so missing data give an empty digest.
 std::string data_found(const Session& session) {
   try {
     return scenarios::data_digest(session.data());
@@ -126,7 +125,6 @@ std::string data_found(const Session& session) {
 /// Maximum number of simulated runs per scenario for the sensitivity section of a page
 constexpr std::size_t kSensitivityDraws = 2000;
 
-/// A limited number of simulated runs is used, because the complete table of `tumble sensitivity` takes long.
 void add_sensitivity(const Session& session, const std::string& data_found, ReportInput& input) {
   const Summary some = scenarios::at_most_draws(*input.summary, kSensitivityDraws);
   NumbersByScenario numbers;
@@ -232,9 +230,10 @@ Action declare_report(VerbOptions& verb, const Session& session) {
   verb.add("-o,--output", options->page, "writes this page, FILE.html [default: prints only tables]");
   verb.add("--badge", options->badge,
            "writes this badge, FILE.svg, which shows the suite and in how many scenarios a method is better than the "
-           "baseline");
+           "baseline method");
   verb.add_flag("--all", options->all,
-                "prints all metrics and the curves over bins, not only the most important metrics");
+                "prints all metrics, also as functions of the depth and the length of clipping [default: only the most "
+                "important metrics]");
   return [&session, options] { return report(session, *options); };
 }
 

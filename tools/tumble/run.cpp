@@ -31,7 +31,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct RunOptions {
-  std::string scenario, seed;  ///< seed: empty means 1, or the seed of a named case
+  std::string scenario, seed;  ///< empty seed: 1, or the case's
   std::vector<std::string> methods, parameters;
   std::string vary;
   int threads = 1;
@@ -64,7 +64,7 @@ const scenarios::MethodInfo* baseline_of(scenarios::Kind kind) {
   return baseline != nullptr ? baseline : first_of(kind, [](const auto&) { return true; });
 }
 
-/// The first run uses the baseline and tumble's method of each kind in which both can run on this scenario.
+/// The first run uses the reference method and `tumble` of each kind in which both can run on this scenario.
 RunOptions first_run(RunOptions options, const scenarios::Scenario& scenario) {
   using scenarios::Kind;
   const scenarios::Subject subject = scenarios::subject_of(scenario);
@@ -80,7 +80,6 @@ RunOptions first_run(RunOptions options, const scenarios::Scenario& scenario) {
   return options;
 }
 
-/// The verb `sweep` accepts only scenarios of the catalogue; a suite may have the name of a scenario.
 void say_what_next(const Session& session, const RunOptions& options, const scenarios::RunResult& result,
                    bool in_catalogue) {
   const std::string folder = options.folder.string();
@@ -239,8 +238,8 @@ Action declare_run(VerbOptions& verb, const Session& session) {
            "sets the seed of the simulated run [default: 1; for a named case, the seed of the case]");
   verb.add("--method", options->methods,
            "runs this method, for example 'saave' or 'rate/saave'; repeat the option for more methods [default: all "
-           "methods that apply; with only a scenario and a seed, the baseline and our method of each kind]")
-      .one_at_a_time();  // each --method takes exactly one word
+           "methods that apply; with only a scenario and a seed, the baseline method and our method of each kind]")
+      .one_at_a_time();  // one word per --method
   verb.add("--set", options->parameters,
            "sets a parameter of a method: METHOD.PARAMETER=NUMBER, for example rate/tumble_lag.lag_s=0.5; repeat the "
            "option for more parameters ('tumble list methods NAME' lists them)")

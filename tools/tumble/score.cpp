@@ -33,7 +33,6 @@ struct ScoreOptions {
   std::string frame, kind;
 };
 
-/// Estimate and recording are accepted in either order, because other verbs take the recording first.
 void order(ScoreOptions& options) {
   const auto is_recording = [](const std::filesystem::path& file) {
     return file.extension() == ".h5" || file.extension() == ".hdf5";
@@ -41,7 +40,6 @@ void order(ScoreOptions& options) {
   if (is_recording(options.estimate) && !is_recording(options.recording)) options.estimate.swap(options.recording);
 }
 
-/// Throws BadInput if the truth has no poses, or does not overlap the estimate in time.
 void require_common_time(const ScoreOptions& options, const scenarios::Estimate& estimate, const sim::Truth& truth) {
   const bool known = std::any_of(truth.p_WB_m.begin(), truth.p_WB_m.end(), [](const auto& p) { return p.allFinite(); });
   if (!known)
@@ -59,15 +57,15 @@ void require_common_time(const ScoreOptions& options, const scenarios::Estimate&
                   options.estimate.string(), first_s, last_s, options.recording.string(), end_s));
 }
 
-constexpr double kHoleShare = 0.2;  // fraction of the recording; a longer gap is a divergence (scenarios::verdict)
-// With fewer poses or a shorter overlap, little more than the aligned pose would be compared.
+constexpr double kHoleShare = 0.2;  // longer gaps are a divergence
+// With fewer poses within the truth, little more than the aligned first pose would be compared.
 constexpr std::size_t kComparedMin = 2;
 constexpr double kSpannedShareMin = 0.01;
 
 struct Standing {
-  double first_s = 0, last_s = 0, end_s = 0;  ///< times of the first and last pose within the truth; end of the truth
-  std::size_t compared = 0, poses = 0;        ///< number of poses within the time of the truth; number of all poses
-  double covered_s = 0;                       ///< covered time of the truth, without gaps longer than a fifth of it
+  double first_s = 0, last_s = 0, end_s = 0;  ///< within the truth; end of the truth
+  std::size_t compared = 0, poses = 0;        ///< within the truth; all
+  double covered_s = 0;                       ///< without gaps
   scenarios::Alignment alignment;
   double spanned() const { return end_s > 0.0 ? (last_s - first_s) / end_s : 1.0; }
   double share() const { return end_s > 0.0 ? covered_s / end_s : 1.0; }
@@ -91,7 +89,6 @@ Standing standing_of(const scenarios::Estimate& estimate, const sim::Truth& trut
   return out;
 }
 
-/// Only the first few poses, far apart, would then overlap the recording.
 void require_seconds(const ScoreOptions& options, const scenarios::Estimate& estimate, const Standing& standing) {
   constexpr double kNear = 1.5, kLeastStep_s = 0.1;
   if (estimate.poses.size() < 2 || !(standing.end_s > 0.0)) return;
@@ -108,7 +105,6 @@ void require_seconds(const ScoreOptions& options, const scenarios::Estimate& est
   }
 }
 
-/// If the trajectory hardly overlaps the truth, all errors would be zero.
 void require_compared(const ScoreOptions& options, const Standing& standing) {
   if (standing.compared >= kComparedMin && standing.spanned() >= kSpannedShareMin) return;
   throw scenarios::BadInput(
@@ -183,7 +179,7 @@ struct Claim {
   scenarios::Estimate estimate;
   scenarios::Kind kind = scenarios::Kind::position;
   std::string method;
-  bool foreign = false;  ///< external trajectory without information about its method
+  bool foreign = false;  ///< external, without its method
 };
 
 void complete_foreign(const Session& session, const ScoreOptions& options, Claim& claim) {

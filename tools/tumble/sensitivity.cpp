@@ -31,7 +31,6 @@ struct SensitivityVerbOptions {
   bool motion = false, all = false, dependence = false;
 };
 
-/// If the database comes from other models or scenarios, the parameters of its simulated runs cannot be computed.
 void require_same_data(const scenarios::Results& results, const scenarios::DataRoot& data,
                        const std::filesystem::path& database) {
   const std::string made_of = results.note("data"), found = scenarios::data_digest(data);

@@ -50,7 +50,6 @@ scenarios::DataRoot Session::data() const {
   for (const fs::path& root : candidate_roots()) {
     const scenarios::DataRoot data{root};
     if (fs::is_directory(data.models(), error)) return data;
-    // If the user names a folder, no other folder is used, because it might contain other models.
     if (given != nullptr && *given != '\0')
       throw scenarios::BadInput(fmt::format(
           "TUMBLE_DATA must name the folder that contains models/ and scenarios/, but this folder does not exist: {}",

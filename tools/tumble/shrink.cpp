@@ -119,7 +119,6 @@ std::string name_of(const std::filesystem::path& file) {
                   file.string()));
 }
 
-/// A case can be named in place of a scenario or a suite, so its name must differ from theirs.
 void require_own_name(const scenarios::DataRoot& data, const std::string& name) {
   for (const std::vector<std::string>& known : {scenarios::scenario_names(data), scenarios::suite_names(data)}) {
     if (std::find(known.begin(), known.end(), name) != known.end())
@@ -202,13 +201,11 @@ Action declare_shrink(VerbOptions& verb, const Session& session) {
   verb.add("--worse-than", options->worse_than,
            "sets the limit of the metric in SI units; a run with a worse value fails");
   verb.add("--control", options->control,
-           "names the control method, which must succeed on the smaller simulated run, or 'none' [default: the oracle "
+           "names a control method, which must succeed on the smaller simulated run, or 'none' [default: the oracle "
            "(method with true input) of the method's kind]");
-  verb.add("--budget", options->budget, "limits the number of simulated runs of the search")
-      .whole(1, 100000)
-      .shows_default();
+  verb.add("--budget", options->budget, "limits the number of simulated runs").whole(1, 100000).shows_default();
   verb.add("-o,--output", options->file,
-           "writes this case file, NAME.yaml; the gate checks all cases in scenarios/regressions")
+           "writes this case file, NAME.yaml; 'tumble gate regressions' checks all cases in scenarios/regressions")
       .required();
   return [&session, options] { return run_shrink(session, *options); };
 }

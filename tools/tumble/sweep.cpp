@@ -26,7 +26,6 @@ namespace tumble::tools {
 
 namespace {
 
-/// Each example costs one more simulated run, and its pictures.
 constexpr std::uint64_t kExamplesMax = 3, kDrawsPerExample = 8, kFailuresMax = 8, kDrawsPerFailure = 4;
 
 struct SweepVerbOptions {
@@ -34,7 +33,7 @@ struct SweepVerbOptions {
   std::string seeds, shard;
   std::vector<std::string> scenarios, methods, again;
   int jobs = available_processors();
-  std::optional<std::size_t> examples, failures;  ///< default: depends on the size of the sweep
+  std::optional<std::size_t> examples, failures;  ///< default: by the size
   std::filesystem::path database, recordings;
   double memory_mib = scenarios::kWorkerMemoryMib;
   std::string keep = "none";
@@ -51,7 +50,6 @@ void take_scenarios(const std::vector<std::string>& named, scenarios::Suite& sui
   std::erase_if(suite.scenarios, [&](const std::string& name) { return std::ranges::count(named, name) == 0; });
 }
 
-/// The content of the suite is printed, because a scenario may have the same name.
 void say_what_it_holds(const Session& session, const SweepVerbOptions& options, const scenarios::Suite& suite) {
   if (!options.scenarios.empty() || suite.scenarios.size() < 2) return;
   if (std::ranges::count(suite.scenarios, options.suite) == 0) return;
@@ -76,7 +74,6 @@ bool select(const scenarios::DataRoot& data, const SweepVerbOptions& options, sc
         fmt::format("--data does not apply to suite '{}', because the suite has no recordings", suite.name));
   if (!options.recordings.empty()) suite.recordings_folder = options.recordings;
   if (!options.methods.empty()) {
-    // An unknown name must cause an error before the sweep starts.
     for (const std::string& name : options.methods) scenarios::find_methods(name);
     suite.methods = options.methods;
   }
@@ -124,7 +121,6 @@ bool leave_examples(const Session& session, const scenarios::DataRoot& data, con
   if (!options.shard.empty()) return true;
   LeaveOptions leave;
   leave.count = options.examples.value_or(std::min(kExamplesMax, draws / kDrawsPerExample));
-  // A sweep that is too small for typical runs still shows failures.
   const bool wants_none = options.examples && *options.examples == 0;
   leave.failures =
       options.failures.value_or(wants_none ? 0 : std::clamp(draws / kDrawsPerFailure, std::uint64_t{1}, kFailuresMax));
@@ -255,7 +251,6 @@ int run_sweep(const Session& session, const SweepVerbOptions& options) {
   const scenarios::DatabaseOwner owner(options.database);
   NewDatabase made(options.database);
   if (!any) {
-    // An empty database is created, so that the databases of all parts can be merged.
     scenarios::Results results = scenarios::open_results(data, suite, options.database);
     if (options.keep != "none") results.set_note(scenarios::kKeepNote, options.keep);
     made.keep();
@@ -268,7 +263,6 @@ int run_sweep(const Session& session, const SweepVerbOptions& options) {
   scenarios::require_sound(suite, how);
   const std::optional<scenarios::Question> question = ask(options, data, suite);
   note_command(scenarios::open_results(data, suite, options.database), options);
-  // The certificate checks the simulation, so recordings need none.
   if (suite.recordings.empty()) certify(session, data, options.database, interrupt.raised());
   AskedSweep swept;
   if (question) {
@@ -312,7 +306,7 @@ Action declare_sweep(VerbOptions& verb, const Session& session) {
       .filled();  // an empty word would select all
   verb.add("--method", options->methods,
            "runs this method; repeat the option for more methods [default: the methods of the suite]")
-      .one_at_a_time();  // each option takes one word
+      .one_at_a_time();  // one word per option
   verb.add("--jobs", options->jobs, "runs this number of processes in parallel [default: number of processors]")
       .whole(1, 1024)
       .shows_default();

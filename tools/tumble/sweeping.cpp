@@ -21,7 +21,6 @@ scenarios::SweepProgress sum(const scenarios::SweepProgress& before, const scena
   all.elapsed_s += before.elapsed_s;
   all.peak_mib = std::max(all.peak_mib, before.peak_mib);
   if (all.not_kept.empty()) all.not_kept = before.not_kept;
-  // The remaining time follows from the mean time per simulated run.
   if (all.draws_done > 0)
     all.left_s = all.elapsed_s / static_cast<double>(all.draws_done) * static_cast<double>(draws - all.draws_done);
   return all;
@@ -45,7 +44,6 @@ AskedSweep sweep_until(const Session& session, const scenarios::DataRoot& data, 
   ProgressDisplay shown = ProgressDisplay::on_standard_error();
   AskedSweep out;
   scenarios::Suite part = suite;
-  // The worst simulated runs are known only after the last step of the sweep.
   scenarios::SweepOptions own = options;
   if (options.keep.which == scenarios::Keep::Which::worst) own.keep = {};
   const auto draws_of = [&](std::uint64_t seeds) { return seeds * suite.scenarios.size(); };

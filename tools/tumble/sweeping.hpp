@@ -17,7 +17,7 @@ scenarios::SweepProgress sweep_with_progress(const Session& session, const scena
 /// evaluated after fixed numbers of seeds, so the content of the database does not depend on the number of jobs or on
 /// interruptions.
 struct AskedSweep {
-  scenarios::SweepProgress progress;  ///< of all steps; `draws_total` counts the runs up to the last evaluation
+  scenarios::SweepProgress progress;  ///< of all steps
   std::vector<scenarios::Answer> answers;
 };
 AskedSweep sweep_until(const Session& session, const scenarios::DataRoot& data, const scenarios::Suite& suite,

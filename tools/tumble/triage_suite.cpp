@@ -106,7 +106,7 @@ std::string conclusion(const std::vector<InputWorth>& worths) {
     return fmt::format("the input {} has the strongest influence: its true value prevents {} of {} failures", name,
                        first->cured, first->failed);
   const std::string failures = first->failed == 0 ? "no method run failed (--metric and --limit define a failure)"
-                                                  : "no true value of a single input prevents a failure";
+                                                  : "replacing a single input by its true value prevents no failure";
   if (first->better <= first->worse) return fmt::format("{}; no true input improves most simulated runs", failures);
   return fmt::format("{}; the true value of {} improves {} of {} simulated runs", failures, name, first->better,
                      first->better + first->worse);

@@ -12,10 +12,10 @@ namespace tumble::tools {
 struct SuiteTriage {
   scenarios::Suite suite;
   scenarios::MethodPointer method;
-  std::string metric;  ///< metric of the method's kind that measures the effect of an input
-  std::string words;   ///< options that select method and failure criterion, in the command for one run
+  std::string metric;  ///< measures an input's effect
+  std::string words;   ///< options for the printed command
   scenarios::SuiteTriageOptions options;
-  std::filesystem::path database;  ///< if set: only runs on which the method failed in this database
+  std::filesystem::path database;  ///< only runs that failed there
 };
 
 int run_suite_triage(const Session& session, SuiteTriage asked);

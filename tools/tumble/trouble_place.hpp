@@ -8,7 +8,6 @@
 
 namespace tumble::tools {
 
-/// If no sweep was registered, the text is the number of points in a sweep.
 std::string trouble_place(const Status& status, const sim::Sensors& sensors);
 
 }  // namespace tumble::tools

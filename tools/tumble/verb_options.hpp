@@ -34,7 +34,7 @@ class VerbOptions {
  public:
   explicit VerbOptions(CLI::App& app) : app_(&app) {}
 
-  /// The target must exist while the command line is parsed.
+  /// The target variable of an option must exist while the command line is parsed.
   template <class Value>
   VerbOption add(const std::string& names, Value& target, const std::string& doc);
   void add_flag(const std::string& name, bool& target, const std::string& doc);

@@ -14,9 +14,9 @@ namespace {
 struct Axis {
   std::span<const ImuSample> samples;
   std::vector<bool> clipped;
-  std::vector<bool> overflown;  ///< clipped beyond the limit: the reading contains no information
+  std::vector<bool> overflown;  ///< the reading exceeded the representable range and has no information
   int index = 0;
-  double variance = 0.0;  ///< variance of an unclipped reading
+  double variance = 0.0;
 
   double time_s(std::size_t k) const { return seconds(samples[k].time_ns - samples.front().time_ns); }
   double reading(std::size_t k) const { return samples[k].angular_velocity_rad_s[index]; }
@@ -32,8 +32,8 @@ double cubic(double share, double span_s, double from, double slope_from, double
          (u3 - u2) * span_s * slope_to;
 }
 
-// Returns the derivative of the rate at sample k, next to a gap of clipped samples; 0 if the neighbouring sample
-// outside the gap is clipped or missing.
+// Returns the derivative of the rate at sample k next to a clipped gap, or 0 if the neighbouring sample outside the gap
+// is clipped or missing.
 double slope_at(const Axis& axis, std::size_t k, int step) {
   if (step < 0 ? k == 0 : k + 1 == axis.samples.size()) return 0.0;
   const std::size_t other = step < 0 ? k - 1 : k + 1;
@@ -57,7 +57,7 @@ std::vector<Value> interpolate(const Axis& axis) {
       const double span_s = axis.time_s(b) - axis.time_s(a), share = (axis.time_s(k) - axis.time_s(a)) / span_s;
       out[k].rate =
           cubic(share, span_s, axis.reading(a), slope_at(axis, a, -1), axis.reading(b), slope_at(axis, b, +1));
-      // Interpolation by a cubic gives no variance, so the distance between cubic and clipped reading serves as
+      // A cubic interpolation has no variance, so the difference between cubic and clipped reading serves as its
       // standard deviation.
       const double departure = out[k].rate - axis.reading(k);
       out[k].variance = axis.variance + departure * departure;

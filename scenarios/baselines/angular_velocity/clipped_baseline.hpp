@@ -13,13 +13,12 @@
 namespace tumble::baselines {
 
 /// ClippedBaseline estimates clipped angular rates from the gyro alone, each axis independently. A cubic bridges each
-/// gap of clipped samples and matches the rate and its derivative at both ends of the gap. On simulated tumbles, the
-/// cubic has a larger mean error than the clipped reading.
+/// gap of clipped samples and matches the rate and its derivative at both ends of the gap.
 class ClippedBaseline {
  public:
   struct Params {
     RailDetector::Params rails = {};
-    bool tilted_rails = false;  ///< also detects tilted rails (ClippingFinder), unlike the published method
+    bool tilted_rails = false;  ///< tilted saturation limits too, unlike the published method
     /// Noise density of the gyro [rad/s/sqrt(Hz)]
     double gyro_noise_density = 5.236e-4;
     double rate_max_rad_s = 50.0;  ///< largest rate about one axis in a gap
@@ -41,8 +40,7 @@ class ClippedBaseline {
 
   explicit ClippedBaseline(const Params& params);
 
-  /// Writes one estimated angular rate per sample to `out`, in O(N); on error, `out` keeps its content. Possible errors
-  /// are `empty`, `too_few` (fewer than two samples), `non_finite`, `time_order` and `gap`.
+  /// Possible errors are `empty`, `too_few` (fewer than two samples), `non_finite`, `time_order` and `gap`.
   Status estimate(std::span<const ImuSample> samples, std::vector<RateState>& out) const;
 
  private:

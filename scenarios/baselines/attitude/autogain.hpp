@@ -11,35 +11,31 @@
 namespace tumble::baselines {
 
 enum class AutogainProfile : std::uint8_t {
-  paper,     ///< eq 2: 0 up to `lower`, (|w_k| - lower)^2 / (upper - lower)^2, 1 from `upper`
-  code2021,  ///< authors' code of 2021: min(1, (w_k / 2)^2); the gains (not the factors) use 0 below 0.1
-  smooth,    ///< smoothstep of the rate's norm between the bounds of `paper`; continuous, independent of the mounting
+  paper,     ///< eq 2 of the paper
+  code2021,  ///< authors' code of 2021, unlike eq 2
+  smooth,    ///< continuous, independent of the mounting
 };
 
 struct AutogainGains {
-  Eigen::Vector3d factor = Eigen::Vector3d::Zero();  ///< f_x, f_y, f_z (eq 2); all equal in the smooth profile
-  double beta = 0.0;                                 ///< beta (eq 3), from which the gains are computed
-  double madgwick_rad_s = 0.0;                       ///< gamma (eq 4): gain of the Madgwick step
-  double slerp_share = 0.0;                          ///< alpha (eq 5): share of the complementary step
+  Eigen::Vector3d factor = Eigen::Vector3d::Zero();  ///< f_x, f_y, f_z (eq 2)
+  double beta = 0.0;
+  double madgwick_rad_s = 0.0;  ///< gain of the Madgwick step (eq 4)
+  double slerp_share = 0.0;     ///< weight of the complementary step (eq 5)
 };
 
 /// Autogain estimates attitude with the published filter for a rolling sphere (Zevering et al., IEEE MFI 2021, eqs
-/// 2-5). The filter first applies Madgwick's correction, whose gain grows with the angular rate. The filter then
-/// applies a complementary correction, whose weight falls with the angular rate. The filter estimates neither gyro bias
-/// nor heading.
+/// 2-5). Autogain combines Madgwick's correction, whose gain grows with the angular rate, with a complementary
+/// correction, whose weight falls with the angular rate. Autogain estimates neither gyro bias nor heading.
 class Autogain {
  public:
   struct Params {
     AutogainProfile profile = AutogainProfile::paper;
-    double gain_rad_s = 0.2;   ///< capital Theta: the Madgwick gain at full rate
-    double tau_s = 0.396;      ///< time constant of the complementary step at rest (0.02 per sample at 125 Hz)
+    double gain_rad_s = 0.2;  ///< gain at full rate
+    double tau_s = 0.396;
     double lower_rad_s = 0.1;  ///< unused by code2021
     double upper_rad_s = 2.1;  ///< above lower_rad_s; unused by code2021
-    /// If true, the filter contains an error of the authors' code of 2021: a check for gimbal lock is always true, so
-    /// roll is never corrected.
+    /// If true, the filter repeats an error in the authors' code of 2021: roll is never corrected.
     bool roll_error_2021 = false;
-    /// If true, the complementary step is the smallest rotation that corrects the tilt, instead of a step in roll,
-    /// pitch and yaw.
     bool tilt_form = false;
     double gap_max_s = 1.0;
 
@@ -78,8 +74,7 @@ class Autogain {
 
   explicit Autogain(const Params& params);
 
-  /// The first IMU sample sets roll and pitch from gravity and yaw to 0; later samples integrate the gyro and correct
-  /// the tilt. For a specific force below 1e-6 m/s^2, the filter only integrates the gyro.
+  /// If the specific force is below 1e-6 m/s^2, Autogain only integrates the gyro.
   Status step(const ImuSample& sample, State& state) const;
 
   AutogainGains gains(const Eigen::Vector3d& w_I_rad_s, double dt_s) const;

@@ -9,14 +9,13 @@
 
 namespace tumble::baselines {
 
-/// Complementary estimates attitude by a complementary filter. The filter integrates the gyro exactly, then applies the
-/// fraction 1 - exp(-dt / tau) of the smallest rotation that aligns the specific force with the vertical (equation (A2)
-/// of attitude.md). An acceleration that lasts longer than tau causes an attitude error. The filter does not estimate
-/// the gyro bias.
+/// Complementary integrates the gyro, then applies the fraction 1 - exp(-dt / tau) of the smallest rotation that aligns
+/// the specific force with the vertical (equation (A2) of attitude.md). An acceleration that lasts longer than the time
+/// constant tau causes an attitude error. Complementary does not estimate the gyro bias.
 class Complementary {
  public:
   struct Params {
-    double tau_s = 0.396;  ///< time constant of the correction: 0.02 per sample at 125 Hz, as published for the sphere
+    double tau_s = 0.396;  ///< 0.02 per sample at 125 Hz
     double gap_max_s = 1.0;
 
     template <class Self, class Visitor>
@@ -38,8 +37,7 @@ class Complementary {
 
   explicit Complementary(const Params& params);
 
-  /// The first IMU sample sets roll and pitch from gravity and yaw to 0; later samples integrate the gyro and correct
-  /// the tilt. For a specific force below 1e-6 m/s^2, the filter only integrates the gyro.
+  /// If the specific force is below 1e-6 m/s^2, Complementary only integrates the gyro.
   Status step(const ImuSample& sample, State& state) const;
 
  private:

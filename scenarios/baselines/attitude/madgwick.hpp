@@ -10,12 +10,12 @@
 namespace tumble::baselines {
 
 /// Madgwick estimates attitude by Madgwick's gradient filter from gyro and accelerometer (Madgwick, internal report,
-/// 2010, eqs 25-33). The correction has a fixed angular speed of 2 gain rad/s, so the attitude oscillates at rest and
-/// follows accelerations. The filter estimates neither gyro bias nor heading.
+/// 2010, eqs 25-33). Madgwick's correction has a constant angular speed, so the estimated attitude oscillates at rest
+/// and follows accelerations. Madgwick's filter estimates neither gyro bias nor heading.
 class Madgwick {
  public:
   struct Params {
-    double gain_rad_s = 0.033;  ///< quaternion rate of the correction: sqrt(3/4) x gyro error per axis
+    double gain_rad_s = 0.033;  ///< sqrt(3/4) x gyro error per axis
     double gap_max_s = 1.0;
 
     template <class Self, class Visitor>
@@ -37,8 +37,6 @@ class Madgwick {
 
   explicit Madgwick(const Params& params);
 
-  /// The first IMU sample sets roll and pitch from gravity and yaw to 0; later samples integrate the gyro and correct
-  /// the tilt.
   Status step(const ImuSample& sample, State& state) const;
 
  private:

@@ -18,13 +18,11 @@ namespace tumble::baselines {
 
 /// PublishedChain estimates trajectory and map from given angular rates with the published mapping chain (Deschenes et
 /// al., ICRA 2024) and the constants of its launch files.
-///
-/// One parameter switches each known error of the published chain.
 class PublishedChain {
  public:
   struct Params {
     Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< pose of the lidar in IMU axes
-    Eigen::AlignedBox3d own_body_L;  ///< points inside belong to the robot and are removed; empty: removes none
+    Eigen::AlignedBox3d own_body_L;                          ///< points inside belong to the robot
     double skew_sigma_m_s = 0.25;
     TrimmedIcp::Params icp;
     bool late_velocity = true, voxel_averages_time = true, abort_ends_mapping = false;
@@ -84,14 +82,13 @@ class PublishedChain {
     std::span<const LidarPoint> points;
   };
 
-  /// `rates` contains one angular rate per IMU sample, which replaces the gyro reading. The data of `samples` must
-  /// outlive the PublishedChain.
+  /// `rates` contains one angular rate per IMU sample, which replaces the gyro reading of the sample. The data of
+  /// `samples` must outlive the PublishedChain.
   PublishedChain(const Params& params, std::span<const ImuSample> samples, std::span<const RateState> rates);
 
   bool covers(const Sweep& sweep) const;
   /// `covers(sweep)` must be true, and each sweep must be later than all earlier sweeps. Returns `empty`, `degenerate`
-  /// (all points have one time) or `too_few` (points in range) if the sweep is not registered; the odometry still
-  /// advances.
+  /// (all points have one time) or `too_few` (points in range) if the sweep cannot be registered.
   Status add(const Sweep& sweep, SweepReport& report);
   std::vector<MapPoint> map() const;
 
@@ -107,9 +104,9 @@ class PublishedChain {
   TrimmedIcp icp_;
   VoxelMap map_{{0.5, 0.0}};
   std::vector<Eigen::Vector3f> seen_from_;
-  Eigen::Isometry3d T_map_odom_ = Eigen::Isometry3d::Identity();  ///< transform between the frames of map and odometry
+  Eigen::Isometry3d T_map_odom_ = Eigen::Isometry3d::Identity();
   bool dead_ = false;
-  std::optional<TimeNs> registered_ns_;  ///< time and pose of the last registered sweep
+  std::optional<TimeNs> registered_ns_;
   Eigen::Vector3d registered_m_ = Eigen::Vector3d::Zero();
 };
 

@@ -11,12 +11,9 @@
 
 namespace tumble::baselines {
 
-/// PublishedImuOdometry computes attitude by Madgwick's filter and position from the accelerometer, in the odometry
-/// frame "odom".
 class PublishedImuOdometry {
  public:
-  /// `rates` contains one angular rate per IMU sample, which replaces the gyro reading. The data of `samples` must
-  /// outlive the PublishedImuOdometry.
+  /// The caller must keep the data of `samples` alive as long as the PublishedImuOdometry.
   PublishedImuOdometry(double madgwick_gain_rad_s, std::span<const ImuSample> samples,
                        std::span<const RateState> rates);
 
@@ -25,8 +22,6 @@ class PublishedImuOdometry {
   /// samples again.
   void feed_back(const Eigen::Vector3d& velocity_m_s, TimeNs time_ns);
 
-  /// Returns the pose of the IMU at `time_ns`, with linearly interpolated position and spherically interpolated
-  /// attitude.
   Eigen::Isometry3d pose(TimeNs time_ns) const;
   const Eigen::Vector3d& velocity_m_s(TimeNs time_ns) const;
 

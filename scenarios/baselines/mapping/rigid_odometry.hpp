@@ -16,20 +16,19 @@
 
 namespace tumble::baselines {
 
-/// RigidOdometry registers sweeps to a map, with a motion prediction from the caller. Like most lidar odometries,
-/// RigidOdometry deskews each sweep once, to its end, and corrects only the end pose. RigidOdometry neglects motion
-/// errors within the sweep, mounting errors and clock offsets, and does not recover after a tracking failure.
+/// RigidOdometry deskews each sweep once with the predicted motion and corrects only the pose at the end of the sweep.
+/// RigidOdometry neglects mounting errors and clock offsets, and does not recover after a tracking failure.
 class RigidOdometry {
  public:
   struct Params {
     Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< pose of the lidar in the axes of `Motion`
     double range_min_m = 0.3;
     double range_max_m = 100.0;
-    Eigen::AlignedBox3d own_body_L;  ///< points inside belong to the robot and are removed; empty: removes none
-    double sweep_voxel_m = 0.25;     ///< voxel size; the registration uses one point per voxel of a sweep
+    Eigen::AlignedBox3d own_body_L;  ///< points inside belong to the robot
+    double sweep_voxel_m = 0.25;     ///< one point per voxel is registered
     double map_voxel_m = 0.5;
     double map_spacing_m = 0.1;
-    /// If true, sweeps without successful registration are inserted into the map at the predicted pose, as in most
+    /// If true, sweeps whose registration failed are inserted into the map at their predicted pose, as in most
     /// published methods.
     bool extend_always = true;
     double degenerate_sigma_m = 0.15;  ///< as in LidarInertialOdometry

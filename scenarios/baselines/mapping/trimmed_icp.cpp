@@ -58,8 +58,6 @@ const TrimmedIcp::Normal& TrimmedIcp::normal(const VoxelMap& map, std::uint32_t 
   entry.known = true;
   Neighbours found;
   map.nearest(map.position_W_m(index), params_.normal_neighbours, static_cast<float>(params_.match_distance_m), found);
-  // The authors' code accepts the smallest eigenvector of any neighbourhood as the normal, even if the neighbourhood is
-  // not planar.
   PlaneBounds any;
   any.neighbours_min = 3;
   any.collinear_ratio_max = 0.0;

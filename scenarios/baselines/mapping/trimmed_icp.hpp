@@ -15,7 +15,8 @@
 namespace tumble::baselines {
 
 /// TrimmedIcp aligns a sweep to a map by point-to-plane registration with k matches per point and inverse-variance
-/// weights. TrimmedIcp does not measure observability: along a corridor, the registration still reports success.
+/// weights. TrimmedIcp does not measure observability: in a featureless corridor, the registration still reports
+/// success.
 class TrimmedIcp {
  public:
   struct Params {
@@ -25,11 +26,11 @@ class TrimmedIcp {
     double trim_min = 0.5;       ///< smallest fraction of the matches to keep
     double trim_max = 0.7;
     double trim_lambda = 2.35;
-    /// If true, the kept fraction refers to all match slots, also to slots without a match, as in the authors' code.
-    /// The authors' code then reads beyond the end of the sorted distances; TrimmedIcp stops at the end.
+    /// If true, the fraction of kept matches refers to all match slots, including slots without a match, as in the
+    /// authors' code.
     bool count_unmatched_slots = false;
     int iterations_max = 40;
-    double step_m = 0.01;  ///< converged if the mean step over two iterations is below both bounds
+    double step_m = 0.01;  ///< converged below both bounds
     double step_rad = 0.001;
     double correction_max_m = 15.0;
     double correction_max_rad = 1.1;
@@ -61,11 +62,11 @@ class TrimmedIcp {
   };
   struct Point {
     Eigen::Vector3f position_m;
-    float variance_m2 = 0.0f;  ///< variance along the ray, plus residual distortion
+    float variance_m2 = 0.0f;  ///< along the ray, plus residual distortion
   };
   struct Result {
     RegistrationVerdict verdict = RegistrationVerdict::too_few;
-    Eigen::Isometry3d T = Eigen::Isometry3d::Identity();  ///< aligning pose, or the prior if not converged
+    Eigen::Isometry3d T = Eigen::Isometry3d::Identity();  ///< the prior if not converged
     int iterations = 0;
     std::size_t matched_slots = 0;
     double kept_share = 0.0;  ///< kept fraction of the matched slots
@@ -73,12 +74,11 @@ class TrimmedIcp {
 
   explicit TrimmedIcp(const Params& params);
 
-  /// As in the published chain, a registration that reaches the iteration limit counts as success. Returns an error if
-  /// no point has a match or the correction exceeds its limit.
+  /// As in the published chain, a registration that reaches the iteration limit counts as success.
   Result align(std::span<const Point> points, const Eigen::Isometry3d& prior, const VoxelMap& map);
 
-  /// Returns how many of the n = `slots` sorted squared distances d^2 the registration keeps. The kept fraction f
-  /// minimises (sum of the smallest f n distances d^2) / (f n f^(2 lambda)) for f in [trim_min, trim_max].
+  /// Returns how many of the sorted squared distances between matched points the registration keeps. The kept fraction
+  /// f minimises (sum of the smallest f n distances d^2) / (f n f^(2 lambda)) over n match slots.
   static std::size_t trim(std::span<const float> sorted_d2, std::size_t slots, const Params& params);
 
   /// Clears the cached normals of the map points; required after each change of the map.

@@ -13,8 +13,8 @@ namespace tumble::baselines {
 
 namespace {
 
-/// Each axis is scaled by the larger rotation factor of the two other axes (eq 8 of the paper), because rotation about
-/// these two axes moves the sphere along the first.
+/// Rotation about two axes moves the sphere along the third, so each axis is scaled by the larger rotation factor of
+/// the two other axes (eq 8 of the paper).
 Eigen::Vector3d coupling(const Eigen::Vector3d& factor) {
   return {std::max(factor.y(), factor.z()), std::max(factor.x(), factor.z()), std::max(factor.x(), factor.y())};
 }

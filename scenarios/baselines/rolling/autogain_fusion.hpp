@@ -11,8 +11,8 @@
 namespace tumble::baselines {
 
 /// AutogainFusion estimates the position of a rolling sphere on a flat floor from the rolling velocity and the
-/// integrated acceleration (Zevering et al., IEEE MFI 2021, eqs 6-13). The limit on the integrated acceleration usually
-/// leaves only its sign, so the path of a sphere without slip is up to half too short.
+/// integrated acceleration (Zevering et al., IEEE MFI 2021, eqs 6-13). The limit on the integrated acceleration
+/// shortens the estimated path of a sphere without slip by up to one half.
 class AutogainFusion {
  public:
   struct Params {
@@ -21,16 +21,16 @@ class AutogainFusion {
     double limiter = 1.2;              ///< maximum of |v_acc| / |v_rot|; 1.1 in the code
     double rotation_weight = 0.5;      ///< eq 13
     double acceleration_weight = 0.5;  ///< eq 13
-    Autogain::Params autogain = {};    ///< only for the factors of eq 2
+    Autogain::Params autogain = {};
 
-    // Each option switches one difference between the paper and the authors' code; the defaults follow the equations of
+    // Each option switches one difference between the paper of the filter and its authors' code; the defaults follow
     // the paper.
-    bool integrate_in_body = true;    ///< eq 7 in the rotating frame, without w x v; false integrates in W
-    bool direction_only = false;      ///< as in the code: subtracts gravity from f / |f|, without multiplying by g
-    bool recursive_coupling = false;  ///< as in the code: eq 8 scales the integral itself at each sample
-    bool limit_per_axis = true;       ///< limits along each world axis; false: limits the horizontal vector
-    bool shrink_per_axis = true;      ///< eq 12 subtracts v_z^2 from each axis; false: from the horizontal vector
-    bool vertical_by_norm = false;    ///< as in the code: |v_z| <= |v_rot|; false: |v_z| <= (|v_rot,x| + |v_rot,y|) / 2
+    bool integrate_in_body = true;    ///< eq 7 in the rotating frame
+    bool direction_only = false;      ///< as in the code: ignores |f|
+    bool recursive_coupling = false;  ///< as in the code
+    bool limit_per_axis = true;       ///< false: limits the horizontal vector
+    bool shrink_per_axis = true;      ///< false: eq 12 shortens the horizontal vector
+    bool vertical_by_norm = false;    ///< as in the code: |v_z| <= |v_rot|
 
     double gap_max_s = 1.0;
 
@@ -80,7 +80,7 @@ class AutogainFusion {
   struct State {
     Eigen::Vector3d p_WG_m = Eigen::Vector3d::Zero();
     Eigen::Vector3d v_WG_m_s = Eigen::Vector3d::Zero();        ///< fused velocity at the last sample
-    Eigen::Vector3d v_integral_m_s = Eigen::Vector3d::Zero();  ///< in I, or in W if not integrate_in_body
+    Eigen::Vector3d v_integral_m_s = Eigen::Vector3d::Zero();  ///< in I or W, see `integrate_in_body`
     TimeNs last_time_ns = 0;
     bool started = false;
     bool operator==(const State&) const = default;

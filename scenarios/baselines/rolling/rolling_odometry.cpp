@@ -14,7 +14,6 @@ constexpr double kUnitTolerance = 1e-6;
 constexpr double kRateLargest_rad_s = 1e6;
 
 Status check_input(const Eigen::Vector3d& w_I_rad_s, const Eigen::Quaterniond& q_WI) {
-  // `sum()` propagates NaN and infinity from any component; `stableNorm()` does not guarantee this.
   if (!w_I_rad_s.allFinite()) return {ErrorCode::non_finite, "w_I_rad_s", w_I_rad_s.sum(), kRateLargest_rad_s};
   const double rate = w_I_rad_s.stableNorm();
   if (rate > kRateLargest_rad_s) return {ErrorCode::out_of_range, "w_I_rad_s", rate, kRateLargest_rad_s};

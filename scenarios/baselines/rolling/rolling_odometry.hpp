@@ -10,8 +10,8 @@
 namespace tumble::baselines {
 
 /// RollingOdometry computes the position of a rolling sphere's centre from the angular velocity, by the trapezoid rule.
-/// On a plane with normal n, the velocity of the centre is v = r w_W x n (equation (R15) of rolling.md with u = 0). The
-/// position is wrong during slip, sliding and height changes.
+/// On a plane with unit normal n, the centre of a sphere of radius r and angular velocity w has the velocity r w x n
+/// (equation (R15) of rolling.md). The computed position is wrong during slip, sliding and changes of the floor height.
 class RollingOdometry {
  public:
   struct Params {

@@ -24,32 +24,33 @@ struct BagCloud {
   std::vector<float> error_m;  ///< parallel to `position_W_m`, or empty
 };
 
-/// BagTrack is a series of body poses in W. It becomes the topic "/NAME" (nav_msgs/Odometry) and a part of /tf.
+/// BagTrack is a series of body poses in the world frame W, which becomes the topic "/NAME" (nav_msgs/Odometry) and a
+/// part of /tf.
 struct BagTrack {
   struct Pose {
     std::int64_t time_ns = 0;
     Eigen::Vector3d p_WB_m = Eigen::Vector3d::Zero();
     Eigen::Quaterniond q_WB = Eigen::Quaterniond::Identity();
     Eigen::Vector3d v_WB_B_m_s = kUnknown, w_WB_B_rad_s = kUnknown;
-    /// Covariance of position in W and attitude error phi in W, as in PoseState. A block of zeros is unknown.
+    /// Covariance of position in W and attitude error in W, as in PoseState; a block of zeros is unknown.
     Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
-    bool exact = false;  ///< true: a zero covariance means an exact pose
+    bool exact = false;  ///< true: zero covariance means exact
     inline static const Eigen::Vector3d kUnknown = Eigen::Vector3d::Constant(kNaN);
   };
   std::string name;  ///< letters, digits and _
   std::vector<Pose> poses;
   std::vector<std::int64_t> cloud_time_ns = {};  ///< times of point clouds along the track
-  /// Creates one cloud on demand, so only one cloud is in memory. Clouds without points are omitted.
+  /// The function creates one point cloud at a time, so only one cloud is in memory; clouds without points are omitted.
   std::function<BagCloud(const BagTrack&, std::size_t)> cloud = {};
 };
 
 struct BagWriting {
   std::int64_t origin_ns = 0;          ///< added to all times; see export_origin_ns
   const StoredTruth* truth = nullptr;  ///< true motion; null: not written
-  std::vector<BagTrack> tracks = {};   ///< estimates; names are unique and not in `taken` of export_names
+  std::vector<BagTrack> tracks = {};   ///< estimates with unique names
   SweepLayout sweeps = own_sweep_layout();
   const std::vector<PointStore>* points = nullptr;
-  std::optional<ReaderNames> names = {};  ///< if set: writes only the first IMU and lidar, with these names
+  std::optional<ReaderNames> names = {};  ///< writes only the first IMU and lidar
   bool empty_sweeps = true;               ///< false: omits sweeps without points
 };
 
@@ -61,63 +62,60 @@ struct BagWriting {
 ///
 /// All bags contain these topics:
 ///
-/// - "/NAME" is a sensor_msgs/Imu without attitude. Its covariance is the white noise in the data sheet. NAME is the
-///   exported name of the sensor (export_names). The topic of the primary IMU is the first topic of its type.
+/// - "/NAME" is a sensor_msgs/Imu without attitude, with the white noise of the data sheet as covariance. NAME is the
+///   exported name of the sensor (export_names); the topic of the primary IMU is the first topic of its type.
 /// - "/NAME/points" is a sensor_msgs/PointCloud2, stamped at the start of the sweep, with the fields of Velodyne
 ///   drivers: x y z intensity ring time. The field time contains float32 seconds after the stamp (4 ns resolution
-///   within 0.1 s); offset_ns contains the same time in whole nanoseconds. Both are omitted for points without times.
+///   within 0.1 s), and offset_ns contains the same time in whole nanoseconds. Points without times have neither of the
+///   two time fields.
 /// - "/truth" is a nav_msgs/Odometry of "body" in "world", at most every 5 ms. "/TRACK" and "/TRACK/points" contain
 ///   estimates. Unknown values have the variance -1, as in sensor_msgs/Imu; an unknown twist is zero.
 /// - "/tf_static" contains the pose of each sensor in "body", from the calibration that the estimator uses.
-/// - "/tf" contains the pose of "body" in "world" from the truth, or else from the first track. Each further track has
-///   a frame "TRACK".
+/// - "/tf" contains the pose of "body" in "world" from the truth, or else from the first track.
 /// - "/clock" is a rosgraph_msgs/Clock, published with the first message after every 10 ms.
-///
-/// Throws BadInput if the output cannot be written.
 void export_ros1_bag(const sim::Sensors& sensors, const BagWriting& writing, const std::filesystem::path& file);
 void export_ros2_bag(const sim::Sensors& sensors, const BagWriting& writing, const std::filesystem::path& folder);
 void export_mcap(const sim::Sensors& sensors, const BagWriting& writing, const std::filesystem::path& file);
-/// Writes the folder layout of ROS 2 since Iron: an MCAP file and metadata.yaml.
 void export_ros2_mcap(const sim::Sensors& sensors, const BagWriting& writing, const std::filesystem::path& folder);
 
-/// A header stamp is the time of measurement; a record stamp is the time at which the bag recorded the message. A sweep
-/// is recorded at its end, so with record stamps a sweep starts one period before its stamp.
+/// A header stamp is the time of measurement; a record stamp is the time at which the bag recorded the message. With
+/// record stamps, a sweep starts one period before its stamp, because a sweep is recorded at its end.
 enum class StampSource { header, record };
 
-/// ReferenceOf selects the frame of the reference poses. `named` is the frame in the messages, if the bag contains its
+/// ReferenceOf selects the frame of the reference poses; `named` is the frame in the messages, if the bag contains its
 /// transform.
 enum class ReferenceOf { named, body, lidar };
 
 struct BagReading {
-  std::vector<std::string> imu_topics;    ///< the first is the primary IMU; empty: all Imu topics in the bag's order
-  std::vector<std::string> lidar_topics;  ///< empty: all of type PointCloud2 or CustomMsg
-  std::string reference_topic;            ///< Odometry, PoseStamped or TransformStamped; "": none
+  std::vector<std::string> imu_topics;    ///< primary IMU first; empty: all Imu topics
+  std::vector<std::string> lidar_topics;  ///< empty: all PointCloud2 or CustomMsg
+  std::string reference_topic;            ///< Odometry, PoseStamped or TransformStamped
   ReferenceOf reference_of = ReferenceOf::named;
-  sim::ImuRecord imu;                   ///< values that messages lack: device, ranges, noise, T_BI
-  bool imu_placed = false;              ///< true: the user sets T_BI of `imu`, which may be the identity
-  bool lidar_placed = false;            ///< true: the user sets T_BL of `sweeps.device`, which may be the identity
-  std::optional<AccelUnit> accel_unit;  ///< empty: m/s^2 as in sensor_msgs/Imu, or g if the readings indicate g
+  sim::ImuRecord imu;                   ///< values that messages lack
+  bool imu_placed = false;              ///< the user sets T_BI of `imu`
+  bool lidar_placed = false;            ///< the user sets T_BL of `sweeps.device`
+  std::optional<AccelUnit> accel_unit;  ///< empty: m/s^2, or g by the readings
   GyroUnit gyro_unit = GyroUnit::rad_s;
   StampSource stamps = StampSource::header;
   SweepReading sweeps;
-  /// true: an unreadable topic is skipped with a note if another topic of the same kind is readable.
+  /// true: an unreadable topic is skipped with a note, if another topic of the same kind is readable.
   bool leave_out_topics = false;
 };
 
 /// A ROS 1 bag is a file, or a folder of its parts, which are merged by time; encrypted bags are not supported. A ROS 2
-/// bag is a folder or a file: SQLite or MCAP, plain or Zstandard-compressed per file or message. An MCAP file contains
-/// messages of ROS 2 (cdr) or ROS 1, in plain, LZ4 or Zstandard chunks, with or without index.
+/// bag is a folder or a file, in SQLite or MCAP format, plain or Zstandard-compressed per file or message. An MCAP file
+/// contains messages of ROS 2 (cdr) or ROS 1, in plain, LZ4 or Zstandard chunks, with or without index.
 ///
-/// The units of the IMU are checked against gravity. Specific force in g at rest, as from Livox drivers, is converted,
-/// with a note. A duplicate message (equal stamp and content) is read once. Single faulty messages are skipped with a
-/// note (left_out.hpp).
+/// The importer checks the units of the IMU against gravity, and converts a specific force in g with a note. A
+/// duplicate message (equal stamp and content) is read once. Single faulty messages are skipped with a note
+/// (left_out.hpp).
 ///
-/// If the caller chooses no topics, clouds in the frames "world", "map" or "odom" are skipped, because they are not raw
-/// sensor data. Lidars whose points have times then come first.
+/// If the caller chooses no topics, point clouds in the frames "world", "map" or "odom" are skipped, because they are
+/// not raw sensor data. If the caller chooses no topics, lidars whose points have times come first.
 ///
 /// Sensor poses that the caller does not set come from /tf_static: in "body" or "base_link", or relative to another
-/// sensor. With `sweeps.scratch`, memory contains only one sweep, the IMU data (81 bytes per sample) and some bytes per
-/// message; without it, all points.
+/// sensor. With `sweeps.scratch`, memory contains only one sweep and the IMU data; otherwise, memory contains all
+/// points.
 ///
 /// Throws BadInput with file and location for damaged or truncated data, a missing topic, a wrong type, more than 5 %
 /// of faulty messages, or a cycle of frames.

@@ -12,12 +12,8 @@ namespace tumble::scenarios {
 /// The messages of livox_ros_driver, livox_ros_driver2 and livox_interfaces have the same fields.
 bool is_livox_type(const std::string& type);
 
-/// Each field must contain one number per point. Throws BadInput, with a message that starts with `where`, for
-/// big-endian numbers or a layout that contradicts the size of the data.
 Cloud cloud_of(const ros::PointCloud2& message, const std::string& where);
 
-/// Returns the columns x y z reflectivity tag line, and offset_time_ns since the header's stamp. Throws BadInput, with
-/// a message that starts with `where`, if the header states another number of points.
 Cloud cloud_of(const ros::LivoxCustomMsg& message, const std::string& where);
 
 /// Point clouds with equal digests are duplicate messages.

@@ -66,7 +66,6 @@ sim::ImuRecord read_imu(const OpenedBag& bag, SensorMountings& places, const std
   const std::string lost = left_out.note(imu.time_ns.size());
   const AccelUnit accel_unit = take_in_g(topic, reading, imu, notes);
   finish_readings(where, accel_unit, imu);
-  // ROS defines rates in rad/s, but not every driver complies.
   const std::string evened = even_out_stamps(imu);
   const std::string units = rates_text(where, imu, reading.gyro_unit);
   for (const std::string& remark :

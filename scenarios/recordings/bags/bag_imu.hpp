@@ -10,8 +10,7 @@
 
 namespace tumble::scenarios {
 
-/// A topic without messages gives no readings, or BadInput if the caller chose the topics. Throws BadInput for
-/// implausible units, or if too many messages are faulty.
+/// A topic without messages gives no readings, or BadInput if the caller chose the topics.
 sim::ImuRecord read_imu(const OpenedBag& bag, SensorMountings& places, const std::string& topic,
                         const BagReading& reading, std::vector<std::string>& notes);
 

@@ -8,25 +8,24 @@ namespace tumble::scenarios {
 
 enum class PointQuantity { x_m, y_m, z_m, intensity, ring, time };
 
-/// Values of integer fields are rounded and limited to the range of the type.
 enum class NumberType { uint8, uint16, uint32, float32, float64 };
 
 struct PointColumn {
   std::string name;
   PointQuantity quantity;
   NumberType type;
-  double scale = 1.0;     ///< for intensity (0 to 1 in recordings): factor; for time: units per ns (1e-9: s)
-  bool absolute = false;  ///< time since 1970, instead of since the sweep's start
+  double scale = 1.0;     ///< for time: units per ns
+  bool absolute = false;  ///< since 1970, not the sweep's start
 };
 
 struct SweepLayout {
-  /// Fields of a sensor_msgs/PointCloud2, in order, without gaps. Time fields are omitted if the points have no times.
+  /// Fields of a sensor_msgs/PointCloud2, in order and without gaps; time fields are omitted if the points have no
+  /// times.
   std::vector<PointColumn> columns;
-  bool livox = false;          ///< writes a CustomMsg of Livox drivers, with times in ns, instead of `columns`
+  bool livox = false;          ///< CustomMsg instead of `columns`
   bool in_time_order = false;  ///< true: points sorted by time
 };
 
-/// Returns the columns of Velodyne's driver, x y z intensity ring time, and the time in whole nanoseconds, offset_ns.
 SweepLayout own_sweep_layout();
 SweepLayout livox_sweep_layout();
 
@@ -34,7 +33,7 @@ struct ReaderNames {
   std::string imu_topic, imu_frame;
   std::string points_topic, lidar_frame;
   std::string body_frame;
-  std::string fixed_frame;  ///< parent frame of the body in /tf_static; empty: none
+  std::string fixed_frame;  ///< parent of the body; empty: none
 };
 
 }  // namespace tumble::scenarios

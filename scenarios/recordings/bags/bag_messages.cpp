@@ -18,7 +18,7 @@ std::array<double, kCount> array_of(const Vector& vector) {
   return out;
 }
 
-/// The variance of a sample is the squared noise density times the output rate.
+/// The variance of an IMU sample is the squared noise density times the output rate.
 std::array<double, 9> covariance_of(double density_sqrt_hz, std::int64_t period_ns) {
   const double variance = density_sqrt_hz * density_sqrt_hz / (static_cast<double>(period_ns) * 1e-9);
   return {variance, 0, 0, 0, variance, 0, 0, 0, variance};

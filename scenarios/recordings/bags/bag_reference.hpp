@@ -7,9 +7,8 @@
 
 namespace tumble::scenarios {
 
-/// Uses the poses of the topic `reading.reference_topic` as the truth. The user chooses the frame of the poses; by
-/// default, it is the child_frame_id of the messages, if the bag contains its transform. Throws BadInput, with topic
-/// and message, if the poses are invalid.
+/// The poses of the topic `reading.reference_topic` replace the truth. By default, the frame of the reference poses is
+/// the child_frame_id of the messages, if the bag contains its transform.
 void attach_reference(const OpenedBag& bag, const SensorMountings& places, const BagReading& reading, Imported& out);
 
 }  // namespace tumble::scenarios

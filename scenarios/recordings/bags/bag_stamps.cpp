@@ -17,9 +17,10 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr std::int64_t kSaid_ns = 1'000'000;
-/// A header stamp that is later than its record stamp by more than 10 ms comes from another clock.
+/// A header stamp that is more than 10 ms later than its record stamp comes from another clock.
 constexpr std::int64_t kAhead_ns = 10'000'000;
-/// If the delay from header to record exceeds 0.5 s, the clocks drift or the header stamps are not measurement times.
+/// If the delay from header to record stamps varies by more than 0.5 s, the clocks drift or the header stamps are not
+/// measurement times.
 constexpr std::int64_t kSteady_ns = 500'000'000;
 
 std::string seconds_text(std::int64_t time_ns) {

@@ -13,24 +13,20 @@ namespace tumble::scenarios {
 
 std::int64_t stamp_of(const ros::Header& header);
 
-/// Each message of a topic has a header stamp (time of measurement) and a record stamp (time of recording).
 class BagStamps {
  public:
   explicit BagStamps(StampSource source) : source_(source) {}
 
-  /// Throws BadInput, with a message that starts with `where`, for a record stamp that a header cannot store.
   std::int64_t chosen(std::int64_t header_ns, std::int64_t record_ns, const std::string& where) const;
   void add(std::int64_t header_ns, std::int64_t record_ns);
   const std::vector<std::int64_t>& times_ns() const { return source_ == StampSource::header ? header_ns_ : record_ns_; }
   std::string disorder(std::size_t k) const;
 
-  /// A message with the header stamp of the previous message is a duplicate if also the contents are equal.
   bool repeats(std::int64_t header_ns) const {
     return source_ == StampSource::header && !header_ns_.empty() && header_ns_.back() == header_ns;
   }
 
-  /// Describes the delay from header stamps to record stamps, over the messages in order; empty if it is always below
-  /// one millisecond. The text is a warning if the delay reaches a second, is negative, or changes.
+  /// Describes the delay from header stamps to record stamps; empty if the delay is always below one millisecond.
   std::string remark() const;
   /// Returns true if header stamps are later than record stamps, or at least a second earlier.
   bool other_clock() const;

@@ -20,12 +20,11 @@ struct BagTopic {
 class BagWriter {
  public:
   virtual ~BagWriter() = default;
-  /// Registers these topics before all other topics, in this order. Returns false if this type of bag registers each
-  /// topic with its first message, so the order can differ.
+  /// Returns false if a bag of this format declares each topic with its first message, so that the order can differ.
   virtual bool begin_with(const std::vector<BagTopic>& topics) = 0;
-  /// Messages must be in order of time, and each topic has one message type. Throws BadInput if writing fails.
+  /// Messages must be in order of time, and each topic has one message type.
   virtual void write(const std::string& topic, std::int64_t stamp_ns, const ros::Message& message) = 0;
-  /// The destructor removes an incomplete bag. Throws BadInput if writing fails.
+  /// The destructor removes an incomplete bag.
   virtual void finish() = 0;
 };
 
@@ -33,14 +32,13 @@ class BagReader {
  public:
   virtual ~BagReader() = default;
   virtual std::vector<BagTopic> topics() = 0;
-  /// `record_ns` is the time of the message's record [ns since 1970].
+  /// `record_ns` is the record stamp of the message [ns since 1970].
   using Take = std::function<void(ros::Bytes&, std::int64_t record_ns)>;
-  /// Calls `take` for each message of the topic, in the order of recording. Throws BadInput if the bag is damaged.
   virtual void read(const std::string& topic, const Take& take) = 0;
   /// Returns true for messages in CDR encoding, and false for the encoding of ROS 1.
   virtual bool cdr(const std::string& topic) const = 0;
 
-  std::vector<std::string> notes;  ///< remarks for the user, for example on files that the bag's metadata does not list
+  std::vector<std::string> notes;  ///< remarks for the user
 };
 
 inline constexpr const char* kFilesSorted =
@@ -50,14 +48,11 @@ std::unique_ptr<BagWriter> make_ros1_writer(const std::filesystem::path& file);
 std::unique_ptr<BagWriter> make_ros2_writer(const std::filesystem::path& folder);
 std::unique_ptr<BagWriter> make_mcap_writer(const std::filesystem::path& file);
 std::unique_ptr<BagWriter> make_ros2_mcap_writer(const std::filesystem::path& folder);
-/// The path is a file, or a folder of files that are parts of one recording, whose messages are merged by time.
 std::unique_ptr<BagReader> open_ros1_bag(const std::filesystem::path& path);
 std::unique_ptr<BagReader> open_ros2_bag(const std::filesystem::path& path);
-/// Opens several MCAP files as one bag, in the order of their first messages.
 std::unique_ptr<BagReader> open_mcap(const std::vector<std::filesystem::path>& files);
 
-/// Checks every length, position and offset in the bag against the file size, because librosbag does not. Throws
-/// BadInput, with the offset in the file, if a check fails.
+/// Checks every length, position and offset in the ROS 1 bag against the file size, because librosbag does not.
 void check_ros1_bag(const std::filesystem::path& file);
 
 }  // namespace tumble::scenarios

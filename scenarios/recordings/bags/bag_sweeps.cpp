@@ -29,7 +29,8 @@ void read_clouds(const OpenedBag& bag, const std::string& topic, LeftOut& left_o
   bag.read<ros::PointCloud2>(topic, take, &left_out);
 }
 
-/// Points later than their own record cannot have been measured, so their times do not count from the stamp.
+/// A point cannot be measured after its message was recorded, so later point times indicate that the times do not count
+/// from the stamp.
 void note_points_to_come(const std::string& topic, const BuiltSweeps& built, const std::vector<std::int64_t>& records,
                          std::vector<std::string>& notes) {
   std::vector<double> ahead_s;
@@ -70,7 +71,7 @@ CloudHeaders read_headers(const OpenedBag& bag, const std::string& topic, const 
   std::vector<std::size_t> numbers;
   read_clouds(bag, topic, out.left_out, [&](const auto& message, const MessageOrigin& origin) {
     out.frame = without_slash(message.header.frame_id);
-    if (out.left_out_as_map(reading)) return;  // clouds of a map may have equal stamps
+    if (out.left_out_as_map(reading)) return;  // clouds of a map have equal stamps
     out.starts.resize(origin.number + 1);
     const std::int64_t header_ns = stamp_of(message.header);
     const std::uint64_t now = content_of(message);

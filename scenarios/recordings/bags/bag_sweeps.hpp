@@ -13,18 +13,15 @@
 
 namespace tumble::scenarios {
 
-/// CloudHeaders comes from a first pass over the messages, without points.
 struct CloudHeaders {
   std::vector<std::int64_t> stamps;  ///< sweep starts, in order
-  std::int64_t period_ns = 0;        ///< period from the user, or the median step of the stamps
+  std::int64_t period_ns = 0;        ///< from the user, or median step
   /// Start of the sweep in each message; empty for duplicate and skipped messages.
   std::vector<std::optional<std::int64_t>> starts;
   LeftOut left_out{"clouds"};
   std::string remark;
-  bool follow_records =
-      true;  ///< true: record stamps seem to use the headers' clock, and are later than the header stamps
+  bool follow_records = true;  ///< record stamps are later, same clock
   std::string frame;
-  /// Unless the caller chose the topic, clouds in a world frame are a map or transformed points, not raw sensor data.
   bool left_out_as_map(const BagReading& reading) const {
     return reading.lidar_topics.empty() && (frame == "world" || frame == "map" || frame == "odom");
   }

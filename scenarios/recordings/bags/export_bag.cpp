@@ -19,12 +19,12 @@ namespace {
 constexpr std::int64_t kTruthStep_ns = 5000000, kClockStep_ns = 10000000;
 constexpr const char *kWorld = "world", *kBody = "body";
 
-/// `time_ns` is the time at which a subscriber would receive the item. A sweep is received at its end.
+/// `time_ns` is the time at which a subscriber would receive the message, which is the end of a sweep.
 struct Event {
   enum Kind { imu, sweep, truth, pose, cloud };
   std::int64_t time_ns;
   Kind kind;
-  std::size_t of, index;  ///< index of the sensor or track, and index of the reading
+  std::size_t of, index;  ///< sensor or track, and reading
 };
 
 void add_truth(const StoredTruth& truth, std::vector<Event>& events) {
@@ -192,7 +192,7 @@ class Export {
         return write_pose(pose_of(*writing_.truth, event.index), "truth", body_, stamp);
       case Event::pose: {
         const BagTrack& track = writing_.tracks[event.of];
-        // The truth moves the frame of the body; without a truth, the first track does.
+        // The truth, or else the first track, moves the frame of the body in /tf.
         const bool body = event.of == 0 && writing_.truth == nullptr;
         return write_pose(track.poses[event.index], track.name, body ? body_ : track.name, stamp);
       }
@@ -222,7 +222,7 @@ class Export {
   std::int64_t origin_ns_;
   std::vector<SensorNames> imus_, lidars_;
   std::string body_;
-  std::optional<std::int64_t> tick_ns_;  ///< time of the latest message of the clock
+  std::optional<std::int64_t> tick_ns_;  ///< latest clock message
 };
 
 void write_bag(const sim::Sensors& sensors, const BagWriting& writing, BagWriter& bag) {

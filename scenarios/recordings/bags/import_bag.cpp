@@ -61,7 +61,6 @@ void note_unread_clouds(const OpenedBag& bag, std::vector<std::string>& notes) {
   }
 }
 
-/// Sensors whose recorded times do not overlap have no common clock.
 void require_one_clock(const sim::Sensors& sensors, bool by_headers, const std::filesystem::path& path) {
   struct Span {
     std::string name;
@@ -154,7 +153,8 @@ void add_lidars(const OpenedBag& bag, SensorMountings& places, const BagReading&
   };
   const std::vector<std::string> topics = bag.chosen(reading.lidar_topics, is_cloud_type, kCloud);
   TopicsOfKind(topics, chosen, reading.leave_out_topics, "--lidar-topic").read(out.notes, read);
-  // Mapping methods use the first lidar. Topics of depth cameras, whose points have no times, may be first in the bag.
+  // Lidars whose points have times come first, because mapping uses the first lidar and depth cameras have no point
+  // times.
   const auto is_timed = [](const auto& each) { return has_timed_points(each.second.lidar); };
   if (!chosen) std::stable_partition(lidars.begin(), lidars.end(), is_timed);
   if (lidars.size() > 1 && !chosen) {

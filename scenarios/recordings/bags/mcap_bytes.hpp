@@ -16,7 +16,7 @@
 namespace tumble::scenarios::mcap {
 
 inline constexpr std::string_view kMagic("\x89MCAP0\r\n", 8);
-inline constexpr std::uint64_t kHeadBytes = 9;  ///< bytes of a record's kind and length
+inline constexpr std::uint64_t kHeadBytes = 9;
 
 struct BadRecord : std::runtime_error {
   using std::runtime_error::runtime_error;
@@ -90,7 +90,6 @@ std::string to_bytes(Record record, std::string_view tail = {}) {
   return std::move(out.bytes.append(content.bytes).append(tail));
 }
 
-/// Additional fields of later versions of MCAP are ignored. Throws BadRecord if the bytes end before the last field.
 template <class Record>
 Record from_bytes(std::string_view content) {
   Record record;

@@ -153,7 +153,6 @@ void File::read_summary() {
   take_indexed(std::move(chunks));
 }
 
-/// Each offset in the summary must point to a group of records of one kind.
 void File::check_groups(std::string_view summary, std::string_view groups) const {
   const std::uint64_t groups_at = footer_.summary_offset_start;
   walk(groups, groups_at, [&](const Record& record) {
@@ -197,15 +196,14 @@ void File::take_indexed(std::vector<ChunkIndex> chunks) {
     }
     free = at + each.chunk_length + each.message_index_length;
     for (const auto& [channel, place] : each.message_index_offsets) {
-      if (!channels_.contains(channel)) return segments_.clear();  // the summary lacks the channels: scan the file
+      if (!channels_.contains(channel)) return segments_.clear();  // scan the file if channels are missing
       if (place < at + each.chunk_length || place >= free)
         fail(place,
              fmt::format("a message index must follow its chunk at byte {}, but does not: the file is damaged", at));
     }
     segments_.push_back({at, each.chunk_length, each.message_start_time, each.message_end_time, each});
   }
-  // The chunk index lacks messages outside chunks. Without statistics, such messages cannot be excluded, so the file is
-  // scanned.
+  // The chunk index lacks messages outside chunks, so without statistics, the whole MCAP file is scanned.
   if (!statistics_ || channels_.empty()) segments_.clear();
 }
 
@@ -259,7 +257,7 @@ std::optional<MessageIndex> File::index_of(const Segment& segment, std::uint16_t
 }
 
 ChunkIndex File::head_of_chunk(std::uint64_t at, std::uint64_t bytes, std::uint32_t* crc) {
-  constexpr std::uint64_t kMost = kHeadBytes + 8 + 8 + 8 + 4 + 4 + 64 + 8;  // includes the name of the compression
+  constexpr std::uint64_t kMost = kHeadBytes + 8 + 8 + 8 + 4 + 4 + 64 + 8;
   std::string head = text(at, std::min(bytes, kMost));
   if (head.size() < kHeadBytes || static_cast<std::uint8_t>(head[0]) != kChunk)
     fail(at, "the chunk index refers to a record that is not a chunk: the file is damaged");

@@ -13,13 +13,13 @@
 #include "scenarios/recordings/bags/mcap_bytes.hpp"
 #include "scenarios/recordings/bags/mcap_records.hpp"
 
-/// The reader checks every length, position, time and checksum before use.
+/// The MCAP reader checks every length, position, time and checksum before use.
 namespace tumble::scenarios::mcap {
 
 struct Segment {
-  std::uint64_t at = 0, bytes = 0;  ///< position in the file, including the heads of records
+  std::uint64_t at = 0, bytes = 0;  ///< in the file, with record heads
   std::uint64_t first_ns = 0, last_ns = 0;
-  std::optional<ChunkIndex> chunk;  ///< set for a chunk; has an index if the file has a summary
+  std::optional<ChunkIndex> chunk;  ///< indexed if the file has a summary
   bool may_hold(std::uint16_t channel) const {
     return !chunk || chunk->message_index_offsets.empty() || chunk->message_index_offsets.contains(channel);
   }
@@ -33,10 +33,9 @@ struct Record {
 
 class File {
  public:
-  /// Reads the summary; without a summary, scans the file. Verifies the checksum of the data section, if present. The
-  /// cost is O(file size); memory contains some MiB and the summary. Throws BadInput with the offset if the file is not
-  /// MCAP, is truncated or damaged, has a compression other than none, lz4 or zstd, or has a chunk or record larger
-  /// than 256 MiB.
+  /// Reads the summary of the MCAP file; without a summary, scans the file. The cost is O(file size); memory contains
+  /// some MiB and the summary. Throws BadInput with the offset if the file is damaged, has a compression other than
+  /// none, lz4 or zstd, or has a chunk or record larger than 256 MiB.
   explicit File(const std::filesystem::path& path);
 
   const std::map<std::uint16_t, Schema>& schemas() const { return schemas_; }

@@ -26,7 +26,6 @@ bool is_ros1(const Channel& channel, const Schema& schema) {
   return channel.message_encoding == "ros1" && schema.encoding == "ros1msg";
 }
 
-/// Memory contains one chunk, and the chunks that overlap it in time.
 class TopicWalk {
  public:
   TopicWalk(File& file, std::set<std::uint16_t> channels, const BagReader::Take& take)
@@ -113,7 +112,7 @@ class TopicWalk {
   File& file_;
   std::set<std::uint16_t> channels_;
   const BagReader::Take& take_;
-  std::multimap<std::uint64_t, ros::Bytes> waiting_;  ///< messages with equal times keep the order of the file
+  std::multimap<std::uint64_t, ros::Bytes> waiting_;  ///< equal times keep file order
   std::uint64_t waiting_bytes_ = 0;
   std::map<std::uint16_t, std::uint64_t> counts_;
 };

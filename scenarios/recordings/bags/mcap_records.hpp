@@ -7,9 +7,7 @@
 #include <utility>
 #include <vector>
 
-/// The fields of MCAP records have the order of the specification (mcap.dev/spec, version 0). Numbers are
-/// little-endian. A text is preceded by its length (32 bits); a list or map is preceded by its size in bytes. A record
-/// consists of its kind (8 bits), its length (64 bits) and its content.
+/// MCAP records have the field order of the specification (mcap.dev/spec, version 0), with little-endian numbers.
 namespace tumble::scenarios::mcap {
 
 enum Op : std::uint8_t {
@@ -37,7 +35,7 @@ struct Header {
 struct Footer {
   static constexpr Op op = kFooter;
   std::uint64_t summary_start = 0, summary_offset_start = 0;  ///< 0: the section is missing
-  std::uint32_t summary_crc = 0;  ///< CRC from the summary's start to this field; 0: not stated
+  std::uint32_t summary_crc = 0;                              ///< CRC up to this field; 0: none
 };
 struct Schema {
   static constexpr Op op = kSchema;
@@ -68,7 +66,7 @@ struct Chunk {
 struct MessageIndex {
   static constexpr Op op = kMessageIndex;
   std::uint16_t channel_id = 0;
-  std::vector<std::pair<std::uint64_t, std::uint64_t>> entries;  ///< log time, and offset in the uncompressed chunk
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> entries;  ///< log time, offset in uncompressed chunk
 };
 struct ChunkIndex {
   static constexpr Op op = kChunkIndex;
@@ -93,7 +91,7 @@ struct SummaryOffset {
 };
 struct DataEnd {
   static constexpr Op op = kDataEnd;
-  std::uint32_t data_section_crc = 0;  ///< CRC of all bytes before this record; 0: not stated
+  std::uint32_t data_section_crc = 0;  ///< CRC of all earlier bytes; 0: none
 };
 
 template <class Archive>

@@ -63,7 +63,7 @@ void File::scan() {
       loose->bytes = at + bytes - loose->at;
       if (op == kMessage) cover(*loose, empty, as<Message>(record, at).log_time);
     } else {
-      close();  // an index, attachment, metadata, or a record of a later version
+      close();  // record without messages
     }
     at += bytes;
   }

@@ -44,7 +44,6 @@ struct OpenedBag {
     return place + ": message " + std::to_string(message) + " of " + name;
   }
 
-  /// Returns the topics in `names`, or all topics of a suitable type if `names` is empty.
   std::vector<std::string> chosen(const std::vector<std::string>& names, bool (*fits)(const std::string& type),
                                   const std::string& wanted) const {
     std::vector<std::string> out = names;

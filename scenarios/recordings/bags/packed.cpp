@@ -57,7 +57,7 @@ std::string packed_lz4(std::string_view plain) {
   how.frameInfo.blockSizeID = LZ4F_max4MB;
   std::string out(LZ4F_compressFrameBound(plain.size(), &how), '\0');
   const std::size_t bytes = LZ4F_compressFrame(out.data(), out.size(), plain.data(), plain.size(), &how);
-  if (LZ4F_isError(bytes) != 0) throw std::bad_alloc();  // the buffer is large enough: only memory can fail
+  if (LZ4F_isError(bytes) != 0) throw std::bad_alloc();  // only memory can fail
   out.resize(bytes);
   return out;
 }

@@ -7,12 +7,9 @@
 
 namespace tumble::scenarios {
 
-/// The blocks of the LZ4 frame are independent, have at most 4 MiB, and have no checksums.
 std::string packed_lz4(std::string_view plain);
 
-/// Decompresses any LZ4 frame, or a series of Zstandard frames, to `bytes` bytes. Memory grows with the decompressed
-/// data, so a wrong size in the file cannot exhaust the memory. Throws BadInput, without a location, if the data are
-/// damaged or have another size.
+/// Memory grows with the decompressed data, so a wrong size in the file cannot exhaust the memory.
 std::string unpacked_lz4(std::string_view packed, std::uint64_t bytes);
 std::string unpacked_zstd(std::string_view packed, std::uint64_t bytes);
 

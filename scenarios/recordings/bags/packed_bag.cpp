@@ -23,7 +23,7 @@ namespace {
 
 using std::filesystem::path;
 
-/// Sensor messages compress by a factor of a few dozen at most.
+/// Messages of sensors compress by a factor of a few dozen at most.
 constexpr std::uint64_t most_of(std::uint64_t packed_bytes) {
   constexpr std::uint64_t kAlways = 64u << 20, kBagRatioMax = 200;
   return kAlways + kBagRatioMax * packed_bytes;

@@ -10,15 +10,13 @@
 
 namespace tumble::scenarios {
 
-/// Decompresses files such as "bag_0.db3.zstd" to a temporary folder, and calls `open` with the new paths. The folder
-/// is removed with the reader, even if a signal ends the program. Throws BadInput with the file name if the data are
-/// damaged, disk space is missing, or the output exceeds both 64 MiB and 200 times the file's size.
+/// Decompresses files such as "bag_0.db3.zstd" to a temporary folder, which is removed with the reader, even if a
+/// signal ends the program. Throws BadInput if the data are damaged, disk space is missing, or the output exceeds both
+/// 64 MiB and 200 times the file's size.
 std::unique_ptr<BagReader> open_packed_files(
     const std::vector<std::filesystem::path>& files,
     const std::function<std::unique_ptr<BagReader>(const std::vector<std::filesystem::path>&)>& open);
 
-/// Wraps a reader whose messages are Zstandard frames. A decompressed message may have at most 64 MiB and 200 times its
-/// compressed size. Reading a damaged message throws BadInput, with a message that starts with `place`.
 std::unique_ptr<BagReader> with_packed_messages(std::unique_ptr<BagReader> bag, std::string place);
 
 }  // namespace tumble::scenarios

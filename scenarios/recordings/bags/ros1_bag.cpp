@@ -117,7 +117,7 @@ TypedBytes typed(const ros::Odometry& message) {
 TypedBytes typed(const ros::TransformStamped& message) {
   return typed_as<geometry_msgs::TransformStamped>(message);
 }
-// The build lacks headers of these three message types, so this file contains the checksums of their definitions.
+// The build lacks headers of three message types, so their MD5 checksums are constants.
 TypedBytes typed(const ros::TFMessage& message) {
   const std::string inner = ::ros::message_traits::Definition<geometry_msgs::TransformStamped>::value();
   return {ros::type_of(message), "94810edda583a504dfda3829e70d7eec",
@@ -159,7 +159,6 @@ class Ros1BagWriter : public BagWriter {
   }
 
  private:
-  /// The last message of a latched topic is sent to new subscribers.
   boost::shared_ptr<::ros::M_string> connection_of(const std::string& topic, const TypedBytes& message) {
     if (topic != "/tf_static") return nullptr;
     return boost::make_shared<::ros::M_string>(::ros::M_string{{"topic", topic},
@@ -179,8 +178,8 @@ class Ros1BagWriter : public BagWriter {
     }
   }
 
-  /// On a full disk, an exception in the destructor of librosbag's bag would end the program. If closing fails here,
-  /// the bag object stays in memory until the process ends.
+  /// On a full disk, an exception in the destructor of librosbag's bag would end the program, so the bag object stays
+  /// in memory.
   void give_up() {
     if (!bag_) return;
     const QuietBag quiet;
@@ -197,7 +196,6 @@ class Ros1BagWriter : public BagWriter {
   std::unique_ptr<rosbag::Bag> bag_;
 };
 
-/// Two bag files that are more than a minute apart in time are separate recordings.
 constexpr double kPartsApart_s = 60.0;
 
 class Ros1BagReader : public BagReader {
@@ -287,8 +285,7 @@ class Ros1BagReader : public BagReader {
   void open_unpacked(const std::filesystem::path& file) {
     const std::filesystem::path folder = std::filesystem::temp_directory_path();
     require_room(file, folder);
-    // The decompressed file is unlinked once it is open, so it disappears with the reader or the process. Until then, a
-    // signal handler removes it.
+    // The decompressed file is unlinked once it is open, so it disappears with the reader or the process.
     const OutputFile unpacked(folder / "tumble_unpacked.bag");
     copy_ros1_bag(file, unpacked.unfinished(), [](Ros1Chunk& chunk) {
       if (chunk.compression == "lz4") unpack_lz4(chunk);
@@ -302,7 +299,6 @@ class Ros1BagReader : public BagReader {
     open(unpacked.unfinished());
   }
 
-  /// A full disk affects other programs, so the free disk space is checked first.
   static void require_room(const std::filesystem::path& file, const std::filesystem::path& folder) {
     const std::uint64_t needed = bytes_unpacked(file), free = std::filesystem::space(folder).available;
     if (needed <= free) return;

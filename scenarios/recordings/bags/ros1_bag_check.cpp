@@ -154,7 +154,7 @@ class Walk {
     if (!record.fields.contains("topic")) fail(record.at, "a connection record names no topic: the file is damaged");
     if (record.data_bytes > kRecordHeaderMax)
       fail(record.at, "a connection record is larger than 1 MiB, which is the maximum");
-    fields(record.at, text(record.data_at, record.data_bytes));  // type information has the form of a header
+    fields(record.at, text(record.data_at, record.data_bytes));  // has the form of a header
   }
 
   void chunk(const CheckedRecord& record) {
@@ -222,10 +222,9 @@ class Walk {
   std::ifstream stream_;
   std::uint64_t bytes_ = 0;
   std::set<std::uint64_t> chunks_;
-  std::map<std::uint64_t, std::uint64_t> infos_;  ///< position of a record, position of the chunk that it refers to
+  std::map<std::uint64_t, std::uint64_t> infos_;  ///< position of record, position of chunk
   std::set<std::uint32_t> connections_;
-  std::optional<std::set<std::uint64_t>>
-      messages_;  ///< offsets of the messages in the preceding chunk; empty: compressed chunk
+  std::optional<std::set<std::uint64_t>> messages_;  ///< message offsets; empty: compressed chunk
   std::uint32_t chunk_bytes_ = 0;
 };
 

@@ -3,7 +3,6 @@
 
 #include <cstdint>
 
-/// The values of `Op` are those of the field "op" in the header of a ROS 1 record.
 namespace tumble::scenarios::ros1 {
 
 enum Op : std::uint8_t { kMessage = 2, kFile = 3, kIndex = 4, kChunk = 5, kChunkInfo = 6, kConnection = 7 };

@@ -107,7 +107,6 @@ class Ros2BagWriter : public BagWriter {
     return static_cast<std::int64_t>(place) + 1;
   }
 
-  /// The stored definition lets programs without ROS read the bag. Readers accept an empty type hash.
   void define(const std::string& type) {
     SQLite::Statement statement(
         *database_,
@@ -166,7 +165,6 @@ std::string packed_by(const YAML::Node& root, const path& metadata) {
   return mode;
 }
 
-/// A file may be missing in metadata.yaml if its name differs from a listed file only by a number.
 void add_unlisted(const path& folder, StoredBag& bag) {
   const auto stem = [](const path& file) { return stem_of(file.extension() == ".zstd" ? file.stem() : file); };
   const path& listed = bag.files.front();
@@ -185,7 +183,6 @@ void add_unlisted(const path& folder, StoredBag& bag) {
   bag.files.insert(bag.files.end(), found.begin(), found.end());
 }
 
-/// Without metadata.yaml, files belong to one bag only if their names differ only by a number.
 StoredBag parts_in(const path& folder) {
   std::set<path> parts;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
@@ -223,7 +220,7 @@ StoredBag storage_of(const path& bag) {
               fmt::format("the storage_identifier in metadata.yaml is '{}'; it must be sqlite3 or mcap", out.kind));
     out.packed = packed_by(root, metadata);
     for (const YAML::Node& each : root["relative_file_paths"]) {
-      const path name = path(each.as<std::string>()).filename();  // only files within the folder are read
+      const path name = path(each.as<std::string>()).filename();  // only files within the folder
       out.files.push_back(bag / name);
       if (!std::filesystem::exists(out.files.back()))
         fail_at(out.files.back(),

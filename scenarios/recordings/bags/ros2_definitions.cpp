@@ -13,7 +13,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// The definitions are those of github.com/ros2/common_interfaces and rcl_interfaces, one type and name per line.
 const std::map<std::string, std::string>& definitions() {
   static const std::map<std::string, std::string> all = {
       {"builtin_interfaces/Time", "int32 sec\nuint32 nanosec\n"},
@@ -89,8 +88,7 @@ std::string ros2_definition(const std::string& type) {
 std::string ros2_qos(const std::string& topic) {
   if (topic != "/tf_static") return "";
   const std::string forever = "\n    sec: 9223372036\n    nsec: 854775807\n";
-  // These numbers of rmw mean: history keep last, reliability reliable, durability transient local, liveliness
-  // automatic.
+  // The numbers mean in rmw: history keep last, reliability reliable, durability transient local, liveliness automatic.
   return "- history: 1\n  depth: 1\n  reliability: 1\n  durability: 1\n  deadline:" + forever +
          "  lifespan:" + forever + "  liveliness: 1\n  liveliness_lease_duration:" + forever +
          "  avoid_ros_namespace_conventions: false";

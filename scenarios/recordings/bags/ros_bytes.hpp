@@ -13,7 +13,6 @@
 
 namespace tumble::scenarios::ros {
 
-/// Decoding throws BadMessage if the bytes are damaged.
 template <class Message>
 Bytes to_ros1(Message message) {
   Ros1Writer writer;

@@ -7,8 +7,8 @@
 
 #include "scenarios/recordings/bags/ros_messages.hpp"
 
-/// The fields of each message type have the order of the message definition. An archive (encoder or decoder) must have
-/// the following members:
+/// The fields of each message type have the order of the message definition. An archive (encoder or decoder) has these
+/// members:
 /// - operator()(uint8 | uint32 | uint64 | float | text | array of doubles) handles one field.
 /// - ros1_only(uint32) handles a field that ROS 2 removed.
 /// - count(number of entries, minimum bytes of an entry) handles the length before a list, and returns the stored

@@ -55,7 +55,7 @@ void SensorMountings::place(const std::string& topic, const std::string& frame, 
 
 void SensorMountings::mounting_in_body(const std::string& topic, const Eigen::Isometry3d& stated, bool given,
                                        Eigen::Isometry3d& T_BA, std::vector<std::string>& notes) const {
-  constexpr double kSame = 1e-3;  // two poses are equal within this difference [m], and approximately [rad]
+  constexpr double kSame = 1e-3;  // tolerance [m] and [rad]
   const std::string body = frames_.body();
   if (!given) {
     T_BA = stated;

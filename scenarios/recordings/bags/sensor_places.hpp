@@ -10,16 +10,15 @@
 
 namespace tumble::scenarios {
 
-/// Converts "/imu/data" to imu_data and "/lidar/points" to lidar.
 std::string sensor_name(std::string topic);
 
 class SensorMountings {
  public:
   SensorMountings(StaticFrames frames, std::string where) : frames_(std::move(frames)), where_(std::move(where)) {}
 
-  /// Sets the mounting T_BA of a sensor from /tf_static. If the user has set T_BA (`given`, or not the identity), only
-  /// reports a difference. Without a body frame in the bag, the mounting is relative to the first earlier sensor that
-  /// /tf_static connects to this sensor.
+  /// Sets the mounting T_BA of a sensor A from /tf_static, unless the user has set it; a difference is then reported.
+  /// Without a body frame in the bag, the mounting is relative to the first earlier sensor that /tf_static connects to
+  /// this sensor.
   void place(const std::string& topic, const std::string& frame, const char* option, bool given,
              Eigen::Isometry3d& T_BA, std::vector<std::string>& notes);
 

@@ -18,20 +18,16 @@ class StaticFrames {
  public:
   /// The last transform of a repeated frame is used; a changed parent gives a note. A transform is invalid if it has
   /// non-finite values, a translation above 1 km, its own frame as parent, or a quaternion whose norm differs from 1 by
-  /// more than 1 %. An invalid transform gives a note with `where`, and an exception only when it is used, because bags
-  /// contain frames unrelated to the sensors.
+  /// more than 1 %. An invalid transform causes an exception only when it is used, because bags contain frames
+  /// unrelated to the sensors.
   void add(const ros::TransformStamped& transform, const std::string& where);
 
-  /// Throws BadInput, with a message that starts with `where`, if the frames form a cycle.
   void require_no_cycle(const std::string& where) const;
 
   const std::vector<std::string>& remarks() const { return remarks_; }
 
-  /// Returns "body" or else "base_link" if the frame exists, or else an empty text.
   std::string body() const;
 
-  /// Returns the pose T_AB of frame B in frame A; empty if the tree does not connect the frames. Throws BadInput, with
-  /// a message that starts with `where`, if a transform between the frames is invalid or the frames form a cycle.
   std::optional<Eigen::Isometry3d> pose(const std::string& frame_A, const std::string& frame_B,
                                         const std::string& where) const;
 
@@ -39,7 +35,7 @@ class StaticFrames {
   struct FrameLink {
     std::string parent;
     Eigen::Isometry3d T_parent;
-    std::string problem;  ///< why the transform is invalid; empty if valid
+    std::string problem;  ///< empty if valid
   };
   std::vector<FrameLink> path_to_root(const std::string& frame, const std::string& where) const;
   std::map<std::string, FrameLink> frames_;

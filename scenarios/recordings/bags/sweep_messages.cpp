@@ -37,7 +37,6 @@ Number as(double value) {
   }
 }
 
-/// A time since 1970 has a resolution of 0.25 us in a double.
 double value_of(const sim::LidarRecord& lidar, std::size_t point, const PointColumn& column, std::int64_t start_ns) {
   switch (column.quantity) {
     case PointQuantity::x_m:

@@ -9,8 +9,6 @@
 
 namespace tumble::scenarios {
 
-/// The sweep starts at `start_ns` since 1970, which is also the stamp in `header`. Throws BadInput for a CustomMsg of a
-/// lidar with more than 256 lines.
 ros::Message sweep_message(const sim::LidarRecord& lidar, std::size_t sweep, const SweepLayout& layout,
                            std::int64_t start_ns, const ros::Header& header);
 

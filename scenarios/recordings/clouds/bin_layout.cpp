@@ -14,18 +14,19 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr std::size_t kKitti = 4;
-/// Multiples of four columns could be doubles, or two rows of points read as one.
+/// Column numbers that are multiples of four are omitted, because such data could be doubles, or two rows of points
+/// read as one.
 constexpr std::array<std::size_t, 8> kOtherFloats = {3, 5, 6, 7, 8, 9, 10, 12};
 constexpr std::array<std::size_t, 6> kDoubles = {3, 4, 5, 6, 7, 8};
-/// Each section contains consecutive numbers, so that a sweep in the order of its rings is sampled completely.
+/// Each section of the sampled file contains consecutive numbers, so that a sweep in the order of its rings is sampled
+/// completely.
 constexpr std::size_t kSections = 4, kInRow = 6000;
 constexpr std::size_t kPerColumnMin = 25;
 constexpr std::size_t kNumberBins = 16;
-/// Valid coordinates in metres and valid intensities have magnitudes from 1e-20 to 1e7, or are 0. The lower limit is
-/// low, because the sine of 180 degrees times a range is about 1e-16.
+/// Valid coordinates [m] and intensities are 0 or have magnitudes from 1e-20 to 1e7; the sine of 180 degrees times a
+/// range is about 1e-16.
 constexpr double kLargest = 1e7, kSmallest = 1e-20, kOddShareMax = 0.01;
-/// In valid sweeps, the difference between columns grows by at most 0.08 with another number of columns, for a lidar in
-/// which every second ring looks down.
+/// For valid sweeps, another number of columns increases the difference between the columns by at most 0.08.
 constexpr double kMultipleDiffers = 1.5;
 constexpr double kClearlyMore = 1.25, kClearlyMoreBy = 0.05;
 
@@ -103,7 +104,6 @@ struct ColumnFit {
   double differ = 0.0;
 };
 
-/// Returns the smallest number of columns whose columns differ about as much as with any other number.
 template <std::size_t kCount>
 ColumnFit best_of(const NumberSample& sample, std::size_t numbers_in_file,
                   const std::array<std::size_t, kCount>& candidates) {
@@ -121,7 +121,7 @@ std::string contradiction_of_size(std::span<const char> bytes, const ColumnFit& 
   const std::string size = fmt::format(
       "the .bin file has {} bytes; its size must be a multiple of 16 (float32 x y z intensity)", bytes.size());
   if (floats.columns == 0) return fmt::format("{}; it may be truncated", size);
-  return size + fmt::format("; the numbers match {} columns of float32", floats.columns);
+  return fmt::format("{}; the numbers match {} columns of float32", size, floats.columns);
 }
 
 std::string contradiction_of_numbers(std::span<const char> bytes, double odd) {
@@ -133,7 +133,7 @@ std::string contradiction_of_numbers(std::span<const char> bytes, double odd) {
   const NumberSample doubles = sample_of<double>(bytes);
   const ColumnFit fit = best_of(doubles, bytes.size() / sizeof(double), kDoubles);
   if (odd_share(doubles) > kOddShareMax || fit.columns == 0) return text;
-  return text + fmt::format("; the numbers match {} columns of float64", fit.columns);
+  return fmt::format("{}; the numbers match {} columns of float64", text, fit.columns);
 }
 
 }  // namespace

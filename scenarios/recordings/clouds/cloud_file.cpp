@@ -81,7 +81,6 @@ Cloud to_columns(const pcl::PCLPointCloud2& cloud, std::size_t points) {
   return out;
 }
 
-/// PCL reads words such as "nan" or "inf" as numbers, but not "0,5" or "x".
 bool is_number_of_pcl(std::string_view word) {
   if (word.starts_with('+')) word.remove_prefix(1);
   double value = 0.0;
@@ -89,7 +88,8 @@ bool is_number_of_pcl(std::string_view word) {
   return error != std::errc::invalid_argument && end == word.data() + word.size();
 }
 
-/// PCL would silently read the start of a wrong word, or 0, or NaN, so the words of text files are checked here.
+/// PCL would read a malformed word as its leading number, 0 or NaN without an error, so the words of text files are
+/// checked first.
 void require_numbers(const std::filesystem::path& path, const CloudHeader& header) {
   std::ifstream stream(path, std::ios::binary);
   std::string text(static_cast<std::size_t>(header.header_bytes), '\0');

@@ -8,13 +8,12 @@
 
 namespace tumble::scenarios {
 
-/// Cloud contains the points of a file or message as named columns of numbers. A 64-bit integer keeps 53 bits, so a
-/// time stamp in nanoseconds since 1970 is accurate to 256 ns.
+/// A 64-bit integer keeps 53 bits, so a time stamp in nanoseconds since 1970 is accurate to 256 ns.
 struct Cloud {
-  std::vector<std::string> names;            ///< names in the file, without CloudCompare's prefix "scalar_"
+  std::vector<std::string> names;            ///< without CloudCompare's prefix "scalar_"
   std::vector<std::vector<double>> columns;  ///< parallel to `names`, one number per point
   std::size_t points = 0;
-  std::string viewpoint;  ///< VIEWPOINT of a PCD file; empty for the identity; not applied to the points
+  std::string viewpoint;  ///< VIEWPOINT of a PCD file; not applied
 
   const std::vector<double>* find(const std::string& name) const;
 };
@@ -25,11 +24,11 @@ inline constexpr std::uint64_t kCloudPointsMax = std::uint64_t{1} << 26;
 /// header is compared with the file size before memory is allocated.
 ///
 /// @param bin_columns Columns of a .bin file in order, "x,y,z,intensity,ring". Each column is float32, or has a NumPy
-///   type after a colon ("x:f8"); the name "_" skips bytes. An empty text selects KITTI's columns x y z intensity, if
-///   the content does not contradict them (bin_layout.hpp).
+/// type after a colon ("x:f8"); the name "_" skips bytes. An empty text selects KITTI's columns x y z intensity, if the
+/// content does not contradict them (bin_layout.hpp).
 ///
-/// Throws BadInput with file and location if the file is missing or damaged, has another format or more than 2^26
-/// points, or if its columns are impossible.
+/// Throws BadInput with file and location if the file is missing or damaged, or has another format, impossible columns,
+/// or more than 2^26 points.
 Cloud read_cloud(const std::filesystem::path& path, const std::string& bin_columns = "");
 
 struct CloudHeader {
@@ -39,10 +38,9 @@ struct CloudHeader {
   std::size_t fields = 0;
   std::uint64_t numbers = 0;  ///< numbers per point, over all fields
   bool ascii = false;
-  std::string viewpoint;  ///< VIEWPOINT of a PCD file: x y z qw qx qy qz; empty for the identity
+  std::string viewpoint;  ///< VIEWPOINT: x y z qw qx qy qz
 };
 
-/// Reads only the header. Throws BadInput like read_cloud.
 CloudHeader read_ply_header(const std::filesystem::path& path);
 CloudHeader read_pcd_header(const std::filesystem::path& path);
 

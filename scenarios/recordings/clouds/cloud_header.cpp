@@ -34,7 +34,6 @@ class HeaderLines {
     bytes_ += line_.size() + 1;
     if (bytes_ > kCloudHeaderMax)
       fail(fmt::format("the header of the point file is longer than the maximum of {} bytes", kCloudHeaderMax));
-    // PCL's reader of points separates words only by blanks and tabs.
     if (line_.find_first_of("\v\f") != std::string::npos)
       fail("the header contains a form feed or a vertical tab, which is not allowed");
     std::istringstream words(line_);
@@ -58,13 +57,12 @@ class HeaderLines {
 
   std::uint64_t bytes() const { return bytes_; }
 
-  /// Throws BadInput if the points in the header do not fit the remaining file size. One byte of the file gives at most
-  /// `made_of_a_byte` bytes of points.
+  /// Throws BadInput if the number of points in the header does not fit the remaining file size. `made_of_a_byte` is
+  /// the largest number of point bytes that one byte of the file can contain.
   void require_room(const CloudHeader& header, std::uint64_t made_of_a_byte = 1) const {
     if (header.points > kCloudPointsMax) {
       fail(fmt::format("the file states {} points; at most {} can be read", header.points, kCloudPointsMax));
     }
-    // A number in a text needs a digit and a separator; the last number needs no separator.
     const std::uint64_t point_bytes = header.point_bytes > 0 ? header.point_bytes : 2 * header.fields;
     const std::uint64_t slack = header.point_bytes > 0 ? 0 : 1;
     const std::uint64_t rest = bytes_in_file_ - std::min(bytes_, bytes_in_file_) + slack;
@@ -91,8 +89,8 @@ class HeaderLines {
     }
   }
 
-  /// PCL continues the header up to the first line that starts with no header word. A line of point data that looks
-  /// like a header line would therefore change the header.
+  /// PCL would interpret a line of point data that looks like a header line as part of the header, so such lines are
+  /// rejected.
   void require_end_of_header(std::span<const char* const> words) {
     stream_.clear();
     stream_.seekg(static_cast<std::streamoff>(bytes_));
@@ -136,7 +134,6 @@ void take_property(const HeaderLines& lines, const std::vector<std::string>& wor
 
 using Words = std::vector<std::string>;
 
-/// The header words have the order of the format; the final entry is an alternative name of FIELDS.
 constexpr std::array<const char*, 11> kPcdWords = {"VERSION", "FIELDS",    "SIZE",   "TYPE", "COUNT",  "WIDTH",
                                                    "HEIGHT",  "VIEWPOINT", "POINTS", "DATA", "COLUMNS"};
 

@@ -9,13 +9,12 @@ namespace tumble::scenarios {
 
 enum class PclFormat : int { ply, pcd };
 
-/// Returns false if PCL fails or throws.
 extern "C" using PclRead = bool(const char* path, PclFormat format, pcl::PCLPointCloud2* cloud);
 inline constexpr const char* kPclRead = "tumble_pcl_read";  ///< symbol name of PclRead
 
-/// Reads the points with the module `pcl_reader_module.cpp`, which is loaded at first use from ../lib/tumble relative
-/// to the program's folder, or from the build folder. PCL's readers load VTK and more than sixty libraries, which would
-/// slow every start of the program without the module.
+/// The module `pcl_reader_module.cpp` is loaded at first use from ../lib/tumble relative to the program's folder, or
+/// from the build folder. PCL's readers load VTK and more than sixty libraries, which would slow every start of the
+/// program without a separate module.
 bool read_by_pcl(const std::filesystem::path& path, PclFormat format, pcl::PCLPointCloud2& cloud);
 
 }  // namespace tumble::scenarios

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The module contains PCL's readers, and is linked to no library of this project.
 #include <pcl/io/pcd_io.h>
 #include <pcl/io/ply_io.h>
 

@@ -19,8 +19,7 @@ namespace tumble::scenarios {
 namespace {
 
 /// The point times of a sweep must cover a fraction of the sweep period between 0.02 (a sector of 7 degrees) and 1.5
-/// (some overlap). Time units differ by factors of 1000, so at most one unit fits. If the times cover a shorter range,
-/// for example because they restart with each packet, still only one unit fits.
+/// (some overlap). Time units differ by factors of 1000, so the times of a sweep fit at most one unit.
 constexpr double kSpanMin = 0.02, kSpanMax = 1.5, kShortSpanMin = kSpanMax / 1000.0;
 /// Times since 1970 in seconds exceed 1e8 if they are later than 1973.
 constexpr double kEpochMin_s = 1e8;
@@ -28,7 +27,7 @@ constexpr double kEpochMin_s = 1e8;
 /// unit.
 constexpr double kPointsThatSpan = 100.0;
 
-/// With at least five clouds, times are absolute if two clouds start more than two periods from time zero.
+/// With at least five clouds, point times are absolute if two clouds start more than two periods from time zero.
 constexpr std::size_t kCloudsToCompare = 5;
 
 using tumble::ros::kTimeUnits, tumble::ros::TimeUnit, tumble::ros::stated_unit;
@@ -95,11 +94,11 @@ void require_no_other_unit(const TimeUnit& stated, double span, double period_ns
   const auto* read = std::find_if(kTimeUnits.begin(), kTimeUnits.end(),
                                   [&](const TimeUnit& each) { return fits(span, each, period_ns); });
   if (read == kTimeUnits.end()) return;
-  std::string line = fmt::format("{}: the point times in field '{}' have the stated unit {} and a range of ", where,
-                                 field, name_of(stated));
-  append_number(line, span);
-  throw BadInput(fmt::format("{} in a sweep: {}, {}; check the unit", line, share_of(span, stated, period_ns),
-                             share_of(span, *read, period_ns)));
+  std::string range;
+  append_number(range, span);
+  throw BadInput(fmt::format(
+      "{}: the point times in field '{}' have the stated unit {} and a range of {} in a sweep: {}, {}; check the unit",
+      where, field, name_of(stated), range, share_of(span, stated, period_ns), share_of(span, *read, period_ns)));
 }
 
 double unit_by_size(double span, double largest, double period_ns, const std::string& field, const std::string& where) {
@@ -108,20 +107,21 @@ double unit_by_size(double span, double largest, double period_ns, const std::st
     if (!(period_ns > 0.0) && largest >= kEpochMin_s * 1e9 / unit.ns && largest < kEpochMin_s * 1e12 / unit.ns)
       return unit.ns;
   }
-  std::string line = fmt::format("{}: the point times in field '{}' have a range of ", where, field);
-  append_number(line, span);
-  line += " in a sweep";
+  std::string range, period;
+  append_number(range, span);
+  append_number(period, period_ns * 1e-6);
   if (!(period_ns > 0.0)) {
-    throw BadInput(fmt::format(
-        "{}, but the point times are not time stamps since 1970; state the times of the sweeps (--times), or "
-        "the duration of one sweep (--sweep-period)",
-        line));
+    throw BadInput(
+        fmt::format("{}: the point times in field '{}' have a range of {} in a sweep, but the point times are not time "
+                    "stamps since 1970; state the times of the sweeps (--times), or the duration of one sweep "
+                    "(--sweep-period)",
+                    where, field, range));
   }
-  line +=
-      ". This range must be 0.15 to 150 % of the sweep period, but is not in any of the units s, ms, us and ns; the "
-      "sweep period is ";
-  append_number(line, period_ns * 1e-6);
-  throw BadInput(fmt::format("{} ms. State the unit (--time-unit)", line));
+  throw BadInput(fmt::format(
+      "{}: the point times in field '{}' have a range of {} in a sweep. This range must be 0.15 to 150 % of the sweep "
+      "period, but is not in any of the units s, ms, us and ns; the sweep period is {} ms. State the unit "
+      "(--time-unit)",
+      where, field, range, period));
 }
 
 }  // namespace
@@ -142,7 +142,6 @@ PointTimeRule find_point_times(const std::vector<Cloud>& first, std::int64_t per
     largest = std::max({largest, std::abs(begin), std::abs(end)});
   }
   if (rule.field.empty() || spans.empty()) return {};
-  // Times since 1970 replace assumed time stamps, even if all points of a sweep have the same time.
   const bool stamped = period_ns > 0 && !(reading.assumed && largest >= kEpochMin_s);
   if (stamped && std::ranges::max(spans) == 0.0 && upper_median(points) > 1.0) {
     rule.field.clear();
@@ -167,7 +166,7 @@ PointTimeRule find_point_times(const std::vector<Cloud>& first, std::int64_t per
     const double bound = period_ns > 0 ? 2.0 * period : kEpochMin_s * 1e9;
     if (end >= begin && std::abs(begin) * rule.unit_ns > bound) ++far;
   }
-  rule.absolute = far > (spans.size() >= kCloudsToCompare ? 1 : 0);  // a single cloud among many may be damaged
+  rule.absolute = far > (spans.size() >= kCloudsToCompare ? 1 : 0);  // a single cloud may be damaged
   return rule;
 }
 

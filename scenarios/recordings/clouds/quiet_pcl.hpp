@@ -5,7 +5,6 @@
 
 namespace tumble::scenarios {
 
-/// PCL's console messages are suppressed, because exceptions report the errors.
 class QuietPcl {
  public:
   QuietPcl() { pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS); }

@@ -24,10 +24,10 @@ namespace {
 constexpr std::ptrdiff_t kProbe = 10;
 constexpr double kByteIntensity = 255.0;
 constexpr double kPointFar_m = 1e6;
-constexpr double kBeyond = 2.0;         // largest accepted distance, in ranges of the data sheet
-constexpr double kFarthest_m = 500.0;   // range without a data sheet: above that of robot lidars
-constexpr std::size_t kBackwards = 20;  // smallest ratio of falling to rising point times of a reversed sweep
-constexpr double kOverlapMost = 1.05;   // largest accepted ratio of sweep period to time between sweep starts
+constexpr double kBeyond = 2.0;         // in ranges of the data sheet
+constexpr double kFarthest_m = 500.0;   // above that of robot lidars
+constexpr std::size_t kBackwards = 20;  // falling over rising point times
+constexpr double kOverlapMost = 1.05;   // sweep period over sweep interval
 constexpr std::int64_t kOffsetMax_ns = 1000000000;
 
 using tumble::ros::kRingNames, tumble::ros::kIntensityNames;
@@ -72,7 +72,6 @@ std::string said(const PointTimeRule& rule) {
                      rule.absolute ? " of the clock" : " after the sweep's time stamp");
 }
 
-/// Points farther from the middle of a sweep than the longest sweep have wrong times.
 std::int64_t middle_of(const std::vector<std::optional<std::int64_t>>& times_ns) {
   std::vector<std::int64_t> known;
   for (const auto& time : times_ns) {
@@ -125,7 +124,7 @@ bool SweepBuilder::has_other_clock() const {
   for (const Waiting& sweep : waiting_) {
     const std::vector<double>* column = sweep.cloud.find(rule_->field);
     if (!sweep.stamp_ns || column == nullptr) continue;
-    std::vector<double> times;  // rays without a return may have the time 0
+    std::vector<double> times;  // missed rays may have the time 0
     std::ranges::copy_if(*column, std::back_inserter(times), [](double t) { return std::isfinite(t) && t != 0.0; });
     if (times.empty()) continue;
     const double middle_ns = upper_median(std::move(times)) * rule_->unit_ns;
@@ -176,8 +175,7 @@ void SweepBuilder::read(Waiting& sweep) {
   if (store_) store_->take(record_);
 }
 
-/// Points without times get the start of the sweep. Points with wrong times are removed from `kept`; many such points
-/// throw BadInput.
+/// Points with wrong times are removed from `kept`; many wrong times throw BadInput.
 std::vector<std::int64_t> SweepBuilder::point_times(const Waiting& sweep, std::vector<std::size_t>& kept) {
   if (rule_->field.empty() || kept.empty()) {
     if (!sweep.stamp_ns)
@@ -194,7 +192,7 @@ std::vector<std::int64_t> SweepBuilder::point_times(const Waiting& sweep, std::v
   if (!rule_->absolute && !sweep.stamp_ns)
     throw BadInput(fmt::format(
         "{}: the point times are relative to the start of the sweep, but the sweep has no time stamp", sweep.where));
-  constexpr double kBound = 4.6e18;  // larger times would overflow differences in int64
+  constexpr double kBound = 4.6e18;  // larger differences overflow int64
   const std::int64_t origin_ns = rule_->absolute ? 0 : *sweep.stamp_ns;
   std::vector<std::optional<std::int64_t>> times_ns;
   for (const std::size_t i : kept) {
@@ -303,7 +301,6 @@ double SweepBuilder::range_max_m() const {
   return reading_.range_max_m > 0.0 ? reading_.range_max_m : kFarthest_m;
 }
 
-/// If most points are beyond the range, the coordinates are probably in mm.
 void SweepBuilder::require_range(const std::string& where) const {
   const std::size_t all = points() + far_;
   if (2 * beyond_ <= all) return;
@@ -348,8 +345,11 @@ void SweepBuilder::note_dropped_points(std::vector<std::string>& notes) const {
                     "lidar's axes (first VIEWPOINT: {})",
                     viewpoints_, first_viewpoint_));
   if (record_.point_times == sim::PointTimes::unknown)
-    notes.push_back(fmt::format("the points have no time stamps, so sweeps cannot be deskewed{}",
-                                (names.empty() ? "" : " (set '--time-field' to a field with times):" + names)));
+    notes.push_back(
+        names.empty() ? "the points have no time stamps, so sweeps cannot be deskewed"
+                      : fmt::format("the points have no time stamps, so sweeps cannot be deskewed (set '--time-field' "
+                                    "to a field with times):{}",
+                                    names));
   if (!names.empty()) notes.push_back("ignored fields:" + names);
 }
 

@@ -16,12 +16,12 @@
 namespace tumble::scenarios {
 
 struct SweepReading {
-  sim::LidarRecord device;   ///< name, device, T_BL; sweep_period_ns 0: median step of the sweep starts
+  sim::LidarRecord device;   ///< sweep_period_ns 0: median step
   std::string time_field;    ///< empty: a field with a usual name
-  std::string time_unit;     ///< s ms us ns; empty: from the field's name ("offset_ns") or the size of the numbers
-  bool not_skewed = false;   ///< true: the points are already deskewed or simultaneous; their times are ignored
+  std::string time_unit;     ///< s ms us ns; empty: inferred
+  bool not_skewed = false;   ///< already deskewed or simultaneous points
   double range_max_m = 0.0;  ///< from the data sheet; 0: unknown
-  bool assumed = false;      ///< true: absolute point times replace the stamps, which are assumed values
+  bool assumed = false;      ///< absolute point times replace the stamps
   /// Folder for storing the points on disk; empty: in memory.
   std::filesystem::path scratch;
 };
@@ -29,19 +29,18 @@ struct SweepReading {
 struct PointTimeRule {
   std::string field;        ///< empty: the points have no times
   double unit_ns = 1.0;     ///< unit of the field [ns]
-  bool absolute = false;    ///< true: times since a fixed origin; false: since the sweep's stamp
-  bool constant = false;    ///< true: all points of a sweep have the same time; `field` is then empty
-  bool short_span = false;  ///< true: the times cover only a small part of the sweep period
+  bool absolute = false;    ///< false: since the sweep's stamp
+  bool constant = false;    ///< equal times in a sweep
+  bool short_span = false;  ///< small part of the sweep period
 };
 
 /// The field of the point times has one of these names (any case): t time timestamp timestamps time_stamp offset_time
-/// time_offset offset_ns. A suffix _s _ms _us _ns determines the unit. Without a suffix, the times of a sweep must
-/// cover 0.15 to 150 % of `period_ns` in the correct unit; at most one unit fits. If the period is unknown (0), the
-/// size of times since 1970 determines the unit. If all times of a sweep are equal, the points have no times.
+/// time_offset offset_ns. The suffix _s, _ms, _us or _ns of a field name determines the unit of the point times.
+/// Without a suffix, the times of a sweep must cover 0.15 to 150 % of `period_ns` in the correct unit, which at most
+/// one unit can satisfy. If the sweep period is unknown (0), the size of times since 1970 determines the unit. If all
+/// times of a sweep are equal, the points have no times.
 ///
 /// A unit from an option or suffix is rejected if another unit fits better and the sweeps have at least 100 points.
-/// Point times are absolute if they start more than two periods from 0 in one cloud; of five or more clouds, in two.
-/// Throws BadInput, with a message that starts with `where`, for a missing or ambiguous field, or if no unit fits.
 PointTimeRule find_point_times(const std::vector<Cloud>& first, std::int64_t period_ns, const SweepReading& reading,
                                const std::string& where);
 
@@ -53,34 +52,28 @@ struct BuiltSweeps {
   std::vector<std::optional<std::int64_t>> last_point_ns = {};
 };
 
-/// SweepBuilder builds a lidar record from clouds in order of time. Memory contains the first ten clouds; with points
-/// on disk, memory then contains one cloud at a time.
+/// Memory contains the first ten clouds; with points on disk, memory then contains one cloud at a time.
 ///
-/// The columns x, y and z are required. A point counts as a ray without return if it is not finite, farther than 1000
-/// km, or at the origin. Intensities above 1 are divided by 255, or by their maximum if it exceeds 255. A sweep starts
-/// at its time stamp; if its first point is earlier, or a period later, the sweep starts at this point.
+/// A point counts as a ray without return if it is not finite, farther than 1000 km, or at the origin. Intensities
+/// above 1 are divided by 255, or by their maximum if it exceeds 255. A sweep starts at its time stamp, or at its first
+/// point if this point is earlier than the stamp or more than a period later.
 ///
-/// A few points with times outside the sweep are skipped. A cloud is skipped if many points have such times, it lacks a
-/// field, has an invalid ring, starts before the previous sweep, or has most points beyond twice the lidar's range. If
-/// absolute point times and stamps come from different clocks, the stamp is assumed to be the time of the first point.
+/// A cloud is skipped if it lacks a field, has an invalid ring, starts before the previous sweep, or has most points
+/// beyond twice the lidar's range. If absolute point times and stamps come from different clocks, the stamp is assumed
+/// to be the time of the first point.
 class SweepBuilder {
  public:
-  /// `period_ns` is the sweep period for find_point_times: that of the device, or the median step of the stamps.
-  /// `left_out` counts the clouds that the caller skipped.
   SweepBuilder(SweepReading reading, std::int64_t period_ns, LeftOut left_out = LeftOut("clouds"))
       : reading_(std::move(reading)), period_ns_(period_ns), left_out_(std::move(left_out)) {
     if (!reading_.scratch.empty()) store_.emplace(reading_.scratch);
   }
 
-  /// Throws BadInput, with a message that starts with `where`, if the times of the first clouds cannot be interpreted.
   void add(std::optional<std::int64_t> stamp_ns, Cloud cloud, std::string where);
 
   LeftOut& left_out() { return left_out_; }
 
-  /// Returns the lidar record in the clock of the stamps. If the device has no period, the period is the median step of
-  /// the stamps, or the largest point offset if it is larger. Throws BadInput, with a message that starts with `where`,
-  /// if too many clouds were skipped, there are no points, most points are beyond twice the range in the data sheet, or
-  /// a single sweep has an unknown length.
+  /// If the device has no period, the sweep period is the median step of the stamps, or the largest point offset if
+  /// this is larger.
   BuiltSweeps finish(const std::string& where, std::vector<std::string>& notes);
 
  private:
@@ -98,7 +91,7 @@ class SweepBuilder {
   bool is_far(const Waiting& sweep, const std::vector<std::size_t>& kept);
   void take_points(const Waiting& sweep, const std::vector<std::size_t>& kept);
   void scale_intensity(std::vector<std::string>& notes);
-  std::int64_t longest_sweep_ns() const;  ///< also the limit of the time between a point and the stamp
+  std::int64_t longest_sweep_ns() const;  ///< also limits stamp to point time
   double range_max_m() const;
   void require_range(const std::string& where) const;
   void note_dropped_points(std::vector<std::string>& notes) const;
@@ -113,15 +106,15 @@ class SweepBuilder {
   float brightest_ = 0.0f;
   std::int64_t longest_ns_ = 0;
   LeftOut left_out_;
-  bool other_clock_ = false;  ///< true: absolute point times and stamps come from different clocks
+  bool other_clock_ = false;  ///< point times and stamps differ
   std::vector<std::optional<std::int64_t>> last_point_ns_;
-  std::size_t misses_ = 0, dark_ = 0, skipped_ = 0, beyond_ = 0, far_ = 0;  ///< far_: points of far clouds (is_far)
-  std::size_t mistimed_ = 0;                                                ///< points with times outside their sweep
+  std::size_t misses_ = 0, dark_ = 0, skipped_ = 0, beyond_ = 0, far_ = 0;  ///< far_: points of far clouds
+  std::size_t mistimed_ = 0;                                                ///< outside their sweep
   std::string first_mistimed_;
-  std::size_t rises_ = 0, falls_ = 0;           ///< points later and earlier than the previous point
+  std::size_t rises_ = 0, falls_ = 0;           ///< points later and earlier than previous
   std::size_t viewpoints_ = 0;                  ///< sweeps with a viewpoint
   std::string first_viewpoint_;                 ///< with its file
-  std::map<std::string, std::size_t> ignored_;  ///< ignored columns, with their number of sweeps
+  std::map<std::string, std::size_t> ignored_;  ///< ignored columns and their sweeps
 };
 
 }  // namespace tumble::scenarios

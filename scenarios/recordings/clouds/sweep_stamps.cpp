@@ -121,7 +121,7 @@ std::vector<std::int64_t> stamps_in_names(const std::vector<std::filesystem::pat
 }
 
 std::vector<std::int64_t> read_stamps(const std::filesystem::path& file, std::vector<std::string>* disorder) {
-  const Table table = Table::read(file, '\n', "", 1);  // a line is one cell, because dates contain blanks
+  const Table table = Table::read(file, '\n', "", 1);  // one cell, because dates contain blanks
   std::vector<std::int64_t> stamps;
   for (const Table::Row& row : table.rows) {
     const std::optional<std::int64_t> found = parse_stamp_ns(row.cells[0]);

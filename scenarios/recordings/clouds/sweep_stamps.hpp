@@ -9,8 +9,7 @@
 namespace tumble::scenarios {
 
 /// Returns the files with the extension `ending` (in any case) in natural order ("9" before "10"), without hidden
-/// files. All files must have the stem `stem`, or the same stem if `stem` is empty. Throws BadInput for a missing
-/// folder, if no file matches, or if the files have several stems.
+/// files. All files must have the stem `stem`, or the same stem if `stem` is empty.
 std::vector<std::filesystem::path> sweep_files(const std::filesystem::path& folder, const std::string& ending,
                                                const std::string& stem);
 
@@ -19,13 +18,11 @@ std::string stem_of(const std::filesystem::path& file);
 
 /// A time stamp at the end of a file name is seconds and nanoseconds ("1617333602.223639727",
 /// "cloud_1617333602_223639727"), or a number of 13, 16 or 19 digits since 1970 (ms, us, ns). Returns nothing if the
-/// names contain only numbers like "000012". Throws BadInput with the file if only some names contain time stamps.
+/// file names contain only numbers like "000012".
 std::vector<std::int64_t> stamps_in_names(const std::vector<std::filesystem::path>& files);
 
-/// Reads one time stamp per line; '#' starts a comment. A time stamp is decimal seconds, an integer of 13, 16 or 19
-/// digits (ms, us, ns), or a date in UTC, as in KITTI's raw data. Throws BadInput with file and line for an invalid
-/// time stamp, or one that does not increase. If `disorder` is set, it receives a message for each stamp that does not
-/// increase, and an empty text for each other stamp.
+/// A time stamp is decimal seconds, an integer of 13, 16 or 19 digits (ms, us, ns), or a date in UTC, as in KITTI's raw
+/// data.
 std::vector<std::int64_t> read_stamps(const std::filesystem::path& file, std::vector<std::string>* disorder = nullptr);
 
 std::int64_t median_step_ns(const std::vector<std::int64_t>& times_ns);

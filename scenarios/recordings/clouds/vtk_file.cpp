@@ -58,7 +58,6 @@ class VtkWords {
     return value;
   }
 
-  /// Lidar drivers write "nan" or "inf" for rays without a return.
   double number() {
     std::string_view word = need("its numbers");
     if (word.starts_with('+')) word.remove_prefix(1);
@@ -78,7 +77,6 @@ class VtkWords {
   int line_ = 1;
 };
 
-/// The announced number of values is compared with the remaining file size before memory is allocated.
 void require_room(const VtkWords& words, std::uint64_t count, std::uint64_t each) {
   if (count > kCloudPointsMax) {
     words.fail(fmt::format("the file states {} points; at most {} can be read", count, kCloudPointsMax));
@@ -107,7 +105,7 @@ void pass_over(VtkWords& words, std::uint64_t count, std::uint64_t each) {
   for (std::uint64_t i = 0; i < count * each; ++i) words.number();
 }
 
-/// The section has the form "VERTICES lines numbers", followed by this many numbers.
+/// The section has the form "VERTICES lines numbers", followed by the announced count of numbers.
 void pass_vertices(VtkWords& words) {
   words.whole("the number of vertices");
   pass_over(words, words.whole("the vertices' numbers"), 1);

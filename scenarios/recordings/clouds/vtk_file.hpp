@@ -7,13 +7,10 @@
 
 namespace tumble::scenarios {
 
-/// Reads the points of a legacy VTK text file with polygonal data, the format of libpointmatcher. The section POINTS,
-/// and each section SCALARS with one number per point, become named columns. Vertices, vectors, normals, tensors,
-/// colours and other scalars are skipped.
+/// The section POINTS, and each section SCALARS with one number per point, become named columns; other sections are
+/// skipped.
 ///
-/// Throws BadInput with file and line if the file is missing, binary or not polygonal data, or has an unknown section.
-/// Throws BadInput for invalid or truncated numbers, or point data whose length differs from the number of points. The
-/// number of points must be at most 2^26 and fit the file size.
+/// The number of points must be at most 2^26 and fit the file size.
 Cloud read_vtk(const std::filesystem::path& path);
 
 }  // namespace tumble::scenarios

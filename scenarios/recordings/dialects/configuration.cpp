@@ -60,7 +60,7 @@ void add_imu(const ImuFacts& imu, std::map<std::string, Numbers>& out) {
   out["gyro_variance"] = variance(imu.gyro_noise_rad_s_sqrt_hz);
   out["stated_accel_range_m_s2"] = {imu.stated_accel_range_m_s2};
   out["stated_gyro_range_rad_s"] = {imu.stated_gyro_range_rad_s};
-  // A device that saturates above its data sheet would otherwise lose valid readings.
+  // The configured range includes the largest reading, because a device can saturate above the range of its data sheet.
   out["accel_rail_m_s2"] = {std::max(imu.stated_accel_range_m_s2, imu.largest_accel_m_s2)};
   out["gyro_rail_rad_s"] = {std::max(imu.stated_gyro_range_rad_s, imu.largest_gyro_rad_s)};
 }

@@ -10,7 +10,7 @@
 #include "scenarios/recordings/dialects/sensor_facts.hpp"
 
 /// A dialect is the recording format that a published estimator expects: a bag, and templates of the configuration
-/// files. Each file NAME.yaml of this folder contains one dialect.
+/// files.
 namespace tumble::scenarios {
 
 struct Source {
@@ -21,7 +21,6 @@ struct ConfigurationFile {
   std::string name, text;
 };
 
-/// The driver of a Livox lidar publishes the message CustomMsg, so topics and configuration file differ.
 struct LivoxDialect {
   std::string imu_topic, points_topic, file;
 };
@@ -33,14 +32,14 @@ struct Dialect {
   std::string imu_topic, points_topic;
   std::string fixed_frame;  ///< constant parent of base_link in /tf_static; empty: none
   std::optional<LivoxDialect> livox;
-  /// The time field counts from the sweep's start: "time" in float32 seconds (Velodyne's driver), or "t" in uint32
-  /// nanoseconds (Ouster's driver).
+  /// The time field of a point counts from the sweep's start: "time" in float32 seconds (Velodyne's driver), or "t" in
+  /// uint32 nanoseconds (Ouster's driver).
   std::string point_times;
   bool needs_imu = true;
   bool needs_times = true;
-  bool needs_rings = false;  ///< true: needs a scanning lidar with rings, not a Livox
+  bool needs_rings = false;  ///< scanning lidar with rings, no Livox
   bool takes_empty = true;   ///< false: sweeps without points are omitted
-  std::string run;           ///< command that starts the published estimator on these files
+  std::string run;           ///< starts the published estimator
   std::vector<std::string> notes;
   std::vector<Source> sources;
   std::vector<ConfigurationFile> files;  ///< with placeholders (configuration_of)
@@ -51,8 +50,8 @@ struct Dialect {
 
 std::span<const Dialect> all_dialects();
 
-/// Each placeholder "@quantity@" of a template becomes the value of this recording's sensors; "@quantity|text@" becomes
-/// `text` if the value is 0 (unknown). Throws std::logic_error for an unknown quantity.
+/// Each placeholder "@quantity@" of a configuration template becomes a value of the recording's sensors;
+/// "@quantity|text@" becomes `text` if the value is unknown.
 std::vector<ConfigurationFile> configuration_of(const Dialect& dialect, const SensorFacts& facts);
 
 }  // namespace tumble::scenarios

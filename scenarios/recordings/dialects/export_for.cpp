@@ -32,7 +32,6 @@ const Dialect& dialect_of(const std::string& peer) {
                              near.empty() ? "" : fmt::format(" (did you mean '{}'?)", near), known));
 }
 
-/// The configuration needs the range of the points, so points that are not finite are rejected.
 void require_finite(const sim::LidarRecord& lidar, const PointStore& aside) {
   for (std::size_t number = 0; number < lidar.sweep_start_ns.size(); ++number) {
     const sim::LidarRecord sweep = sweep_alone(lidar, &aside, number);

@@ -9,12 +9,8 @@ namespace tumble::scenarios {
 
 std::vector<std::string> peer_dialects();
 
-/// Writes a recording in the format of one published estimator to an empty or new folder. The bag contains only the
-/// first IMU and the first lidar. The folder also contains a configuration for these sensors, and manifest.json. If
-/// `with_truth` is true, the folder contains truth.tum for the program evo: body poses in the bag's clock.
-///
-/// Throws BadInput for an unknown name, for a recording without the lidar, IMU or point times that the estimator needs,
-/// and for errors of the bag writers.
+/// Writes a recording in the format of one published estimator to an empty or new folder. If `with_truth` is true, the
+/// folder contains truth.tum for the program evo: body poses in the bag's clock.
 std::vector<std::string> export_for(const std::filesystem::path& recording, const std::string& peer,
                                     const std::filesystem::path& folder, bool with_truth);
 

@@ -9,8 +9,6 @@
 
 namespace tumble::scenarios {
 
-/// The manifest lists the files with units, stamps and frames, the noise, ranges and mountings of the sensors, and the
-/// estimator's documentation (keys: dialects/README.md).
 std::string manifest_of(const Dialect& dialect, const SensorFacts& facts, const RecordingInfo& info,
                         std::int64_t origin_ns, const std::vector<std::string>& configuration, bool with_truth);
 

@@ -12,8 +12,8 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr double kStillRate_rad_s = 0.2, kStillForce_m_s2 = 1.0;
-/// The distance from the lidar to the farthest corner of the box (-0.5 -0.4 -0.27) to (0.5 0.4 0.23) m around the rig
-/// is rounded up.
+/// Distance from the lidar to the farthest corner of the rig's bounding box (-0.5 -0.4 -0.27) to (0.5 0.4 0.23) m,
+/// rounded up.
 constexpr double kRigCage_m = 0.7;
 
 bool is_livox(const std::string& device) {
@@ -69,8 +69,6 @@ std::uint32_t middle_of(const std::vector<std::uint64_t>& counts, std::uint64_t 
   return value;
 }
 
-/// To save memory, the function first counts the upper 16 bits of the steps, then the lower 16 bits within the bin of
-/// the median.
 int columns_of(const Sweeps& sweeps) {
   constexpr std::uint32_t kHalf_bits = 16, kLower = 0xffff;
   std::vector<std::uint64_t> counts(std::size_t{1} << kHalf_bits, 0);

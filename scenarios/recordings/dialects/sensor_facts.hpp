@@ -17,8 +17,8 @@ struct ImuFacts {
   double period_s = 0.0;
   double gyro_noise_rad_s_sqrt_hz = 0.0, accel_noise_m_s2_sqrt_hz = 0.0;  ///< from the data sheet; 0: not stated
   double stated_gyro_range_rad_s = 0.0, stated_accel_range_m_s2 = 0.0;    ///< from the data sheet; 0: not stated
-  double largest_gyro_rad_s = 0.0, largest_accel_m_s2 = 0.0;              ///< maximum over all axes in this recording
-  double still_at_start_s = 0.0;  ///< time until a rate above 0.2 rad/s or a force 1 m/s^2 off gravity
+  double largest_gyro_rad_s = 0.0, largest_accel_m_s2 = 0.0;              ///< maximum over all axes
+  double still_at_start_s = 0.0;                                          ///< until 0.2 rad/s or 1 m/s^2
 };
 
 struct LidarFacts {
@@ -28,10 +28,10 @@ struct LidarFacts {
   std::size_t sweeps = 0, empty_sweeps = 0, points = 0;  ///< `sweeps` includes the empty ones
   double period_s = 0.0;
   int rings = 1;                             ///< highest ring plus one
-  int columns = 1;                           ///< firings of a ring in a sweep, from the median step between its returns
+  int columns = 1;                           ///< firings of a ring in a sweep
   double nearest_m = 0.0, farthest_m = 0.0;  ///< range of the returns
-  /// Points closer to the lidar than this distance belong to the robot: 0.7 m for the rig, the extent of its cage from
-  /// the lidar. For other robots, the value is the range of the nearest point.
+  /// Points closer to the lidar than this distance belong to the robot; without a known robot, the distance is the
+  /// range of the nearest point.
   double own_body_m = 0.0;
 };
 
@@ -44,7 +44,6 @@ struct SensorFacts {
   Eigen::Isometry3d T_IL() const { return T_BI.inverse(Eigen::Isometry) * T_BL; }
 };
 
-/// The argument `points` is null if the points are in memory. Only one sweep is in memory at a time.
 SensorFacts facts_of(const sim::Sensors& sensors, const std::vector<PointStore>* points = nullptr);
 
 }  // namespace tumble::scenarios

@@ -76,7 +76,7 @@ CsvText::CsvText(const std::filesystem::path& path) : CsvText(path, ',') {
 
 bool CsvText::next(CsvLine& line) {
   if (at_.at >= text_.size()) return false;
-  const std::size_t end = text_.find('\n', at_.at);  // exists, because the text ends in a newline
+  const std::size_t end = text_.find('\n', at_.at);  // the text ends in a newline
   std::string_view text = std::string_view(text_).substr(at_.at, end - at_.at);
   at_ = {end + 1, at_.lines + 1};
   line.where = name_ + ":" + std::to_string(at_.lines);

@@ -9,8 +9,6 @@
 
 namespace tumble::scenarios {
 
-/// A line has a location "FILE:12" for error messages. A field is a view of the file's text, without surrounding blanks
-/// or quotes.
 struct CsvLine {
   std::string where;
   std::vector<std::string_view> fields;
@@ -44,7 +42,6 @@ bool is_comment(std::string_view line);
 
 [[noreturn]] void fail(const CsvLine& line, const std::string& what);
 
-/// Throws BadInput with the location and `column` if the field is not a finite number.
 double csv_number(const CsvLine& line, std::size_t index, const std::string& column);
 
 bool is_number(std::string_view field);

@@ -12,7 +12,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// In sensor_msgs/Imu, a first covariance element of -1 means an unknown attitude.
+/// In sensor_msgs/Imu, -1 as the first element of the covariance means an unknown attitude.
 constexpr const char* kNoAttitude = "0,0,0,1,[-1 0 0 0 0 0 0 0 0]";
 
 template <class Vector>
@@ -20,7 +20,6 @@ void append_all(std::string& text, const Vector& vector) {
   for (const double x : vector) append_number(text += ',', x);
 }
 
-/// The variance of a sample is the squared noise density times the output rate.
 std::string covariance_text(double density_sqrt_hz, std::int64_t period_ns) {
   const double variance = density_sqrt_hz * density_sqrt_hz / (static_cast<double>(period_ns) * 1e-9);
   std::string text = ",[";

@@ -49,8 +49,7 @@ void say_columns(const ImuColumns& columns, bool stated, std::vector<std::string
   if (!others.empty()) notes.push_back("ignored columns: " + others);
 }
 
-/// In a table of several IMUs, their rows alternate. A column with more than eight different numbers contains row
-/// numbers and not IMU numbers.
+/// A column with more than eight different numbers contains row numbers and not IMU numbers.
 std::string keep_one_imu(LoggedTable& table, std::size_t id) {
   constexpr std::size_t kImusMax = 8;
   std::map<std::string, std::size_t> rows;

@@ -38,7 +38,6 @@ std::optional<std::size_t> find_column(const CsvLine& header, const std::string&
   return found;
 }
 
-/// The name follows a point or slash: "/imu/header/stamp", "field.header.stamp".
 std::optional<std::size_t> find_ending(const CsvLine& header, const std::string& name) {
   return find_column(header, name, [&](std::string_view field) {
     std::string parts(field);
@@ -81,8 +80,8 @@ class RequiredColumns {
   std::string missing_;
 };
 
-/// The column "field.header.stamp" of `rostopic echo -p` contains nanoseconds. Other tools write seconds, or seconds
-/// and nanoseconds in two columns.
+/// The column "field.header.stamp" of `rostopic echo -p` contains nanoseconds, whereas other tools write seconds, or
+/// seconds and nanoseconds in two columns.
 bool find_header_stamp(const CsvLine& header, ImuColumns& layout) {
   const auto seconds = find_any_ending(header, {"header/stamp/sec", "header/stamp/secs"});
   const auto rest = find_any_ending(header, {"header/stamp/nsec", "header/stamp/nsecs", "header/stamp/nanosec"});
@@ -111,7 +110,6 @@ std::optional<ImuColumns> flattened(const CsvLine& header) {
   return columns.complete() ? std::optional(layout) : std::nullopt;
 }
 
-/// Short names are "wx_rad_s" or "wx", "fx_m_s2", "fx" or "ax", and "stamp_s", "sec", "secs" or "s" with "stamp_ns".
 std::optional<ImuColumns> named(const CsvLine& header) {
   ImuColumns layout;
   RequiredColumns columns(header);
@@ -207,8 +205,8 @@ int decimals_by_step(LoggedTable& table, std::size_t stamp, const std::string& f
     if (parse_number(line.fields[stamp], now)) steps.push_back(now - last);
   }
   table.restart();
-  if (steps.size() < 2) return 9;  // dates, or too few samples, which are reported later
-  steps.erase(steps.begin());      // the first entry is a stamp, not a step
+  if (steps.size() < 2) return 9;  // reported later
+  steps.erase(steps.begin());      // a stamp, not a step
   const double step = upper_median(steps);
   for (const int decimals : {9, 6, 3, 0}) {
     const double step_s = step * std::pow(10.0, decimals - 9);

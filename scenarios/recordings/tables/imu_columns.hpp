@@ -15,33 +15,30 @@
 namespace tumble::scenarios {
 
 enum class StampForm {
-  split,   ///< whole seconds, and nanoseconds in another column
+  split,   ///< seconds and nanoseconds in two columns
   decimal  ///< decimal number in some unit
 };
 
 struct ImuColumns {
   StampForm stamp_form = StampForm::split;
   std::size_t stamp = 0, stamp_ns = 1;
-  std::optional<int> stamp_decimals;  ///< for `decimal`: 9 for seconds, 0 for nanoseconds; empty: unknown unit
-  std::array<std::size_t, 3> rate = {8, 9, 10}, force = {12, 13, 14};  ///< default: those of a plain sensor_msgs/Imu
+  std::optional<int> stamp_decimals;                                   ///< 9: seconds, 0: nanoseconds; empty: unknown
+  std::array<std::size_t, 3> rate = {8, 9, 10}, force = {12, 13, 14};  ///< default: a plain sensor_msgs/Imu
   std::optional<std::size_t> id;                                       ///< column with the number of the IMU
   std::optional<GyroUnit> gyro_unit;                                   ///< units in the column names
   std::optional<AccelUnit> accel_unit;
   std::vector<std::string> left_out;  ///< names of ignored columns
 };
 
-/// Finds the IMU columns by their names, or by their positions if the table has no header. Known names are those of ROS
-/// messages (".../angular_velocity/x"), of the command `export`, their short forms (sec nsec wx.. fx..), and of loggers
-/// (logger_columns.hpp). Throws BadInput with file and line for unknown, repeated or missing columns.
+/// Known names are those of ROS messages (".../angular_velocity/x"), of the command `export`, their short forms (sec
+/// nsec wx.. fx..), and of loggers (logger_columns.hpp).
 ImuColumns imu_columns(const LoggedTable& table);
 
-/// Parses a number or a date in UTC (number_text.hpp). Throws BadInput with file, line and column if the time stamp is
-/// invalid.
 std::int64_t stamp_ns(const CsvLine& line, const ImuColumns& columns);
 
-/// Infers the unit of the time stamps from up to a thousand steps at the start of the table; returns its number of
-/// decimals. The unit is that of s, ms, us and ns that gives 10 to 1000 samples per second; at most one fits. Throws
-/// BadInput, with a message that starts with `file`, if no unit fits.
+/// Infers the unit of the time stamps from up to a thousand steps at the start of the table, and returns the number of
+/// decimals of the unit. The inferred unit is that of s, ms, us and ns that gives 10 to 1000 samples per second, which
+/// at most one unit can give.
 int decimals_by_step(LoggedTable& table, std::size_t stamp, const std::string& file);
 
 }  // namespace tumble::scenarios

@@ -18,7 +18,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// The median specific force of a robot is near g. The limits exclude readings in g, in mg and in raw counts.
+/// The median specific force of a robot is near g; the limits exclude readings in g, in mg and in raw counts.
 constexpr double kLeastMedian_m_s2 = 3.0, kLargestMedian_m_s2 = 30.0;
 
 bool near_factor(double ratio, double factor) {
@@ -71,7 +71,7 @@ void require_plausible_period(const std::string& where, const sim::ImuRecord& im
 
 /// The IMU of a robot does not rotate faster than 100 rad/s.
 constexpr double kLargestRate_rad_s = 100.0;
-/// A small fraction of the samples may exceed twice the range, because single samples are glitches.
+/// At most this fraction of the samples may exceed twice the range, because single samples are glitches.
 constexpr double kBeyondShare = 0.01, kBeyondRange = 2.0;
 constexpr double kDegreesPerRadian = 57.29577951308232;
 
@@ -100,13 +100,13 @@ void require_rates_in_range(const std::string& where, const sim::ImuRecord& imu,
 }
 
 constexpr double kRotationWindow_s = 0.2, kNearGravity = 0.1;
-constexpr double kLeastRotation = 0.0175, kMostRotation = 0.4;  // change of the force, relative to its size
+constexpr double kLeastRotation = 0.0175, kMostRotation = 0.4;  // relative change of the force
 constexpr int kLeastWindows = 10;
 constexpr double kLeastCorrelation = 0.8;
 constexpr double kBriskRotation = 0.25;
 
-/// Within a burst of readings, a time step is at most 0.2 times the mean step. In a recording with bursts, at least
-/// half of the steps are within a burst.
+/// Within a burst of IMU readings, a time step is at most 0.2 times the mean step. In a recording with bursts, at least
+/// half of the time steps are within a burst.
 constexpr double kBurstStep = 0.2, kBurstShare = 0.5;
 constexpr std::size_t kLeastBursts = 10;
 constexpr std::int64_t kBurstsApart_ns = 1'000'000'000;
@@ -134,7 +134,7 @@ std::string even_out_bursts(sim::ImuRecord& imu) {
   }
   if (steps == 0 || sum == 0) return "";
   const double short_ns = kBurstStep * static_cast<double>(sum) / static_cast<double>(steps);
-  std::vector<std::size_t> ends;  // index after the last reading of each burst
+  std::vector<std::size_t> ends;  // after each burst
   for (std::size_t k = 1; k <= times.size(); ++k) {
     if (k == times.size() || static_cast<double>(times[k] - times[k - 1]) > short_ns) ends.push_back(k);
   }
@@ -190,7 +190,6 @@ GravityRotation gravity_rotation(const sim::ImuRecord& imu, RotationWindows wind
     while (end + 1 < count && near(end) && !turned() &&
            1e-9 * static_cast<double>(imu.time_ns[end] - imu.time_ns[begin]) < kRotationWindow_s) {
       ++end;
-      // A sample is the mean over the averaging window that ends at its time stamp.
       angle += imu.gyro_rad_s[end] * (1e-9 * static_cast<double>(imu.time_ns[end] - imu.time_ns[end - 1]));
     }
     const double length_s = 1e-9 * static_cast<double>(imu.time_ns[end] - imu.time_ns[begin]);
@@ -227,7 +226,7 @@ bool has_sufficient_rotation(const GravityRotation& turn) {
 
 GravityRotation sufficient_rotation(const sim::ImuRecord& imu) {
   const GravityRotation turn = gravity_rotation(imu, RotationWindows::even);
-  // In windows of equal length, a rolling sphere rotates too far.
+  // A rolling sphere rotates too far in windows of equal length, so windows that end after a fixed rotation are tried.
   return has_sufficient_rotation(turn) ? turn : gravity_rotation(imu, RotationWindows::brisk);
 }
 
@@ -315,7 +314,7 @@ std::string leave_out_faulty(const ReadingText& where, const ReadingText& disord
       left_out.add("a wrong time stamp", where(k) + ": " + (disorder ? disorder(k) : disorder_text(imu.time_ns, k)));
   }
   left_out.require_few(in_order.size());
-  imu.period_ns = median_step_ns(in_order);  // before lost readings are removed, since these leave gaps
+  imu.period_ns = median_step_ns(in_order);  // lost readings leave gaps
   std::size_t lost = 0;
   for (std::size_t k = 0; k < kept.size(); ++k) {
     if (!kept[k] || !imu.gyro_rad_s[k].isZero(0.0) || !imu.accel_m_s2[k].isZero(0.0)) continue;

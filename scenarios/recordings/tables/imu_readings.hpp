@@ -11,40 +11,37 @@ namespace tumble::scenarios {
 
 sim::ImuRecord without_readings(sim::ImuRecord device);
 
-/// Throws BadInput, with a message that starts with `where`, if a value is not finite or exceeds 1e6.
 void add_reading(const std::string& where, std::int64_t stamp_ns, const Eigen::Vector3d& rate_rad_s,
                  const Eigen::Vector3d& force_m_s2, sim::ImuRecord& imu);
 
 using ReadingText = std::function<std::string(std::size_t reading)>;
 
 /// Removes lost readings (all six values are exactly 0), and readings whose time stamps are out of order
-/// (stamps_in_order). Sets the period to the median step. If a driver delivered readings in bursts, their time stamps
-/// are first distributed over the time since the previous burst.
+/// (stamps_in_order). The sample period becomes the median time step. If a driver delivered readings in bursts, their
+/// time stamps are first distributed over the time since the previous burst.
 ///
-/// @param where Returns the location of a reading, for messages.
 /// @param disorder Describes a time stamp that is out of order; null: relative to the previous time stamp.
-/// @return A note on bursts; may be empty. Throws BadInput if too many readings are faulty or all are 0.
+/// @return A note on bursts; may be empty.
 std::string leave_out_faulty(const ReadingText& where, const ReadingText& disorder, LeftOut& left_out,
                              sim::ImuRecord& imu);
 
-/// Sets a period of 0 to the median step. Throws BadInput, with a message that starts with `where`, for fewer than two
-/// readings, a median specific force outside 3 to 30 m/s^2, or a period outside 20 us to 2 s.
+/// Throws BadInput for fewer than two readings, a median specific force outside 3 to 30 m/s^2, or a sample period
+/// outside 20 us to 2 s.
 void finish_readings(const std::string& where, AccelUnit unit, sim::ImuRecord& imu);
 
 /// Returns true if the median norm of the specific force is within 10 % of 1, and a fifth of the norms are within 2 %
-/// of the median (rest). Readings without gravity have no constant norm.
+/// of the median (rest).
 bool is_in_g(const sim::ImuRecord& imu);
 
 std::string even_out_stamps(sim::ImuRecord& imu);
 
-/// Describes gaps longer than one second, which no estimator bridges.
 std::string gaps_text(const sim::ImuRecord& imu);
 
 /// RotationWindows selects the time windows in which the rotation of the measured gravity is compared with the gyro. In
 /// a window of 0.2 s (`even`), the specific force must have the size of gravity within a tenth, and rotate by one to
-/// about twenty degrees. The change of the force is compared with the product -(rotation vector) x force: `ratio` is
-/// the factor between both (1 means correct units). A rolling sphere rotates too far in 0.2 s, so windows of kind
-/// `brisk` end when the force has rotated by a quarter of gravity. The cost is O(N).
+/// about twenty degrees. The change of the specific force is compared with the product -(rotation vector) x force;
+/// their ratio is 1 for correct units. A rolling sphere rotates too far in 0.2 s, so windows of kind `brisk` end when
+/// the specific force has rotated by a quarter of gravity.
 enum class RotationWindows { even, brisk };
 struct GravityRotation {
   int windows = 0;
@@ -52,9 +49,9 @@ struct GravityRotation {
 };
 GravityRotation gravity_rotation(const sim::ImuRecord& imu, RotationWindows windows = RotationWindows::even);
 
-/// Returns a note on the result, or on a gyro that always reads 0; empty if the motion is insufficient. Throws
-/// BadInput, with a message that starts with `where`, if gravity indicates deg/s instead of rad/s or vice versa (factor
-/// 57.3), or if more than 1 % of the rates exceed twice the range of the IMU (100 rad/s if unknown).
+/// Returns a note on the unit of the rates, or on a gyro that always reads 0; empty if the motion is insufficient.
+/// Throws BadInput if gravity indicates deg/s instead of rad/s or vice versa, or if more than 1 % of the rates exceed
+/// twice the range of the IMU (100 rad/s if unknown).
 std::string require_plausible_rates(const std::string& where, const sim::ImuRecord& imu, GyroUnit unit);
 
 std::string rates_text(const std::string& where, const sim::ImuRecord& imu, GyroUnit unit);

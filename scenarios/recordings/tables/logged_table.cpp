@@ -19,7 +19,6 @@ std::size_t numbers_in(const CsvLine& line) {
   return static_cast<std::size_t>(std::count_if(line.fields.begin(), line.fields.end(), is_number));
 }
 
-/// At least half of the fields of a sample are numbers; other fields are names of frames.
 bool is_sample(const CsvLine& line) {
   return 2 * numbers_in(line) >= line.fields.size();
 }

@@ -11,10 +11,9 @@
 
 namespace tumble::scenarios {
 
-/// Empty lines, comments (csv_text.hpp) and an empty field after the last separator of a line are skipped. The header
-/// is the first line that is no comment and contains fewer numbers than other texts. If samples directly follow
-/// comments, the last comment is the header if it has as many fields as a sample ("#timestamp [ns],w_RS_S_x [rad
-/// s^-1],..."). A row of units below the header is appended to the column names, in brackets.
+/// Empty lines, comments and an empty field after the last separator of a line are skipped. The header of a table is
+/// the first line that is no comment and contains fewer numbers than other texts. If samples directly follow comments,
+/// the last comment is the header if it has as many fields as a sample ("#timestamp [ns],w_RS_S_x [rad s^-1],...").
 class LoggedTable {
  public:
   explicit LoggedTable(const std::filesystem::path& path);
@@ -24,12 +23,11 @@ class LoggedTable {
   const CsvLine& header() const { return header_; }
   bool has_header() const { return has_header_; }
 
-  /// Throws BadInput with file and line for a wrong number of fields, or for a last line without newline. The caller
-  /// can then continue with the next sample.
+  /// Throws BadInput with file and line for a wrong number of fields, or for a last line without newline; the caller
+  /// can then continue.
   bool next(CsvLine& line);
   bool next_sound(CsvLine& line);
   void restart() { text_.back_to(samples_); }
-  /// After this call, `next` returns only samples with the text `value` in this column.
   void keep(std::size_t column, const std::string& value) { kept_ = {column, value}; }
 
  private:

@@ -72,7 +72,6 @@ bool is_one_of(const std::vector<std::string_view>& names, std::string_view name
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// A number in brackets is an axis: "gyro_rad[0]".
 Name split_brackets(std::string_view field) {
   const std::size_t open = field.find_first_of("[(");
   if (open == std::string_view::npos) return {letters(field), ""};
@@ -81,7 +80,6 @@ Name split_brackets(std::string_view field) {
   return {quantity, unit};
 }
 
-/// The unit follows the quantity after an underscore ("time_ms", "gyro_x_deg_s") or directly ("TimeUS").
 template <class Value, class IsQuantity>
 Name split_suffix(std::string_view field, const UnitNames<Value>& units, const IsQuantity& is_quantity) {
   for (std::size_t at = field.find('_'); at != std::string_view::npos; at = field.find('_', at + 1)) {
@@ -90,7 +88,7 @@ Name split_suffix(std::string_view field, const UnitNames<Value>& units, const I
   }
   Name name = split_brackets(field);
   if (is_quantity(name.quantity)) return name;
-  constexpr std::size_t kShortest = 2;  // one letter may belong to the quantity: "stamps"
+  constexpr std::size_t kShortest = 2;  // plural "s" in "stamps"
   for (const auto& [unit, value] : units) {
     const std::string_view whole = name.quantity;
     if (unit.size() < kShortest || !whole.ends_with(unit)) continue;
@@ -114,7 +112,6 @@ std::string take_number(std::string_view& text, bool from_end) {
   return digits;
 }
 
-/// The quantity may have the prefix "imu" and a number.
 std::optional<NamedAxis> axis_of(const std::vector<std::string_view>& names, std::string_view quantity) {
   NamedAxis out;
   if (quantity.starts_with("imu")) {

@@ -14,14 +14,11 @@ namespace tumble::scenarios {
 /// - Specific force: ax, acc_x, accel_x, fx, linear_acceleration_x, a_RS_S_x, accelerometer_m_s2[0] and similar.
 /// - Number of the IMU, if the rows of several IMUs alternate: I, id or instance.
 ///
-/// A unit in a column name is used: "time_ms", "#timestamp [ns]", "gx (deg/s)", "w_RS_S_x [rad s^-1]", "ax [g]". Throws
-/// BadInput with file and line for missing columns, a repeated axis, an unknown unit, different units of the axes, or
-/// several IMU numbers in the names (gyro1_x, gyro2_x).
+/// A unit in a column name is used: "time_ms", "#timestamp [ns]", "gx (deg/s)", "w_RS_S_x [rad s^-1]", "ax [g]".
 std::optional<ImuColumns> logger_columns(const CsvLine& header);
 
-/// The list has the form "time=t,gyro=gx,gy,gz,accel=ax,ay,az". A word that is no column name is the position of a
-/// column, from 0. Two time columns contain seconds and nanoseconds. Throws BadInput for an invalid list, and for names
-/// that are missing or repeated in the table.
+/// The list of columns has the form "time=t,gyro=gx,gy,gz,accel=ax,ay,az". A word that is no column name is the
+/// position of a column, from 0.
 ImuColumns chosen_columns(const LoggedTable& table, const std::string& choice);
 
 }  // namespace tumble::scenarios

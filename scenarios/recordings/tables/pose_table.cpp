@@ -44,7 +44,7 @@ bool is_quaternion(const std::string& name, char axis) {
 
 struct PoseColumns {
   std::size_t time = 0;
-  std::optional<std::size_t> nanoseconds;  ///< second time column, if the stamp is seconds and nanoseconds
+  std::optional<std::size_t> nanoseconds;  ///< for seconds and nanoseconds
   bool time_in_ns = false;                 ///< the column name states ns
   std::array<std::size_t, 3> position{};
   std::array<std::size_t, 4> quaternion{};  ///< x y z w
@@ -168,7 +168,7 @@ bool is_pose_table(const std::filesystem::path& file) {
     if (table.has_header()) columns_of(table.header(), missing);
     return table.has_header() && missing.empty();
   } catch (const BadInput&) {
-    return false;  // the reader of the other format reports the fault
+    return false;  // another reader reports the fault
   }
 }
 

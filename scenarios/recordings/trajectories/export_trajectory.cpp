@@ -17,7 +17,6 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// A reference may have gaps.
 bool known(const sim::Truth& truth, std::size_t i) {
   return truth.q_WB[i].coeffs().allFinite() && truth.p_WB_m[i].allFinite();
 }

@@ -11,7 +11,7 @@
 
 namespace tumble::scenarios {
 
-/// The world of the reference instrument has an upward z axis. NaN marks an unknown position.
+/// The z axis of the reference instrument's world points up. NaN marks an unknown position.
 struct ReferencePose {
   std::int64_t time_ns = 0;
   Eigen::Vector3d p_WA_m = Eigen::Vector3d::Zero();
@@ -23,17 +23,13 @@ inline constexpr double kReferenceNormTolerance = 1e-2;
 /// Optical systems and the command `export` write unknown poses with NaN in all numbers; readers skip these poses.
 bool is_unknown(const ReferencePose& pose);
 
-/// Returns an empty text for a valid pose, and normalises its quaternion. A pose is invalid if it has non-finite
-/// numbers, a quaternion norm that differs from 1 by more than 1 %, or a stamp that is not later than the stamp of
-/// `before`.
+/// A pose is invalid if it has non-finite numbers, a quaternion norm that differs from 1 by more than 1 %, or a stamp
+/// that is not later than the stamp of `before`.
 std::string problem_of(ReferencePose& pose, const ReferencePose* before);
 
-/// If `sorted` is true, sorts the poses by time and keeps the first of several poses with equal stamps. Throws BadInput
-/// with the file for fewer than two poses.
+/// If `sorted` is true, sorts the poses by time and keeps the first of several poses with equal stamps.
 void finish_poses(const std::filesystem::path& file, bool sorted, std::vector<ReferencePose>& poses);
 
-/// Returns "tum" if the first line has 8 numbers, "kitti" if it has 12, "odometry" for the header of a table of poses.
-/// Throws BadInput for another file.
 std::string pose_format(const std::filesystem::path& file);
 
 /// A line of a TUM file is "t x y z qx qy qz qw", t in seconds; '#' starts a comment, and blanks or commas separate
@@ -43,8 +39,7 @@ std::string pose_format(const std::filesystem::path& file);
 std::vector<ReferencePose> read_tum_poses(const std::filesystem::path& file, bool sorted);
 
 /// The lines of a KITTI file contain the upper three rows of pose matrices. Throws BadInput with file and line for a
-/// line without twelve finite numbers, or a matrix that is not a rotation (within 1e-3). Throws BadInput for different
-/// numbers of poses and times.
+/// line without twelve finite numbers, or a matrix that is not a rotation (within 1e-3).
 std::vector<ReferencePose> read_kitti_poses(const std::filesystem::path& file,
                                             const std::vector<std::int64_t>& times_ns);
 
@@ -57,18 +52,16 @@ bool is_pose_table(const std::filesystem::path& file);
 ///   "field.transform.translation.x"),
 /// - truth.csv of the command `export`, and short names ("timestamp tx ty tz qx qy qz qw").
 ///
-/// A time without a unit is in decimal seconds, or in ms, us or ns since 1970 according to its number of digits. Throws
-/// like read_tum_poses, and also for a missing or repeated column.
+/// A time without a unit is in decimal seconds, or in ms, us or ns since 1970 according to its number of digits.
 std::vector<ReferencePose> read_pose_table(const std::filesystem::path& file, bool sorted);
 
 std::size_t count_kitti_poses(const std::filesystem::path& file);
 
 /// The stamps of `poses` must increase in the recording's clock; they may start before time 0. If all poses are on a
-/// regular grid from time 0 (at least 0.1 ms), the truth uses this grid with unchanged poses. Otherwise, the truth has
-/// steps of 1 ms, or longer steps if it would have more than two million samples. Between poses at most 2.5 median
-/// steps apart, position is interpolated linearly and attitude by slerp. In larger gaps, both are unknown. The truth
-/// ends with the poses or at `end_ns`, whichever is earlier. Throws BadInput if no pose is known, or if the truth would
-/// be longer than a day.
+/// regular grid from time 0 (at least 0.1 ms), the truth uses this grid with unchanged poses. If the poses are on no
+/// regular grid, the truth has steps of 1 ms, or longer steps if it would have more than two million samples. Between
+/// poses at most 2.5 median steps apart, position is interpolated linearly and attitude by slerp; in larger gaps, both
+/// are unknown. The truth from reference poses ends with the last pose or at `end_ns`, whichever is earlier.
 sim::Truth reference_truth(const std::vector<ReferencePose>& poses, std::int64_t end_ns);
 
 }  // namespace tumble::scenarios

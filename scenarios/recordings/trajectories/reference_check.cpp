@@ -15,13 +15,12 @@ namespace {
 /// Reference and gyro contradict each other if their rotations differ by more than half of the rotation; they agree
 /// below 30 %.
 constexpr double kContradicts = 0.5, kReferenceAgrees = 0.3;
-/// A rotation difference above 0.15 is a fault of the file if another quaternion convention reduces it to less than 0.4
-/// times its value.
+/// A rotation difference above 0.15 is a fault of the pose file if another quaternion convention reduces the difference
+/// to less than 0.4 times its value.
 constexpr double kExplained = 0.15, kExplanationLeaves = 0.4;
 /// The filters of an IMU cause a delay of about 0.02 s.
 constexpr double kDelayNoted_s = 0.03;
 
-/// The user's choice of the frame is first, so it is kept if the poses fit it.
 std::vector<CandidateFrame> candidate_frames(const Eigen::Isometry3d& T_BA, const sim::Sensors& sensors) {
   const Eigen::Quaterniond q_BI(sensors.imus.front().T_BI.linear());
   std::vector<CandidateFrame> out = {{"as stated", Eigen::Quaterniond(T_BA.linear()).conjugate() * q_BI},
@@ -122,8 +121,7 @@ void require_clock(const TurningCheck& check, const std::string& imu, const std:
 
 std::string check_reference(const std::vector<ReferencePose>& poses, const Eigen::Isometry3d& T_BA,
                             const sim::Sensors& sensors, const std::string& where) {
-  const std::string unchecked = "the reference is not checked against a gyro: ";
-  if (sensors.imus.empty()) return fmt::format("{}the recording contains no IMU", unchecked);
+  if (sensors.imus.empty()) return "the reference is not checked against a gyro: the recording has no IMU";
   const sim::ImuRecord& imu = sensors.imus.front();
   std::vector<TimedAttitude> attitudes;
   for (const ReferencePose& pose : poses) attitudes.push_back({pose.time_ns, pose.q_WA});
@@ -131,9 +129,9 @@ std::string check_reference(const std::vector<ReferencePose>& poses, const Eigen
   const TurningCheck check = check_turning(attitudes, frames, imu, kDelaySearched_s);
   if (check.pairs == 0)
     return fmt::format(
-        "{}too few pairs of poses of the reference (0.05 to 1 s apart) rotate by at least 0.02 rad while '{}' has "
-        "readings below its range",
-        unchecked, imu.name);
+        "the reference is not checked against a gyro: too few pairs of poses of the reference (0.05 to 1 s apart) "
+        "rotate by at least 0.02 rad while '{}' has readings below its range",
+        imu.name);
   if (check.upright) {
     throw BadInput(
         fmt::format("{}: the force that '{}' measures should point up on average, but differs from the vertical of the "

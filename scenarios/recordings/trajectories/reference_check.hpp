@@ -14,10 +14,9 @@ namespace tumble::scenarios {
 ///
 /// @param poses Poses of frame A in the recording's clock.
 /// @param T_BA Pose of frame A in the body, from the user or the messages.
-/// @param where Start of error messages: the file, or the bag and the topic.
 /// @return A note on agreement, on a difference that the IMU or the mounting can cause, or on why the check was
-///   impossible. Throws BadInput if the quaternions have w first, the poses are inverted, or the stamps are wrong by
-///   0.15 s or more.
+/// impossible. Throws BadInput if the quaternions have w first, the poses are inverted, or the stamps are wrong by 0.15
+/// s or more.
 std::string check_reference(const std::vector<ReferencePose>& poses, const Eigen::Isometry3d& T_BA,
                             const sim::Sensors& sensors, const std::string& where);
 

@@ -18,8 +18,8 @@ namespace {
 constexpr std::int64_t kStepMin_ns = 100000, kStepUsual_ns = 1000000;
 constexpr std::int64_t kSamplesMax = 2000000;
 constexpr std::int64_t kLongestReference_ns = 86400ll * 1000000000;
-/// Poses are differentiated over twice this interval. With 70 ms, the noise of an optical reference at rest is below
-/// the thresholds for rest.
+/// Poses are differentiated over twice this interval, so that the noise of an optical reference at rest is below the
+/// thresholds for rest.
 constexpr std::int64_t kReach_ns = 70000000;
 
 std::vector<std::int64_t> times_of(const std::vector<ReferencePose>& poses) {
@@ -69,8 +69,6 @@ Eigen::Vector3d rotation_vector(const Eigen::Quaterniond& q) {
   return turn.angle() * turn.axis();
 }
 
-/// Velocity and rate are central differences over `reach` samples on each side. Both are unknown if a sample within
-/// `reach` is unknown.
 void differentiate(sim::Truth& truth, std::size_t reach) {
   const Eigen::Vector3d unknown = Eigen::Vector3d::Constant(kNaN);
   const std::size_t count = truth.q_WB.size();

@@ -46,7 +46,6 @@ class GyroIntegral {
     }
   }
 
-  /// Returns nothing outside the readings, across a gap, or if a reading is saturated.
   std::optional<Eigen::Quaterniond> between(std::int64_t from_ns, std::int64_t to_ns) const {
     const std::size_t first = sample_at(from_ns), last = sample_at(to_ns);
     if (last == imu_.time_ns.size() || from_ns < imu_.time_ns.front()) return std::nullopt;
@@ -64,7 +63,7 @@ class GyroIntegral {
 
   const sim::ImuRecord& imu_;
   std::vector<Eigen::Quaterniond> q_;
-  std::vector<std::size_t> unusable_;  ///< number of unusable samples up to each sample
+  std::vector<std::size_t> unusable_;  ///< unusable samples before each sample
 };
 
 struct AttitudePair {
@@ -89,8 +88,7 @@ std::optional<AttitudePair> pair_from(std::span<const TimedAttitude> attitudes, 
   return out;
 }
 
-/// Pairs begin 50 ms apart and may overlap. Pairs with little rotation contain mainly attitude noise, so they count
-/// only if there are few other pairs.
+/// Pairs with little rotation contain mainly attitude noise, so they count only if there are few other pairs.
 std::vector<AttitudePair> pairs_of(std::span<const TimedAttitude> attitudes) {
   std::vector<AttitudePair> out;
   for (std::size_t first = 0; first < attitudes.size();) {
@@ -150,7 +148,6 @@ class TurningComparison {
             share([&](const Measured& said) { return angle_rad(each.seen_I[said.pair], said.turn); })};
   }
 
-  /// Of equal fits, the file as written is preferred.
   TurningFit best() const {
     TurningFit out = fit(0);
     for (std::size_t k = 1; k < readings_.size(); ++k) {
@@ -159,8 +156,8 @@ class TurningComparison {
     return out;
   }
 
-  /// For a correct interpretation, the mean specific force in the world of the attitudes points up and has about the
-  /// size of gravity.
+  /// For a correct quaternion convention, the mean specific force in world axes points up and has about the size of
+  /// gravity.
   Eigen::Vector3d force(const TurningFit& fit, const sim::ImuRecord& imu) const {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
     for (const Measured& said : measured_) {
@@ -173,7 +170,7 @@ class TurningComparison {
     return sum / std::max(static_cast<double>(measured_.size()), 1.0);
   }
 
-  /// In a motion about a single axis, several interpretations fit about equally well.
+  /// In a motion about a single axis, several quaternion conventions fit the gyro about equally well.
   std::vector<TurningFit> alike(const TurningFit& fitted) const {
     std::vector<TurningFit> out;
     for (std::size_t k = 0; k < readings_.size(); ++k) {
@@ -208,7 +205,7 @@ class TurningComparison {
 
   void add_reading(QuaternionConvention written, std::size_t frame) {
     const Eigen::Quaterniond& q_AI = frames_[frame].q_AI;
-    for (const Reading& other : readings_) {  // a frame with equal mounting exists already
+    for (const Reading& other : readings_) {  // a frame with equal mounting exists
       if (other.written == written && angle_rad(frames_[other.frame].q_AI, q_AI) < 1e-3) return;
     }
     Reading out{written, frame, {}};
@@ -257,15 +254,16 @@ void search_delay(TurningComparison& comparison, double delay_max_s, std::size_t
   search(best.delay_s, kCoarse_s, kFine_s);
 }
 
-constexpr double kUpMin_m_s2 = 5.0;              ///< smallest mean force that determines the vertical
-constexpr double kUpright = 0.9, kTilted = 0.5;  ///< cosines of the tilt of the mean force
+constexpr double kUpMin_m_s2 = 5.0;              ///< smallest usable mean force
+constexpr double kUpright = 0.9, kTilted = 0.5;  ///< cosines of the tilt
 
 double uprightness(const TurningComparison& comparison, const sim::ImuRecord& imu, const TurningFit& fit) {
   const Eigen::Vector3d up = comparison.force(fit, imu);
   return up.norm() < kUpMin_m_s2 ? 0.0 : up.z() / up.norm();
 }
 
-/// If several quaternion conventions fit the rotations, gravity is most vertical in the correct one.
+/// If several quaternion conventions fit the rotations, the mean specific force is most vertical in the correct
+/// convention.
 void prefer_upright(TurningComparison& comparison, const sim::ImuRecord& imu, TurningFit& fit) {
   if (fit.written == QuaternionConvention::as_stated) return;
   comparison.set_delay(fit.delay_s, 0);
@@ -321,7 +319,6 @@ TurningCheck check_turning(std::span<const TimedAttitude> attitudes, const std::
   compare_with_gravity(comparison, imu, out);
   prefer_upright(comparison, imu, out.reading.undelayed);
   out.reading.delayed = out.reading.undelayed;
-  // A delay at which few pairs remain fits by chance.
   const std::size_t least = std::max(kDelayPairsMin, out.pairs / 2);
   if (delay_max_s <= 0.0 || out.pairs < least) return out;
   out.clock_known = clock_shows(comparison, out.stated.difference, least);

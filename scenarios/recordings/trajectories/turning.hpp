@@ -12,8 +12,8 @@
 
 #include "sim/recording.hpp"
 
-/// A pose file does not state the frame of its poses, its quaternion convention or its clock. A comparison of its
-/// attitudes with a gyro determines them.
+/// A pose file does not state the frame of its poses, its quaternion convention or its clock; a comparison with a gyro
+/// determines them.
 namespace tumble::scenarios {
 
 struct TimedAttitude {
@@ -23,17 +23,17 @@ struct TimedAttitude {
 
 struct CandidateFrame {
   std::string name;
-  Eigen::Quaterniond q_AI = Eigen::Quaterniond::Identity();  ///< rotates vectors from IMU axes to axes of the frame
+  Eigen::Quaterniond q_AI = Eigen::Quaterniond::Identity();
 };
 
 enum class QuaternionConvention { as_stated, w_first, inverse, w_first_inverse };
 
-/// The difference is the median rotation difference between gyro and attitudes over pairs of attitudes, as a fraction
-/// of the median rotation.
+/// `difference` is the median rotation difference between gyro and attitudes over pairs of attitudes, as a fraction of
+/// the median rotation.
 struct TurningFit {
   QuaternionConvention written = QuaternionConvention::as_stated;
   std::size_t frame = 0;  ///< index of the candidate
-  double delay_s = 0.0;   ///< time by which the stamps of the attitudes are too late
+  double delay_s = 0.0;   ///< positive: stamps are too late
   double difference = 0.0;
 };
 
@@ -46,19 +46,20 @@ template <class Fit>
 struct DelayedFit {
   Fit undelayed, delayed;
 
-  /// Returns the fit with a delay if its difference is clearly below half of that without a delay. Of a few hundred
-  /// delays, one fits somewhat better by chance; the margin of 0.02 excludes this.
+  /// Returns the fit with a delay only if its difference is clearly below half of that without a delay, because one of
+  /// a few hundred delays fits better by chance.
   const Fit& likely() const { return delayed.difference < 0.5 * undelayed.difference - 0.02 ? delayed : undelayed; }
 };
 
 struct TurningCheck {
-  std::size_t pairs = 0;  ///< pairs that the gyro covers; 0 if there are too few
+  std::size_t pairs = 0;  ///< 0: too few
   TurningFit stated;
   DelayedFit<TurningFit> reading;
   DelayedFit<MountingFit> mounting;
-  bool clock_known = false;  ///< true: a delay of 0.3 s would be detected
-  bool order_known = false;  ///< true: another order or direction of the quaternions would be detected
-  /// Gravity is vertical in this fit, but not in the written convention; both agree equally well with the gyro.
+  bool clock_known = false;  ///< a delay of 0.3 s is detectable
+  bool order_known = false;  ///< wrong quaternion conventions are detectable
+  /// Alternative quaternion convention that agrees equally well with the gyro, and in which gravity is vertical, unlike
+  /// in the written convention.
   std::optional<TurningFit> upright;
 };
 
@@ -71,12 +72,13 @@ std::string delay_text(double delay_s);
 std::string delay_remedy(double delay_s);
 
 /// Compares the rotations between pairs of attitudes (0.05 to 1 s and 0.02 to 2.5 rad apart) with the rotations from
-/// the gyro: products of exponentials of unsaturated samples, without a gap above 0.1 s. At most 400 pairs are used,
-/// spread evenly over the recording. Fewer than 6 pairs give no result.
+/// unsaturated gyro samples without a gap above 0.1 s. At most 400 pairs of attitudes are used, spread evenly over the
+/// recording. Fewer than 6 pairs of attitudes give no result.
 ///
 /// @param frames       Frames to which the attitudes may belong; the first is the user's choice.
 /// @param delay_max_s  Largest delay in either direction, searched in steps of 20 ms, then of 2 ms. With fewer than 20
-///   pairs, or for 0, no delay is searched. The cost is O(N log N + pairs x delays): half a second for up to 5 s.
+/// pairs of attitudes, or for `delay_max_s` = 0, no delay is searched. The cost of the comparison is O(N log N + pairs
+/// x delays): half a second for delays of up to 5 s.
 TurningCheck check_turning(std::span<const TimedAttitude> attitudes, const std::vector<CandidateFrame>& frames,
                            const sim::ImuRecord& imu, double delay_max_s);
 

@@ -55,7 +55,6 @@ class Ground {
   std::vector<double> heights_m_;
 };
 
-/// Relief multiplied by this factor is level around a position, so that a robot can rest there.
 double fade(double distance_m, double inner_m, double outer_m);
 
 }  // namespace tumble::sim

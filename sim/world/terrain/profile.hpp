@@ -8,8 +8,8 @@ namespace tumble::sim {
 struct SlopeProfile {
   double edge_x_m = 0.0;     ///< x of the upper corner
   double slope_rad = 0.6;    ///< steepness, below a right angle
-  double drop_m = 3.0;       ///< height from the run-out to the top
-  double rounding_m = 0.25;  ///< length over which a corner bends, above 0
+  double drop_m = 3.0;       ///< from the run-out to the top
+  double rounding_m = 0.25;  ///< bending length of a corner, above 0
 
   double length_m() const;  ///< horizontal length of the slope
   double height_m(double x_m) const;
@@ -21,8 +21,8 @@ struct LedgeProfile {
   double edge_x_m = 0.0;  ///< x of the first drop
   int drops = 2;          ///< number of drops, at least 1
   double drop_height_m = 1.5;
-  double face_m = 0.1;          ///< horizontal width of a face, above 0
-  double ledge_length_m = 2.0;  ///< horizontal length of a ledge, above 0
+  double face_m = 0.1;          ///< horizontal, above 0
+  double ledge_length_m = 2.0;  ///< horizontal, above 0
   double ledge_slope_rad = 0.3;
 
   double height_m(double x_m) const;

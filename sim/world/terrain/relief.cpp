@@ -36,7 +36,6 @@ void add_bumps(Ground& ground, Stream& stream, int count, double height_m) {
     const double x_m = stream.uniform(-half_m, half_m), y_m = stream.uniform(-half_m, half_m);
     const double top_m = stream.uniform(-height_m, height_m);
     const double sigma_m = stream.uniform(0.2, 0.7);
-    // Less than 0.04 % of the bump's height remains beyond four sigmas.
     ground.add_near(x_m, y_m, 4.0 * sigma_m, [&](double x, double y) {
       const double dx = x - x_m, dy = y - y_m;
       return top_m * std::exp(-0.5 * (dx * dx + dy * dy) / (sigma_m * sigma_m));

@@ -8,14 +8,14 @@
 
 namespace tumble::sim {
 
-/// The power per wave number E(k) of a rough surface, integrated over directions, is proportional to k^-exponent for
+/// The power per wave number k of a rough surface, integrated over directions, is proportional to k^-exponent for
 /// wavelengths within [shortest_m, longest_m], and zero outside.
 struct ReliefSpectrum {
-  double rms_m = 0.1;       ///< root mean square of the height over random phases, at least 0
+  double rms_m = 0.1;       ///< root mean square, at least 0
   double shortest_m = 1.0;  ///< above 0
   double longest_m = 9.0;   ///< at least shortest_m
-  double exponent = 3.0;    ///< 3: amplitude proportional to wavelength; natural ground has 2 to 3.5
-  bool ruled = false;       ///< true: the height depends only on x, so that every contour line is straight
+  double exponent = 3.0;    ///< 3: amplitude proportional to wavelength
+  bool ruled = false;       ///< the height depends only on x
 };
 
 /// Relief is a random surface: a sum of plane waves with random phases and directions, and log-uniform wavelengths.

@@ -13,11 +13,11 @@ namespace tumble::sim {
 struct RockField {
   int count = 0;
   double largest_m = 0.3;  ///< largest half axis
-  /// Horizontal half axes are uniform in [smallest_share, 1] * largest_m, heights in [0.75 smallest_share, 0.7] *
-  /// largest_m
+  /// Horizontal half axes of the rocks are uniform in [smallest_share, 1] * largest_m, heights in [0.75 smallest_share,
+  /// 0.7] * largest_m
   double smallest_share = 0.4;
   Rectangle area;
-  Disc clear;  ///< no rock reaches into this disc
+  Disc clear;  ///< free of rocks
 };
 
 struct Rock {
@@ -26,7 +26,6 @@ struct Rock {
   double yaw_rad;
 };
 
-/// Throws InvalidSituation if the clear disc leaves no room for rocks.
 std::vector<Rock> strew_rocks(Stream& stream, const RockField& field, const Ground& ground);
 void add_rocks(mjSpec* spec, engine::World& world, const std::vector<Rock>& rocks);
 

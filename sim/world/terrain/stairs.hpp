@@ -8,13 +8,13 @@
 namespace tumble::sim {
 
 struct Flight {
-  double edge_x_m = 0.0;  ///< x of the edge of the top, where the first riser is
+  double edge_x_m = 0.0;  ///< x of the first riser
   int steps = 12;         ///< number of risers, at least 1
   double rise_m = 0.17;
   double tread_m = 0.29;
   double half_width_m = 2.0;
 
-  double slope_rad() const;  ///< slope of the line through the edges
+  double slope_rad() const;  ///< through the edges
   double drop_m() const { return steps * rise_m; }
   double length_m() const { return steps * tread_m; }
 };

@@ -12,11 +12,11 @@ namespace tumble::sim {
 
 struct Stand {
   int count = 0;
-  double largest_radius_m = 0.15;  ///< radii are uniform in [0.4, 1] times this value
+  double largest_radius_m = 0.15;  ///< uniform from 0.4 times this value
   double spacing_m = 0.8;          ///< minimum distance between two axes
-  double lane_half_width_m = 0.0;  ///< no tree is within this distance of y = 0
+  double lane_half_width_m = 0.0;  ///< no tree near y = 0
   Rectangle area;
-  Disc clear;  ///< no tree is in this disc
+  Disc clear;  ///< free of trees
 };
 
 struct Trunk {
@@ -25,7 +25,6 @@ struct Trunk {
   double half_height_m;  ///< uniform in [1.5, 3] m
 };
 
-/// Throws InvalidSituation if spacing, lane and clear disc leave no room for trunks.
 std::vector<Trunk> plant_trunks(Stream& stream, const Stand& stand, const Ground& ground);
 void add_trunks(mjSpec* spec, engine::World& world, const std::vector<Trunk>& trunks);
 

@@ -216,9 +216,9 @@ TEST_F(ExternalMethod, StampsInAnotherUnitAreNamedWithTheFirstThatIsOutside) {
   EXPECT_GT(run(in("0")).poses.size(), 100u);
   EXPECT_THAT(refused(in("9")),
               ::testing::AllOf(HasSubstr("poses.tum:1: the time stamp is"),
-                               HasSubstr("must be in seconds; the values seem to be in nanoseconds")));
-  EXPECT_THAT(refused(in("6", "position")), HasSubstr("the values seem to be in microseconds"));
-  EXPECT_THAT(refused(in("3", "attitude")), HasSubstr("the values seem to be in milliseconds"));
+                               HasSubstr("must be in seconds; the time stamps seem to be in nanoseconds")));
+  EXPECT_THAT(refused(in("6", "position")), HasSubstr("the time stamps seem to be in microseconds"));
+  EXPECT_THAT(refused(in("3", "attitude")), HasSubstr("the time stamps seem to be in milliseconds"));
   EXPECT_THAT(refused(in("-3")), HasSubstr("must be in seconds"));
 }
 

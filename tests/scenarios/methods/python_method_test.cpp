@@ -207,9 +207,10 @@ TEST_F(PythonMethod, TimesInAnotherUnitAreNamed) {
   const auto of = [&](const std::string& times) {
     return function("slam", "s = np.unique(recording.imus[0].time_ns" + times + "); return s" + all);
   };
-  EXPECT_THAT(refused(of(" // 1000")),
-              AllOf(HasSubstr("pose "), HasSubstr("must be in nanoseconds; the values seem to be in microseconds")));
-  EXPECT_THAT(refused(of(" // 1000000")), HasSubstr("the values seem to be in milliseconds"));
+  EXPECT_THAT(
+      refused(of(" // 1000")),
+      AllOf(HasSubstr("pose "), HasSubstr("must be in nanoseconds; the time stamps seem to be in microseconds")));
+  EXPECT_THAT(refused(of(" // 1000000")), HasSubstr("the time stamps seem to be in milliseconds"));
   EXPECT_THAT(refused(of("[:10] // 10**5")),
               AllOf(HasSubstr("must be in nanoseconds"), Not(HasSubstr("seem to be in"))));
   EXPECT_THAT(refused(of(" * 1000")), AllOf(HasSubstr("stamp"), HasSubstr("s")));
