@@ -13,6 +13,8 @@
 #include "results.hpp"
 #include "saving.hpp"
 #include "streams.hpp"
+#include "tumble/attitude/imu_merge.hpp"
+#include "tumble/odometry/rolling_expert_params.hpp"
 #include "tumble/odometry/rolling_odometry.hpp"
 #include "tumble/rolling/rolling_filter.hpp"
 #include "tumble/rolling/rolling_smoother.hpp"

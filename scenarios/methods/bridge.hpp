@@ -14,7 +14,7 @@
 #include "tumble/common/imu.hpp"
 #include "tumble/common/status.hpp"
 #include "tumble/mapping/lidar.hpp"
-#include "tumble/odometry/imu_sheet.hpp"
+#include "tumble/odometry/sensor_sheets.hpp"
 
 /// bridge.hpp converts the records of the library `sim` to the messages of the library `estimator`. The conventions of
 /// the two libraries compare as follows:

@@ -4,10 +4,10 @@
 #include <limits>
 #include <utility>
 
+#include "gyro_offset.hpp"
 #include "rate_readings.hpp"
 #include "rate_rounds.hpp"
 #include "rate_states.hpp"
-#include "tumble/angular_velocity/detail/gyro_offset.hpp"
 #include "tumble/angular_velocity/detail/recording_check.hpp"
 
 namespace tumble {

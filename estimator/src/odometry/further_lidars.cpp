@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/odometry/detail/further_lidars.hpp"
+#include "further_lidars.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -9,7 +9,7 @@
 #include "tumble/attitude/detail/pivot_check.hpp"
 #include "tumble/attitude/detail/rest_gravity.hpp"
 #include "tumble/attitude/imu_merge.hpp"
-#include "tumble/odometry/imu_sheet.hpp"
+#include "tumble/odometry/sensor_sheets.hpp"
 
 namespace tumble {
 

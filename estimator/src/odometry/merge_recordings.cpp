@@ -9,7 +9,7 @@
 
 #include "tumble/angular_velocity/clipping_finder.hpp"
 #include "tumble/angular_velocity/detail/frozen_axes.hpp"
-#include "tumble/odometry/detail/unit_alignment.hpp"
+#include "unit_alignment.hpp"
 
 namespace tumble {
 

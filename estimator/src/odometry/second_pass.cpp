@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/odometry/detail/second_pass.hpp"
+#include "second_pass.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -3,6 +3,8 @@
 
 #include "tumble/attitude/regime_smoother.hpp"
 #include "tumble/common/detail/outlier_filter.hpp"
+#include "tumble/mapping/lidar_inertial_odometry.hpp"
+#include "tumble/odometry/tumbling_expert_params.hpp"
 #include "tumble/odometry/tumbling_odometry.hpp"
 
 /// tumbling_odometry_params.hpp computes the parameters of rate estimation and mapping from TumblingOdometry::Params.

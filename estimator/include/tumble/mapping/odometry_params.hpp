@@ -4,7 +4,7 @@
 #include <Eigen/Geometry>
 
 #include "tumble/common/parameters.hpp"
-#include "tumble/mapping/detail/calibration_fields.hpp"
+#include "tumble/mapping/calibration.hpp"
 #include "tumble/mapping/detail/inertial_params.hpp"
 #include "tumble/mapping/detail/map_params.hpp"
 #include "tumble/mapping/detail/placing_params.hpp"

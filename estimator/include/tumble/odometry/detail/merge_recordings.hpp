@@ -13,7 +13,7 @@
 #include "tumble/common/imu.hpp"
 #include "tumble/common/sensor_health.hpp"
 #include "tumble/common/status.hpp"
-#include "tumble/odometry/imu_sheet.hpp"
+#include "tumble/odometry/sensor_sheets.hpp"
 
 namespace tumble {
 

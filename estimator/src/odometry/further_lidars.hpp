@@ -9,18 +9,9 @@
 
 #include "tumble/common/status.hpp"
 #include "tumble/odometry/detail/waiting_input.hpp"
-#include "tumble/odometry/lidar_sheet.hpp"
+#include "tumble/odometry/tumbling_params.hpp"
 
 namespace tumble {
-
-/// FurtherLidar is a lidar in addition to the lidar of TumblingParams. The mounting relative to the first lidar and the
-/// clock offset must be exact, because TumblingOdometry estimates only the mounting of the first lidar.
-struct FurtherLidar {
-  Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< pose of the lidar in IMU axes
-  LidarSheet sheet;
-  Eigen::AlignedBox3d own_body_L;  ///< see TumblingParams::own_body_L, in axes of this lidar
-  double time_offset_s = 0.0;      ///< clock of the first lidar minus clock of this lidar
-};
 
 /// Adds the points of further lidars to the sweeps of the first lidar. The class transforms each point to axes of the
 /// first lidar, and adds it to the sweep that contains the point's time. A copy of a FurtherLidars contains the

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/odometry/detail/position_frame.hpp"
+#include "position_alignment.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -59,21 +59,6 @@ PositionFrame fit_frame(const std::deque<PositionAlignment::Pair>& pairs) {
 }
 
 }  // namespace
-
-PoseState PositionFrame::transform(const PoseState& in_W) const {
-  PoseState out = in_W;
-  const Eigen::Matrix3d R = T_PW.linear();
-  out.p_WA_m = T_PW * in_W.p_WA_m;
-  out.q_WA = (Eigen::Quaterniond(R) * in_W.q_WA).normalized();
-  out.v_WA_m_s = R * in_W.v_WA_m_s;
-  Eigen::Matrix<double, 6, 4> J = Eigen::Matrix<double, 6, 4>::Zero();
-  J.topLeftCorner<3, 3>().setIdentity();
-  J.col(3) << kUp.cross(R * (in_W.p_WA_m - reference_W_m)), kUp;
-  out.covariance = J * covariance * J.transpose();
-  const Eigen::Matrix3d attitude = R * in_W.covariance.bottomRightCorner<3, 3>() * R.transpose();
-  out.covariance.block<2, 2>(3, 3) += attitude.topLeftCorner<2, 2>();
-  return out;
-}
 
 Status PositionAlignment::add(const PositionReading& reading, TimeNs done_ns, TimeNs latest_ns, std::size_t most) {
   const Eigen::Matrix3d& covariance = reading.covariance_m2;

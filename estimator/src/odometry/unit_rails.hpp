@@ -11,7 +11,7 @@
 #include "tumble/attitude/imu_merge.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/common/status.hpp"
-#include "tumble/odometry/imu_sheet.hpp"
+#include "tumble/odometry/sensor_sheets.hpp"
 
 namespace tumble {
 

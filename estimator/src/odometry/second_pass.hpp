@@ -8,9 +8,9 @@
 #include <span>
 #include <vector>
 
+#include "odometry_pass.hpp"
 #include "tumble/angular_velocity/rest_detector.hpp"
-#include "tumble/common/parameters.hpp"
-#include "tumble/odometry/detail/odometry_pass.hpp"
+#include "tumble/odometry/tumbling_expert_params.hpp"
 
 namespace tumble {
 
@@ -32,36 +32,7 @@ namespace tumble {
 /// early.
 class SecondPass {
  public:
-  struct Params {
-    double after_s = 3.0;           ///< duration of motion before the second pass starts; 0: none
-    double lost_s = 0.4;            ///< duration of tracking failure that starts a second pass; 0: never
-    double lag_s = 0.5;             ///< lag of the rates of the second pass
-    std::size_t sweeps = 3;         ///< number of buffered sweeps per new sweep, at least two
-    double abandon_after_s = 10.0;  ///< duration of motion after which the second pass is abandoned
-    /// Factor on the calibration's variance, because the second pass uses the readings again.
-    double inflation = 4.0;
-    double rest_s = 1.0;  ///< duration of the initial rest that is buffered
-
-    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
-    template <class Self, class Visitor>
-    static void fields(Self& p, Visitor& visit) {
-      visit(p.after_s, {"after_s", "s", 0.0, 100.0,
-                        "after this time in motion, a second pass processes all data again with the estimated "
-                        "calibration; 0: no second pass"});
-      visit(p.lost_s,
-            {"lost_s", "s", 0.0, 100.0,
-             "time without a registered sweep after which the second pass starts early, once; 0: no early start"});
-      visit(p.lag_s, {"lag_s", "s", 0.0, 10.0, "second pass: age of a sample when its rate is reported"});
-      visit(p.sweeps, {"sweeps", "1", 2, 1000,
-                       "number of sweeps that the second pass processes per new sweep; a larger value finishes earlier "
-                       "with more load"});
-      visit(p.abandon_after_s, {"abandon_after_s", "s", 0.0, 1000.0,
-                                "maximum duration of stored motion; the second pass must finish within this time"});
-      visit(p.inflation,
-            {"inflation", "1", 1.0, 1e6, "factor on the variance of the calibration at the start of the second pass"});
-      visit(p.rest_s, {"rest_s", "s", 0.1, 100.0, "maximum duration of the initial rest that is stored"});
-    }
-  };
+  using Params = SecondPassParams;
 
   /// Constructs with the parameters `rate` and `mapping` of the first pass. Throws InvalidParams if a parameter is out
   /// of bounds.

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <variant>
 
+#include "tumble/common/pose.hpp"
 #include "tumble/common/status.hpp"
 #include "tumble/common/time.hpp"
 
@@ -43,5 +44,28 @@ Status check_reading(const OdometerReading& reading);
 /// Return the start and the end of an odometer reading. A velocity reading has equal start and end.
 TimeNs reading_start_ns(const OdometerReading& reading);
 TimeNs reading_end_ns(const OdometerReading& reading);
+
+/// PositionReading is the position of an antenna or tag A on the robot in a frame P with z up, for example from GPS (as
+/// local east, north, up) or from beacons. PositionAlignment assumes that the errors of the readings are independent.
+/// If the errors are correlated over time, state a larger covariance.
+struct PositionReading {
+  TimeNs time_ns = 0;  ///< in the IMU's clock
+  Eigen::Vector3d p_PA_m = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();  ///< in P; the mean variance of the axes is used
+  Eigen::Vector3d p_IA_m = Eigen::Vector3d::Zero();         ///< lever arm: position of A in IMU axes
+};
+
+/// PositionFrame is the estimated transform from the world W of the poses to the frame P of the position readings. The
+/// drift of W relative to P is part of the transform, so poses in P do not drift.
+struct PositionFrame {
+  Eigen::Isometry3d T_PW = Eigen::Isometry3d::Identity();  ///< the rotation is about the vertical
+  Eigen::Vector3d reference_W_m = Eigen::Vector3d::Zero();
+  /// Covariance in P of two errors: the displacement of the reference point [m], and the rotation about the vertical
+  /// through the reference point [rad].
+  Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
+
+  /// Converts a pose from W to P, with the covariance of the position in P and the tilt errors of `in_W`.
+  PoseState transform(const PoseState& in_W) const;
+};
 
 }  // namespace tumble

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/mapping/detail/odometer_reading.hpp"
+#include "tumble/mapping/further_readings.hpp"
 
 #include <cmath>
 #include <limits>
@@ -51,6 +51,22 @@ TimeNs reading_start_ns(const OdometerReading& reading) {
 TimeNs reading_end_ns(const OdometerReading& reading) {
   const auto* const motion = std::get_if<MotionReading>(&reading);
   return motion != nullptr ? motion->to_ns : std::get_if<VelocityReading>(&reading)->time_ns;
+}
+
+PoseState PositionFrame::transform(const PoseState& in_W) const {
+  PoseState out = in_W;
+  const Eigen::Matrix3d R = T_PW.linear();
+  const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+  out.p_WA_m = T_PW * in_W.p_WA_m;
+  out.q_WA = (Eigen::Quaterniond(R) * in_W.q_WA).normalized();
+  out.v_WA_m_s = R * in_W.v_WA_m_s;
+  Eigen::Matrix<double, 6, 4> J = Eigen::Matrix<double, 6, 4>::Zero();
+  J.topLeftCorner<3, 3>().setIdentity();
+  J.col(3) << up.cross(R * (in_W.p_WA_m - reference_W_m)), up;
+  out.covariance = J * covariance * J.transpose();
+  const Eigen::Matrix3d attitude = R * in_W.covariance.bottomRightCorner<3, 3>() * R.transpose();
+  out.covariance.block<2, 2>(3, 3) += attitude.topLeftCorner<2, 2>();
+  return out;
 }
 
 }  // namespace tumble
