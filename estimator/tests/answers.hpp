@@ -4,9 +4,9 @@
 #include <optional>
 #include <vector>
 
-#include "tumble/angular_velocity/clipping_finder.hpp"
+#include "tumble/angular_velocity/detail/clipping_finder.hpp"
 #include "tumble/angular_velocity/rig_constants.hpp"
-#include "tumble/attitude/imu_merge.hpp"
+#include "tumble/attitude/detail/imu_merge.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 #include "tumble/tumble.hpp"
 

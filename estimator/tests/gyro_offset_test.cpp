@@ -10,7 +10,7 @@
 
 #include "thrown_body.hpp"
 #include "thrown_params.hpp"
-#include "tumble/angular_velocity/rate_smoother.hpp"
+#include "tumble/angular_velocity/detail/rate_smoother.hpp"
 #include "tumble/tumble.hpp"
 
 namespace tumble {

@@ -9,7 +9,7 @@
 #include "damaged_bytes.hpp"
 #include "thrown_body.hpp"
 #include "thrown_params.hpp"
-#include "tumble/angular_velocity/clipping_finder.hpp"
+#include "tumble/angular_velocity/detail/clipping_finder.hpp"
 #include "tumble/angular_velocity/rig_constants.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 #include "tumble/odometry/tumbling_expert_params.hpp"

@@ -12,7 +12,7 @@
 #include "scenarios/methods/sphere_attitude.hpp"
 #include "tumble/odometry/detail/merge_recordings.hpp"
 #include "tumble/odometry/rolling_expert_params.hpp"
-#include "tumble/rolling/rolling_smoother.hpp"
+#include "tumble/rolling/detail/rolling_smoother.hpp"
 
 namespace tumble::scenarios {
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <span>
 
-#include "tumble/angular_velocity/rest_detector.hpp"
+#include "tumble/angular_velocity/detail/rest_detector.hpp"
 #include "tumble/common/imu.hpp"
 
 namespace tumble {

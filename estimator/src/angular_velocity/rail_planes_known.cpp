@@ -2,7 +2,7 @@
 // rail_planes_known.cpp classifies readings by known saturation planes, and uses planes of an earlier run.
 #include <cmath>
 
-#include "tumble/angular_velocity/rail_planes.hpp"
+#include "tumble/angular_velocity/detail/rail_planes.hpp"
 
 namespace tumble {
 

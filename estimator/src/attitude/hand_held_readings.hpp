@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "tumble/attitude/hand_held_smoother.hpp"
+#include "tumble/attitude/detail/hand_held_smoother.hpp"
 
 /// hand_held_readings.hpp assigns the IMU readings of a hand-held body to nodes (time steps), as input of Problem.
 namespace tumble::hand_held {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "tumble/attitude/imu_merge.hpp"
+#include "tumble/attitude/detail/imu_merge.hpp"
 
 // imu_merge_health.cpp detects IMUs that are saturated, frozen, or in disagreement with the other IMUs.
 namespace tumble {

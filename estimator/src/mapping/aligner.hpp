@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "tumble/mapping/detail/registration.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
-#include "tumble/mapping/registration.hpp"
 
 namespace tumble::mapping {
 

@@ -4,8 +4,8 @@
 #include <Eigen/Core>
 #include <span>
 
+#include "tumble/mapping/detail/sweep_trajectory.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
-#include "tumble/mapping/sweep_trajectory.hpp"
 
 namespace tumble::mapping {
 

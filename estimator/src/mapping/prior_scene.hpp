@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "tumble/mapping/detail/voxel_map.hpp"
 #include "tumble/mapping/prior_map.hpp"
-#include "tumble/mapping/voxel_map.hpp"
 
 /// prior_scene.hpp aligns the map of the current run (frame W) with a prior map (frame M), see mapping.md,
 /// "Localisation in a prior map".

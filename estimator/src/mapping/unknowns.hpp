@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "tumble/mapping/registration.hpp"
+#include "tumble/mapping/detail/registration.hpp"
 
 /// unknowns.hpp names the blocks of vectors and matrices over the unknowns of a sweep (docs/maths/mapping.md). The
 /// names replace indices, as in `rows(F, velocity)` for a matrix and `segment(step, velocity)` for a vector.

@@ -7,7 +7,7 @@
 #include <memory>
 #include <utility>
 
-#include "tumble/angular_velocity/clipping_finder.hpp"
+#include "tumble/angular_velocity/detail/clipping_finder.hpp"
 #include "tumble/angular_velocity/detail/frozen_axes.hpp"
 #include "unit_alignment.hpp"
 

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "tumble/attitude/detail/regime_stream.hpp"
 #include "tumble/attitude/detail/rest_gravity.hpp"
-#include "tumble/attitude/regime_stream.hpp"
 #include "tumble/mapping/detail/localisation.hpp"
 #include "tumble/mapping/detail/sweep_scale.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "saved_bytes.hpp"
-#include "tumble/angular_velocity/clipping_finder.hpp"
+#include "tumble/angular_velocity/detail/clipping_finder.hpp"
 
 /// saved_rails.hpp saves the saturation limits and saturation planes that one IMU revealed.
 namespace tumble::odometry {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "odometry_pass.hpp"
-#include "tumble/angular_velocity/rest_detector.hpp"
+#include "tumble/angular_velocity/detail/rest_detector.hpp"
 #include "tumble/odometry/tumbling_expert_params.hpp"
 
 namespace tumble {

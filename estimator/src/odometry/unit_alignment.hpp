@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "tumble/attitude/imu_merge.hpp"
+#include "tumble/attitude/detail/imu_merge.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/common/status.hpp"
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "tumble/angular_velocity/detail/streaming_clipping_finder.hpp"
-#include "tumble/attitude/imu_merge.hpp"
+#include "tumble/attitude/detail/imu_merge.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/common/status.hpp"
 #include "tumble/odometry/sensor_sheets.hpp"

@@ -6,8 +6,8 @@
 
 #include "tumble/common/detail/imu_average.hpp"
 #include "tumble/common/detail/squared.hpp"
-#include "tumble/rolling/rolling_model.hpp"
-#include "tumble/rolling/rolling_params.hpp"
+#include "tumble/rolling/detail/rolling_model.hpp"
+#include "tumble/rolling/detail/rolling_params.hpp"
 
 namespace tumble::rolling {
 

@@ -176,7 +176,8 @@ class RollingOdometry {
   /// Returns true if the sphere was already moving at the first samples.
   bool started_in_motion() const;
 
-  /// Returns the state of ImuMerge (attitude/imu_merge.hpp), which contains the frozen, disagreeing and delayed IMUs.
+  /// Returns the state of ImuMerge (attitude/detail/imu_merge.hpp), which contains the frozen, disagreeing and delayed
+  /// IMUs.
   const ImuMergeState& units() const;
 
   /// Returns the number of readings of all IMUs that OutlierFilter rejected.

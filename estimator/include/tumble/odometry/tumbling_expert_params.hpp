@@ -4,10 +4,10 @@
 #include <cstddef>
 #include <span>
 
-#include "tumble/attitude/regime_stream.hpp"
+#include "tumble/attitude/detail/regime_stream.hpp"
 #include "tumble/common/parameters.hpp"
 #include "tumble/common/sample_clock.hpp"
-#include "tumble/mapping/odometry_params.hpp"
+#include "tumble/mapping/detail/odometry_params.hpp"
 #include "tumble/odometry/tumbling_params.hpp"
 
 namespace tumble {

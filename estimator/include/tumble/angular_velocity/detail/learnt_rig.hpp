@@ -4,7 +4,7 @@
 #include <array>
 #include <optional>
 
-#include "tumble/angular_velocity/rate_smoother.hpp"
+#include "tumble/angular_velocity/detail/rate_smoother.hpp"
 #include "tumble/angular_velocity/rate_stream.hpp"
 
 /// The functions in learnt_rig.hpp pass the calibration of a rig from one run to the next run.

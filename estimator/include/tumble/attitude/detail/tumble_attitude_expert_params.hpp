@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "tumble/angular_velocity/rest_detector.hpp"
+#include "tumble/angular_velocity/detail/rest_detector.hpp"
 #include "tumble/common/parameters.hpp"
 
 /// The structs in tumble_attitude_expert_params.hpp are parts of TumbleAttitudeParams::Expert.

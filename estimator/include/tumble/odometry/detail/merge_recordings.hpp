@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "tumble/attitude/detail/imu_merge.hpp"
 #include "tumble/attitude/detail/unit_sign_check.hpp"
-#include "tumble/attitude/imu_merge.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/common/sensor_health.hpp"
 #include "tumble/common/status.hpp"

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 
 #include "tumble/common/parameters.hpp"
-#include "tumble/mapping/voxel_map.hpp"
+#include "tumble/mapping/detail/voxel_map.hpp"
 
 namespace tumble {
 

@@ -4,10 +4,10 @@
 #include <span>
 #include <vector>
 
-#include "tumble/angular_velocity/rate_smoother.hpp"
-#include "tumble/attitude/clipped_readings.hpp"
-#include "tumble/attitude/hand_held_smoother.hpp"
-#include "tumble/attitude/regimes.hpp"
+#include "tumble/angular_velocity/detail/rate_smoother.hpp"
+#include "tumble/attitude/detail/clipped_readings.hpp"
+#include "tumble/attitude/detail/hand_held_smoother.hpp"
+#include "tumble/attitude/detail/regimes.hpp"
 #include "tumble/common/parameters.hpp"
 
 namespace tumble {

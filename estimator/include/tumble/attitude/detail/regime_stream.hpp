@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "tumble/angular_velocity/rate_stream.hpp"
-#include "tumble/attitude/hand_held_stream.hpp"
-#include "tumble/attitude/regimes.hpp"
+#include "tumble/attitude/detail/hand_held_stream.hpp"
+#include "tumble/attitude/detail/regimes.hpp"
 #include "tumble/common/parameters.hpp"
 
 namespace tumble {

@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "tumble/common/status.hpp"
-#include "tumble/mapping/deskew.hpp"
-#include "tumble/mapping/registration_params.hpp"
-#include "tumble/mapping/registration_result.hpp"
-#include "tumble/mapping/voxel_map.hpp"
+#include "tumble/mapping/detail/deskew.hpp"
+#include "tumble/mapping/detail/registration_params.hpp"
+#include "tumble/mapping/detail/registration_result.hpp"
+#include "tumble/mapping/detail/voxel_map.hpp"
 
 namespace tumble {
 

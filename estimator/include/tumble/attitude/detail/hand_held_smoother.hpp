@@ -7,10 +7,10 @@
 #include <span>
 #include <vector>
 
-#include "tumble/angular_velocity/rail_detector.hpp"
+#include "tumble/angular_velocity/detail/rail_detector.hpp"
 #include "tumble/angular_velocity/rate_state.hpp"
 #include "tumble/attitude/detail/hand_held_model.hpp"
-#include "tumble/attitude/hand_held_params.hpp"
+#include "tumble/attitude/detail/hand_held_params.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/common/pose.hpp"
 #include "tumble/common/status.hpp"

@@ -5,11 +5,11 @@
 #include <memory>
 #include <optional>
 
-#include "tumble/angular_velocity/rest_detector.hpp"
+#include "tumble/angular_velocity/detail/rest_detector.hpp"
 #include "tumble/common/parameters.hpp"
 #include "tumble/rolling/detail/rolling_floor_params.hpp"
 #include "tumble/rolling/detail/rolling_imu_params.hpp"
-#include "tumble/rolling/rolling_model.hpp"
+#include "tumble/rolling/detail/rolling_model.hpp"
 
 namespace tumble {
 

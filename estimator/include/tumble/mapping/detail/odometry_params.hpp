@@ -5,11 +5,11 @@
 
 #include "tumble/common/parameters.hpp"
 #include "tumble/mapping/calibration.hpp"
+#include "tumble/mapping/detail/executor.hpp"
 #include "tumble/mapping/detail/inertial_params.hpp"
 #include "tumble/mapping/detail/map_params.hpp"
 #include "tumble/mapping/detail/placing_params.hpp"
 #include "tumble/mapping/detail/rest_params.hpp"
-#include "tumble/mapping/executor.hpp"
 
 namespace tumble {
 

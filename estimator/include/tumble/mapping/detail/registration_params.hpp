@@ -4,8 +4,8 @@
 #include <cstddef>
 
 #include "tumble/common/parameters.hpp"
-#include "tumble/mapping/executor.hpp"
-#include "tumble/mapping/plane_fit.hpp"
+#include "tumble/mapping/detail/executor.hpp"
+#include "tumble/mapping/detail/plane_fit.hpp"
 
 namespace tumble {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "tumble/angular_velocity/detail/repeat_detector.hpp"
-#include "tumble/attitude/hand_held_smoother.hpp"
+#include "tumble/attitude/detail/hand_held_smoother.hpp"
 #include "tumble/common/parameters.hpp"
 
 namespace tumble {

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "tumble/angular_velocity/rail_detector.hpp"
-#include "tumble/angular_velocity/rail_plane.hpp"
+#include "tumble/angular_velocity/detail/rail_detector.hpp"
+#include "tumble/angular_velocity/detail/rail_plane.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/common/status.hpp"
 

@@ -9,8 +9,8 @@
 
 #include "tumble/mapping/calibration.hpp"
 #include "tumble/mapping/detail/spatial_hash.hpp"
+#include "tumble/mapping/detail/sweep_trajectory.hpp"
 #include "tumble/mapping/lidar.hpp"
-#include "tumble/mapping/sweep_trajectory.hpp"
 
 namespace tumble {
 

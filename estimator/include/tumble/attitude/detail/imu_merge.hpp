@@ -8,7 +8,7 @@
 #include <span>
 #include <string>
 
-#include "tumble/angular_velocity/rail_plane.hpp"
+#include "tumble/angular_velocity/detail/rail_plane.hpp"
 #include "tumble/attitude/detail/force_errors.hpp"
 #include "tumble/attitude/detail/imu_merge_expert_params.hpp"
 #include "tumble/attitude/detail/imu_merge_state.hpp"

@@ -7,14 +7,14 @@
 #include <span>
 #include <vector>
 
-#include "tumble/angular_velocity/clipping_finder.hpp"
+#include "tumble/angular_velocity/detail/clipping_finder.hpp"
+#include "tumble/angular_velocity/detail/rail_detector.hpp"
+#include "tumble/angular_velocity/detail/rail_plane.hpp"
+#include "tumble/angular_velocity/detail/rate_model_params.hpp"
 #include "tumble/angular_velocity/detail/rate_smoother_expert_params.hpp"
-#include "tumble/angular_velocity/rail_detector.hpp"
-#include "tumble/angular_velocity/rail_plane.hpp"
-#include "tumble/angular_velocity/rate_model_params.hpp"
+#include "tumble/angular_velocity/detail/rest_detector.hpp"
+#include "tumble/angular_velocity/detail/sensor_errors.hpp"
 #include "tumble/angular_velocity/rate_state.hpp"
-#include "tumble/angular_velocity/rest_detector.hpp"
-#include "tumble/angular_velocity/sensor_errors.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/common/parameters.hpp"
 #include "tumble/common/status.hpp"

@@ -3,7 +3,7 @@
 
 #include <Eigen/Geometry>
 
-#include "tumble/angular_velocity/rest_detector.hpp"
+#include "tumble/angular_velocity/detail/rest_detector.hpp"
 #include "tumble/attitude/detail/tumble_attitude_expert_params.hpp"
 #include "tumble/attitude/detail/tumble_attitude_state.hpp"
 #include "tumble/common/imu.hpp"
