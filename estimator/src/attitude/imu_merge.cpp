@@ -15,6 +15,9 @@ namespace tumble {
 
 namespace {
 
+// Additional difference, as a fraction of the rate.
+constexpr double kRateToleranceRatio = 0.03;
+
 constexpr double kBiasSigma_rad_s = 0.01, kScaleSigma = 0.01;
 constexpr double kRotating_rad_s2 = 1.0;  // minimum angular acceleration for estimating a time offset
 constexpr double kCertainDeviations = 4.0;
@@ -185,8 +188,7 @@ ImuMerge::UnitMask ImuMerge::select_units(const Readings& readings, const UnitMa
   // test therefore grows with the rotation.
   const Eigen::Vector3d middle_rate = median(rates, present), middle_force = median(forces, present);
   const auto units = std::count(present.begin(), present.end(), true);
-  const double rate_tolerance =
-      params_.expert.outliers.rate_rad_s + params_.expert.outliers.rate_share * middle_rate.norm();
+  const double rate_tolerance = params_.expert.outliers.rate_rad_s + kRateToleranceRatio * middle_rate.norm();
   UnitMask used{};
   for (std::size_t i = 0; i < used.size(); ++i) {
     if (!present[i]) continue;

@@ -40,7 +40,6 @@ class Aligner {
 
  private:
   Registration full_, subsampled_, coarse_;
-  std::size_t subsample_points_, coarse_points_;
   std::vector<SweepPoint> thinned_;
 };
 

@@ -80,6 +80,6 @@ void boundary_after(const LidarInertialOdometry::Params& params, const StateEsti
                     const SweepTrajectory& trajectory, const Registration::Result* alignment, SweepBoundary& boundary);
 
 /// Returns the correlation of the saturation deficit between adjacent knots of a sweep, see mapping.md (R46).
-double knot_correlation(const LidarInertialOdometry::Params& params, const SweepTrajectory& trajectory);
+double knot_correlation(const SweepTrajectory& trajectory);
 
 }  // namespace tumble::mapping

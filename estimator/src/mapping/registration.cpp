@@ -17,6 +17,8 @@ namespace tumble {
 
 namespace {
 
+constexpr double kMatchRatioMin = 0.1;  // minimum ratio of matches to points
+
 using Vector = Registration::Vector;
 using Matrix = Registration::Matrix;
 namespace u = mapping::unknowns;
@@ -118,8 +120,8 @@ Status Registration::align(const Prior& prior, std::span<const MotionSample> sam
                            Result& result) {
   const std::unique_ptr<Problem> posed(new Problem{prior, samples, end_ns, points, map});
   Problem& problem = *posed;
-  problem.matches_needed = std::max(params_.matches_min, static_cast<std::size_t>(params_.expert.match_ratio_min *
-                                                                                  static_cast<double>(points.size())));
+  problem.matches_needed =
+      std::max(params_.matches_min, static_cast<std::size_t>(kMatchRatioMin * static_cast<double>(points.size())));
   std::destroy_at(&result);  // reconstructed in place, because a Result needs 22 KiB
   std::construct_at(&result);
   result.mean = prior.mean;

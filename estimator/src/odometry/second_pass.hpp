@@ -27,7 +27,7 @@ namespace tumble {
 /// regular second pass still follows after `after_s`. SecondPass does not change earlier poses: the reported pose jumps
 /// by the error of the first pass.
 ///
-/// SecondPass stores samples and sweeps of `rest_s` at rest and of at most `abandon_after_s` of motion. The second pass
+/// SecondPass stores samples and sweeps of `rest_s` at rest and of at most 10 s of motion. The second pass
 /// also needs memory for a second map. If a jolt ends the rest long before the tumble, the second pass starts too
 /// early.
 class SecondPass {

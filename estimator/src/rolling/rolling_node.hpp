@@ -46,7 +46,7 @@ struct Contact {
 /// variance is valid.
 Eigen::Vector3d contact_variance(const RollingParams& params, const Contact& c, RollingMode mode);
 
-bool starts_in_motion(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s);
+bool starts_in_motion(const Eigen::Vector3d& rate_I_rad_s);
 
 /// Returns the initial state: levelled or stated attitude, centre at the origin, and zero velocity (or rolling velocity
 /// for a start in motion).
@@ -92,7 +92,7 @@ void update_slope_for_mode(const RollingParams& params, RollingMode from, Rollin
                            const RollingNominal& nominal, Vector& x, Covariance& P);
 
 /// Returns the variance of a pseudo-measurement of zero velocity, or nothing if the velocity is certain enough.
-std::optional<double> lost_velocity_variance(const RollingParams& params, double node_s, const Covariance& P);
+std::optional<double> lost_velocity_variance(double node_s, const Covariance& P);
 
 /// Returns whether a contact mode change from `from` to `to` makes the slope of the floor unknown.
 bool resets_slope(RollingMode from, RollingMode to);

@@ -14,11 +14,10 @@ namespace tumble {
 
 /// SecondPassParams contains the parameters of the second pass over the first seconds of motion; see TumblingOdometry.
 struct SecondPassParams {
-  double after_s = 3.0;           ///< duration of motion before the second pass starts; 0: none
-  double lost_s = 0.4;            ///< duration of tracking failure that starts a second pass; 0: never
-  double lag_s = 0.5;             ///< lag of the rates of the second pass
-  std::size_t sweeps = 3;         ///< number of buffered sweeps per new sweep, at least two
-  double abandon_after_s = 10.0;  ///< duration of motion after which the second pass is abandoned
+  double after_s = 3.0;    ///< duration of motion before the second pass starts; 0: none
+  double lost_s = 0.4;     ///< duration of tracking failure that starts a second pass; 0: never
+  double lag_s = 0.5;      ///< lag of the rates of the second pass
+  std::size_t sweeps = 3;  ///< number of buffered sweeps per new sweep, at least two
   /// Factor on the calibration's variance, because the second pass uses the readings again.
   double inflation = 4.0;
   double rest_s = 1.0;  ///< duration of the initial rest that is buffered
@@ -36,8 +35,6 @@ struct SecondPassParams {
     visit(p.sweeps, {"sweeps", "1", 2, 1000,
                      "number of sweeps that the second pass processes per new sweep; a larger value finishes earlier "
                      "with more load"});
-    visit(p.abandon_after_s, {"abandon_after_s", "s", 0.0, 1000.0,
-                              "maximum duration of stored motion; the second pass must finish within this time"});
     visit(p.inflation,
           {"inflation", "1", 1.0, 1e6, "factor on the variance of the calibration at the start of the second pass"});
     visit(p.rest_s, {"rest_s", "s", 0.1, 100.0, "maximum duration of the initial rest that is stored"});

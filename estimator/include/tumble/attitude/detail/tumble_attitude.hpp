@@ -80,10 +80,10 @@ struct TumbleAttitudeParams {
 /// IMU's velocity differs from the centre's velocity by w x (R rho), with the attitude R and the lever arm rho. The
 /// rolling constraint predicts the integral of the specific force. The integral determines tilt and bias, and does not
 /// need the derivative of the rate. A velocity that does not fit the rolling constraint indicates slip. During slip,
-/// TumbleAttitude pauses its corrections for at most `slip_timeout_s`.
+/// TumbleAttitude pauses its corrections for at most 3 s.
 ///
 /// TumbleAttitude averages the readings of a fast IMU over `reading_s`, and extrapolates the attitude between averages.
-/// In a gap longer than `gap_min_s`, TumbleAttitude interpolates the rate and keeps the velocity, with increased
+/// In a gap longer than 0.05 s, TumbleAttitude interpolates the rate and keeps the velocity, with increased
 /// variances. A body that is at rest before and after a gap is assumed to be at rest during the gap. If a gap increases
 /// the tilt's standard deviation to `gap_lost_tilt_rad`, the linearisation of the Kalman filter is invalid. A coarse
 /// alignment then estimates the tilt in parallel to the Kalman filter. Until the coarse alignment ends, the reported

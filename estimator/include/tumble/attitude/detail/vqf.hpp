@@ -10,42 +10,14 @@
 
 namespace tumble {
 
-/// VqfExpertParams contains the VQF parameters for which the authors use one value for all devices.
-struct VqfExpertParams {
-  double bias_sigma_motion_rad_s = 1.7453e-3;  ///< standard deviation of the bias in motion: 0.1 deg/s
-  double bias_sigma_rest_rad_s = 5.2360e-4;    ///< standard deviation of the bias at rest: 0.03 deg/s
-  double vertical_forgetting = 1e-4;           ///< decay of the unobservable vertical bias to zero
-  double rest_tau_s = 0.5;                     ///< time constant of the low-pass filter for detecting rest
-
-  template <class Self, class Visitor>
-  static void fields(Self& p, Visitor& visit) {
-    visit(p.bias_sigma_motion_rad_s,
-          {"bias_sigma_motion_rad_s", "rad/s", 1e-9, 1.0,
-           "standard deviation to which the bias estimate converges in motion; default: 0.1 deg/s"});
-    visit(p.bias_sigma_rest_rad_s,
-          {"bias_sigma_rest_rad_s", "rad/s", 1e-9, 1.0,
-           "standard deviation to which the bias estimate converges at rest; default: 0.03 deg/s"});
-    visit(p.vertical_forgetting,
-          {"vertical_forgetting", "1", 1e-9, 1.0, "weight with which the unobservable vertical bias decays to zero"});
-    visit(p.rest_tau_s, {"rest_tau_s", "s", 1e-3, 1e4, "time constant of the rest detector's low-pass filter"});
-  }
-};
-
-/// VqfParams contains the parameters of Vqf, named as in the publication.
+/// VqfParams contains the parameters of Vqf, named as in the publication. The parameters for which the authors use one
+/// value for all devices are constants in the source.
 struct VqfParams {
   double tau_s = 3.0;  ///< time constant of the low-pass filter on the specific force
   bool rest_bias_estimation = true;
   bool motion_bias_estimation = true;         ///< if both bias estimations are off, Vqf is the authors' basic filter
   double bias_sigma_start_rad_s = 8.7266e-3;  ///< prior standard deviation of the gyro bias: 0.5 deg/s
-  double bias_forgetting_s = 100.0;           ///< time in which the bias variance grows to (0.1 deg/s)^2
-  double bias_clip_rad_s = 3.4907e-2;         ///< largest accepted bias: 2 deg/s
-  double rest_time_s = 1.5;
-  double rest_rate_rad_s = 3.4907e-2;  ///< maximum difference of gyro and low-passed gyro at rest: 2 deg/s
-  double rest_force_m_s2 = 0.5;        ///< maximum difference of force and low-passed force at rest
   double gap_max_s = 1.0;
-
-  using Expert = VqfExpertParams;
-  Expert expert = {};  ///< rarely changed parameters
 
   /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
   template <class Self, class Visitor>
@@ -59,20 +31,8 @@ struct VqfParams {
           switch_field("motion_bias_estimation", "1: also estimate the gyro bias in motion", FieldRank::basic));
     visit(p.bias_sigma_start_rad_s, {"bias_sigma_start_rad_s", "rad/s", 1e-9, 1.0,
                                      "prior standard deviation of the gyro bias", FieldRank::basic});
-    visit(p.bias_forgetting_s, {"bias_forgetting_s", "s", 1e-9, 1e6,
-                                "time in which the bias variance grows to (0.1 deg/s)^2", FieldRank::basic});
-    visit(p.bias_clip_rad_s, {"bias_clip_rad_s", "rad/s", 1e-9, 1.0, "largest estimated bias", FieldRank::basic});
-    visit(p.rest_time_s, {"rest_time_s", "s", 0.0, 1e4,
-                          "the sensor counts as stationary after quiet readings of this duration", FieldRank::basic});
-    visit(p.rest_rate_rad_s,
-          {"rest_rate_rad_s", "rad/s", 1e-9, 1.0,
-           "maximum difference between gyro readings and their low-passed value at rest", FieldRank::basic});
-    visit(p.rest_force_m_s2,
-          {"rest_force_m_s2", "m/s^2", 1e-9, 100.0,
-           "maximum difference between force readings and their low-passed value at rest", FieldRank::basic});
     visit(p.gap_max_s,
           {"gap_max_s", "s", 1e-9, 1e4, "maximum time between two samples; a longer gap ends the run with an error"});
-    visit.group("", p.expert);
   }
 };
 

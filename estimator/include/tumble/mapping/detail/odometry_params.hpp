@@ -29,7 +29,6 @@ struct OdometryExpertParams {
   FlightParams flight = {};
   LocalMapParams map = {};
   MatchingParams matching = {};
-  RegistrationStagesParams stages = {};
   TrackingParams tracking = {};
   RelocalisationParams search = {};
   WorldCovarianceParams world = {};
@@ -52,7 +51,6 @@ struct OdometryExpertParams {
     visit.group("", p.tracking);
     visit.group("start_", p.start);
     visit.group("standstill_", p.standstill);
-    visit.group("stages_", p.stages);
     visit.group("search_", p.search);
     visit.group("world_", p.world);
   }

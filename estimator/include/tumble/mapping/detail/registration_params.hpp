@@ -18,10 +18,9 @@ struct RegistrationExpertParams {
   double kernel_min_m = 0.1;  ///< minimum width of the robust kernel (Geman-McClure)
   /// Factor below 1 on the weight of each point, because neighbouring lidar returns share the map's errors.
   double correlation_discount = 0.1;
-  double cluster_m = 1.0;        ///< edge of a cube whose points have correlated errors
-  double match_ratio_min = 0.1;  ///< minimum ratio of matches to points
-  /// Minimum number of matches for accepting a registration that agrees with the prior but violates `matches_min` or
-  /// `match_ratio_min`. The large default of agreeing_matches_needed disables the exception for agreeing registrations.
+  /// Minimum number of matches for accepting a registration that agrees with the prior but has fewer than
+  /// `matches_min` matches or matches for less than a tenth of its points. The large default of agreeing_matches_needed
+  /// disables the exception for agreeing registrations.
   std::size_t agreeing_matches_needed = 1'000'000'000;
   /// Minimum fraction of matches whose residual is within three standard deviations. A registration with a smaller
   /// fraction of fitting matches is rejected.
@@ -38,9 +37,6 @@ struct RegistrationExpertParams {
     visit(p.correlation_discount,
           {"correlation_discount", "1", 1e-6, 1.0,
            "weight of the information of one point; below 1, because neighbouring returns are correlated"});
-    visit(p.cluster_m, {"cluster_m", "m", 0.01, 100.0, "edge length of the cube whose points count as correlated"});
-    visit(p.match_ratio_min,
-          {"match_ratio_min", "1", 0.0, 1.0, "minimum share of matched points in an accepted result"});
     visit(p.agreeing_matches_needed, {"agreeing_matches_needed", "1", 1, 1e9,
                                       "minimum number of matches with which a result that agrees with the prior is "
                                       "accepted"});

@@ -23,7 +23,7 @@ struct RegistrationResult {
   SweepUnknowns::Estimate mean;
   SweepUnknowns::Matrix covariance = SweepUnknowns::Matrix::Zero();  ///< covariance of all unknowns
   /// Covariance of the cost gradient with respect to the unknowns, measured from the residuals (cluster-robust
-  /// covariance, Liang and Zeger, 1986). Points within RegistrationExpertParams::cluster_m share the map's errors, and
+  /// covariance, Liang and Zeger, 1986). Points within a cube of 1 m share the map's errors, and
   /// points farther apart are independent. If all points were independent, the covariance would equal
   /// correlation_discount times the points' contribution to the normal matrix.
   SweepUnknowns::Matrix score_covariance = SweepUnknowns::Matrix::Zero();

@@ -33,14 +33,12 @@ struct OdometryStartParams {
   /// Standard deviation of the initial tilt for the registration: five times tilt_sigma_rad of WorldCovarianceParams,
   /// to allow for a start in motion.
   double level_sigma_rad = 0.01;
-  double speed_sigma_m_s = 0.05;  ///< standard deviation of the speed of a robot that seems to be at rest
-  double bias_rest_s = 0.1;       ///< minimum duration of a rest that determines the gyro's bias
+  double bias_rest_s = 0.1;  ///< minimum duration of a rest that determines the gyro's bias
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.level_sigma_rad,
           {"level_sigma_rad", "rad", 1e-9, 1.0, "standard deviation of corrections to the levelled tilt"});
-    visit(p.speed_sigma_m_s, {"speed_sigma_m_s", "m/s", 1e-9, 100.0, "maximum speed that counts as rest"});
     visit(p.bias_rest_s,
           {"bias_rest_s", "s", 0.0, 60.0, "minimum duration of an initial rest that calibrates the gyro bias"});
   }
@@ -48,28 +46,18 @@ struct OdometryStartParams {
 
 /// StandstillParams contains the parameters of a stationary robot, at the start or while the IMU measures only gravity.
 struct StandstillParams {
-  double start_sigma_m_s = 0.01;  ///< standard deviation of the velocity during the initial rest
-  double sigma_m_s = 0.05;        ///< standard deviation of the velocity while the IMU measures only gravity
+  double sigma_m_s = 0.05;  ///< standard deviation of the velocity while the IMU measures only gravity
   /// Maximum estimated speed of a robot that is treated as stationary while the IMU measures only gravity and no
   /// surface constrains the pose. The zero velocity prevents slow drift in a world without features.
   double creep_max_m_s = 0.5;
-  int sweeps_min = 3;         ///< minimum number of consecutive sweeps at rest before creep_max_m_s applies
-  double noise_share = 0.02;  ///< ratio of the inertial prediction's noise at rest to its noise in motion
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.start_sigma_m_s,
-          {"start_sigma_m_s", "m/s", 1e-9, 100.0, "standard deviation of the velocity during the initial rest"});
     visit(p.sigma_m_s, {"sigma_m_s", "m/s", 1e-9, 100.0,
                         "standard deviation of the velocity at a later rest, when the IMU measures only gravity"});
     visit(p.creep_max_m_s,
           {"creep_max_m_s", "m/s", 0.0, 100.0,
            "if no surface constrains the pose, an IMU that measures only gravity is at rest below this speed"});
-    visit(p.sweeps_min,
-          {"sweeps_min", "1", 1, 1e6, "number of consecutive sweeps at rest after which the rest is accepted"});
-    visit(p.noise_share,
-          {"noise_share", "1", 1e-9, 1.0,
-           "standard deviations of the inertial prediction at rest, as a share of the standard deviations in motion"});
   }
 };
 
