@@ -12,29 +12,13 @@ namespace tumble::rolling {
 
 namespace {
 
-// Random walk of the rolling radius on a rough floor.
-constexpr double kRoughRadiusWalk_m_sqrts = 1e-4;
-// Random walk of both components of the slope.
-constexpr double kSlopeWalk_sqrts = 0.02;
-// Velocity error due to the uncertain timing and direction of an impact, relative to the impact's velocity change.
-constexpr double kImpactSigmaRatio = 0.06;
-// Standard deviation of the mean velocity over 1 s without a measurement.
-constexpr double kSpeedSigma_m_s = 1.0;
-// Minimum rate of the first sample that indicates a start in motion. If the sphere starts in motion, RollingFilter
-// increases the initial uncertainty of attitude and velocity.
-constexpr double kStartRate_rad_s = 0.1;
-// Additional velocity random walk per (rad/s)^2: errors of large forces.
-constexpr double kVelocityWalkPerRate2_sqrts = 4e-5;
-constexpr double kAccelBiasWalk_m_s2_sqrts = 2e-3;  // random walk of the accelerometer bias
-// Standard deviation of the saturation deficit of a clipped rate.
-constexpr double kClippedRateSigma_rad_s = 5.0;
-// Standard deviation of the force beyond the saturation limit.
-constexpr double kClippedForceSigma_m_s2 = 4.0;
-// Standard deviation of the angular acceleration during a gap, about a linear change of rate.
-constexpr double kGapAcceleration_rad_s2 = 15.0;
-
+// Random walks: rolling radius on a rough floor, slope, accelerometer bias, and velocity per (rad/s)^2 of the rate.
+constexpr double kRoughRadiusWalk_m_sqrts = 1e-4, kSlopeWalk_sqrts = 0.02, kAccelBiasWalk_m_s2_sqrts = 2e-3,
+                 kVelocityWalkPerRate2_sqrts = 4e-5;
+constexpr double kImpactSigmaRatio = 0.06;  // timing and direction of an impact, relative to its velocity change
+constexpr double kClippedRateSigma_rad_s = 5.0, kClippedForceSigma_m_s2 = 4.0;  // error of a saturated reading
 constexpr double kSteepest = 0.95;  // maximum sine of a slope, so that the normal points up
-constexpr double kLevelSlopeSigma = 1e-3;
+constexpr double kLevelSlopeSigma = 1e-3, kStartRate_rad_s = 0.1;  // rate of the first sample at a start in motion
 
 double upward(const Eigen::Vector2d& slope) {
   return std::sqrt(1.0 - std::min(slope.squaredNorm(), squared(kSteepest)));
@@ -56,11 +40,11 @@ constexpr double kPushForceRatio = 0.15;
 constexpr double kLostSpeed_m_s = 1.0;
 constexpr double kRecoveredTau_s = 0.1;  // correlation time of the error of a recovered rate
 constexpr double kFastRate_rad_s = 6.0;  // at higher rates, the force rotates too far within a node for levelling
-constexpr double kUnsureSpeed_m_s = 0.1, kSpeedWindow_s = 1.0;
+constexpr double kUnsureSpeed_m_s = 0.1, kSpeedWindow_s = 1.0, kSpeedSigma_m_s = 1.0;
 constexpr double kStartTilt_rad = 0.15;  // tilt error of a start in motion, caused by a push of 1.5 m/s^2
 // If the rates before and after a gap are below kGapRate_rad_s, the sphere was hardly pushed during the gap.
 // kGapStill_rad_s2 is the smallest standard deviation of the angular acceleration in a gap.
-constexpr double kGapRate_rad_s = 1.0, kGapStill_rad_s2 = 0.5;
+constexpr double kGapRate_rad_s = 1.0, kGapStill_rad_s2 = 0.5, kGapAcceleration_rad_s2 = 15.0;
 constexpr double kGapVelocityChangeRatio =
     0.5;  // unknown velocity change in a gap, as a fraction of the rolling velocity's change
 constexpr double kGapTimeSigmaRatio = 0.15;  // uncertain time of a rate change within a gap, as a fraction of the gap
