@@ -7,6 +7,7 @@
 
 #include "rolled_sphere.hpp"
 #include "thrown_body.hpp"
+#include "tumble/odometry/tumbling_expert_params.hpp"
 #include "tumble/tumble.hpp"
 
 // Every allocation of this program is counted; not inlined, so that the compiler does not take the pair for mismatched.
@@ -62,7 +63,7 @@ TEST(Allocation, NoneForASampleAfterTheSecondPassTookOver) {
   params.lever_arm_I_m = body.lever_arm_I_m + Eigen::Vector3d(-0.006, 0.006, -0.006);  // it has something to put right
   params.T_IL.linear() = Eigen::AngleAxisd(0.015, Eigen::Vector3d(-1.0, 2.0, -2.0).normalized()).toRotationMatrix();
   params.imu.rate_hz = body.imu_hz;
-  params.expert.second_pass.after_s = 0.9;
+  params.expert->second_pass.after_s = 0.9;
   TumblingOdometry odometry(params);
   const std::vector<test::ThrownBody::Sweep> sweeps = body.sweeps();
   std::size_t next = 0, samples = 0, made = 0;

@@ -4,6 +4,10 @@
 #include <optional>
 #include <vector>
 
+#include "tumble/angular_velocity/detail/clipping_finder.hpp"
+#include "tumble/angular_velocity/rig_constants.hpp"
+#include "tumble/attitude/detail/imu_merge.hpp"
+#include "tumble/mapping/lidar_inertial_odometry.hpp"
 #include "tumble/tumble.hpp"
 
 /// answers() returns all numbers that an odometry object reports now and after finish(), for bitwise comparisons of two

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A gyro's zero offset beyond the bound of the rest detection is estimated at the initial rest.
-#include "tumble/angular_velocity/detail/gyro_offset.hpp"
+#include "angular_velocity/gyro_offset.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 
 #include "thrown_body.hpp"
 #include "thrown_params.hpp"
-#include "tumble/angular_velocity/rate_smoother.hpp"
+#include "tumble/angular_velocity/detail/rate_smoother.hpp"
 #include "tumble/tumble.hpp"
 
 namespace tumble {

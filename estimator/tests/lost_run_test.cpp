@@ -7,6 +7,7 @@
 
 #include "thrown_body.hpp"
 #include "thrown_params.hpp"
+#include "tumble/odometry/tumbling_expert_params.hpp"
 #include "tumble/tumble.hpp"
 
 namespace tumble {
@@ -46,7 +47,7 @@ TEST(TumblingOdometry, DoubtsAPlaceThatInertiaAloneHasFound) {
   const Status health = lost.health();
   EXPECT_STREQ(health.field, "standard deviation in m of the position in the map");
   EXPECT_GT(health.value, health.bound);
-  EXPECT_EQ(health.bound, params_of(body).expert.mapping.expert.matching.distance_m);
+  EXPECT_EQ(health.bound, params_of(body).expert->mapping.expert.matching.distance_m);
 }
 
 /// The error of the first stated mounting is within the stated uncertainty. The second stated mounting is wrong by ten

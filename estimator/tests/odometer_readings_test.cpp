@@ -10,10 +10,11 @@
 #include <vector>
 
 #include "answers.hpp"
+#include "odometry/odometry_pass.hpp"
+#include "odometry/second_pass.hpp"
 #include "thrown_body.hpp"
 #include "thrown_params.hpp"
-#include "tumble/odometry/detail/odometry_pass.hpp"
-#include "tumble/odometry/detail/second_pass.hpp"
+#include "tumble/odometry/tumbling_expert_params.hpp"
 #include "tumble/tumble.hpp"
 
 namespace tumble {
@@ -102,7 +103,7 @@ Course course_of(const ThrownBody& body, const std::vector<ThrownBody::Sweep>& s
 
 TumblingOdometry::Params single_pass(const ThrownBody& body) {
   TumblingOdometry::Params params = params_of(body);
-  params.expert.second_pass.after_s = 0.0;
+  params.expert->second_pass.after_s = 0.0;
   return params;
 }
 
@@ -166,7 +167,7 @@ TEST(OdometerReadings, AReadingBelongsToItsSweepWhileItWaits) {
   ThrownBody body;
   body.end_s = 4.2;
   TumblingOdometry::Params params = params_of(body);
-  params.expert.second_pass.after_s = 0.9;
+  params.expert->second_pass.after_s = 0.9;
   const std::vector<ThrownBody::Sweep> sweeps = body.sweeps();
   TumblingOdometry before(params), after(params), without(params);
   const Course first = course_of(body, sweeps, true_motion, before);
@@ -220,7 +221,7 @@ TEST(OdometerReadings, TheSecondPassUsesReadingsAgain) {
 TEST(OdometerReadings, ACopyContinuesWhileAReadingWaits) {
   const ThrownBody body;
   TumblingOdometry::Params params = params_of(body);
-  params.expert.second_pass.after_s = 0.9;
+  params.expert->second_pass.after_s = 0.9;
   const std::vector<ThrownBody::Sweep> sweeps = body.sweeps();
   TumblingOdometry whole(params);
   const Course run = course_of(body, sweeps, true_motion, whole);

@@ -10,10 +10,10 @@
 #include <random>
 #include <vector>
 
+#include "odometry/position_alignment.hpp"
 #include "thrown_body.hpp"
 #include "thrown_params.hpp"
 #include "tumble/common/so3.hpp"
-#include "tumble/odometry/detail/position_frame.hpp"
 
 namespace tumble {
 namespace position_readings {

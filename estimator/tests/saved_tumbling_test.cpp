@@ -9,7 +9,10 @@
 #include "damaged_bytes.hpp"
 #include "thrown_body.hpp"
 #include "thrown_params.hpp"
-#include "tumble/odometry/detail/saved_map.hpp"
+#include "tumble/angular_velocity/detail/clipping_finder.hpp"
+#include "tumble/angular_velocity/rig_constants.hpp"
+#include "tumble/mapping/lidar_inertial_odometry.hpp"
+#include "tumble/odometry/tumbling_expert_params.hpp"
 #include "tumble/tumble.hpp"
 
 namespace tumble {
@@ -172,7 +175,7 @@ TEST(SavedTumblingOdometry, AnotherRigIsRefused) {
   EXPECT_STREQ(status.field, "T_IL");
   other = params;  // parameters of the estimation may change
   other.lag_s = 0.1;
-  other.expert.mapping.expert.map.voxel_m = 0.3;
+  other.expert->mapping.expert.map.voxel_m = 0.3;
   EXPECT_TRUE(TumblingOdometry(other).load(saved).ok());
 }
 

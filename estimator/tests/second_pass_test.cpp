@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/odometry/detail/second_pass.hpp"
+#include "odometry/second_pass.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "thrown_body.hpp"
+#include "tumble/odometry/tumbling_expert_params.hpp"
 #include "tumble/tumble.hpp"
 
 namespace tumble {
@@ -23,7 +24,7 @@ TumblingOdometry::Params measured_badly(const ThrownBody& body, double after_s,
   const Eigen::Vector3d axis = side.cwiseProduct(Eigen::Vector3d(1.0, -2.0, 2.0)).normalized();
   params.T_IL.linear() = Eigen::AngleAxisd(0.015, axis).toRotationMatrix();
   params.T_IL.translation() = Eigen::Vector3d(0.005, -0.005, 0.005);
-  params.expert.second_pass.after_s = after_s;
+  params.expert->second_pass.after_s = after_s;
   return params;
 }
 
@@ -169,7 +170,7 @@ TEST(SecondPass, BeginsAtOnceWhereTheFirstIsLost) {
   EXPECT_TRUE(found.taken_live);
   EXPECT_LT(found.end_m, 0.2);  // measured 0.11
 
-  params.expert.second_pass.lost_s = 0.0;
+  params.expert->second_pass.lost_s = 0.0;
   Outcome without;
   TumblingOdometry waits(params);
   live(body, 0, count, waits, without, blind);
@@ -206,8 +207,8 @@ TEST(SecondPass, ALagBeyondTheRatesWindowIsThatWindow) {
   ThrownBody body;
   body.imu_hz = 2000.0;
   TumblingOdometry::Params params = measured_badly(body, 0.9);
-  params.expert.rate.rate.step_s = 0.05;
-  params.expert.second_pass.lag_s = 3.0;  // 6000 samples
+  params.expert->rate.rate.step_s = 0.05;
+  params.expert->second_pass.lag_s = 3.0;  // 6000 samples
   TumblingOdometry odometry(params);
   Outcome run;
   live(body, 0, body.imu().size(), odometry, run);
@@ -219,13 +220,13 @@ TEST(SecondPass, RefusesParametersOutOfTheirBounds) {
   TumblingOdometry::Params stated;
   stated.lever_arm_I_m.setZero();
   TumblingOdometry::Params params = stated;
-  params.expert.second_pass.sweeps = 1;  // would never catch up
+  params.expert->second_pass.sweeps = 1;  // would never catch up
   EXPECT_THROW(TumblingOdometry{params}, InvalidParams);
   params = stated;
-  params.expert.second_pass.inflation = 0.5;
+  params.expert->second_pass.inflation = 0.5;
   EXPECT_THROW(TumblingOdometry{params}, InvalidParams);
   params = stated;
-  params.expert.second_pass.lost_s = -0.1;
+  params.expert->second_pass.lost_s = -0.1;
   EXPECT_THROW(TumblingOdometry{params}, InvalidParams);
 }
 

@@ -10,6 +10,7 @@
 
 #include "rolled_sphere.hpp"
 #include "thrown_body.hpp"
+#include "tumble/odometry/tumbling_expert_params.hpp"
 #include "tumble/tumble.hpp"
 
 namespace tumble {
@@ -146,7 +147,7 @@ TEST_F(Stack, OfATumblingBodyInTroubleAndWithASecondPass) {
     if (!error_code) {  // it has something to put right
       params.lever_arm_I_m += Eigen::Vector3d(-0.006, -0.006, 0.006);
       params.T_IL.linear() = Eigen::AngleAxisd(0.015, Eigen::Vector3d(-1.0, -2.0, 2.0).normalized()).toRotationMatrix();
-      params.expert.second_pass.after_s = 0.9;
+      params.expert->second_pass.after_s = 0.9;
     }
     std::unique_ptr<TumblingOdometry> odometry;
     std::vector<std::byte> bytes;

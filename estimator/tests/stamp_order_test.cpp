@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Wrong stamps, gaps and clocks that step back: one rule for both odometry classes.
-#include "tumble/odometry/detail/stamp_order.hpp"
+#include "odometry/stamp_order.hpp"
 #include "answers.hpp"
 
 #include <gtest/gtest.h>

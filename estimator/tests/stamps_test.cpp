@@ -12,6 +12,8 @@
 #include "rolled_sphere.hpp"
 #include "thrown_body.hpp"
 #include "thrown_params.hpp"
+#include "tumble/odometry/rolling_expert_params.hpp"
+#include "tumble/odometry/tumbling_expert_params.hpp"
 #include "tumble/tumble.hpp"
 
 namespace tumble {
@@ -44,7 +46,7 @@ TEST(Stamps, ThatJitterMoveNoRate) {
   const std::vector<ImuSample> exact = body.imu(), stamped = stamped_by_a_host(exact);
   TumblingOdometry own_clock(params_of(body)), host_clock(params_of(body));
   TumblingParams uncorrected = params_of(body);
-  uncorrected.expert.stamps.jitter_max = 0.0;
+  uncorrected.expert->stamps.jitter_max = 0.0;
   TumblingOdometry without(uncorrected);
   const std::vector<RateState> expected = rates_of(own_clock, exact), found = rates_of(host_clock, stamped),
                                control = rates_of(without, stamped);
@@ -89,7 +91,7 @@ struct Rolled {
 Rolled rolled(const std::vector<ImuSample>& samples, double jitter_max) {
   RollingOdometry::Params params = test::params_of({test::kPositions[0]});
   params.lag_s = 0.0;
-  params.expert.stamps.jitter_max = jitter_max;
+  params.expert->stamps.jitter_max = jitter_max;
   RollingOdometry odometry(params);
   Rolled out;
   for (const ImuSample& sample : samples) {

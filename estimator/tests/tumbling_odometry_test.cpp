@@ -13,6 +13,8 @@
 #include "live_readings.hpp"
 #include "thrown_body.hpp"
 #include "thrown_params.hpp"
+#include "tumble/mapping/lidar_inertial_odometry.hpp"
+#include "tumble/odometry/tumbling_expert_params.hpp"
 #include "tumble/tumble.hpp"
 
 namespace tumble {
@@ -263,7 +265,7 @@ TEST(TumblingOdometry, ALidarThatFallsSilentIsMadeUpForByInertia) {
 TEST(TumblingOdometry, SweepsThatNobodyTakesAreDropped) {
   const ThrownBody body;
   TumblingOdometry::Params params = params_of(body);
-  params.expert.sweeps_max = 4;
+  params.expert->sweeps_max = 4;
   TumblingOdometry odometry(params);
   const std::vector<ThrownBody::Sweep> sweeps = body.sweeps();
   std::size_t next = 0;
@@ -303,7 +305,7 @@ TEST(TumblingOdometry, TroubleIsAValueAndChangesNothing) {
 TEST(TumblingOdometry, SweepsThatWaitAreBounded) {
   const ThrownBody body;
   TumblingOdometry::Params params = params_of(body);
-  params.expert.sweeps_max = 3;
+  params.expert->sweeps_max = 3;
   TumblingOdometry odometry(params);
   const int most = 3 + 4;  // sweeps_max, and the sweeps within a lag of 0.2 s
   // before the first sample, a new sweep replaces the oldest sweep
@@ -333,7 +335,7 @@ TEST(TumblingOdometry, RefusesParametersOutOfTheirBounds) {
   EXPECT_EQ(refuses([](Params&) {}), "");
   EXPECT_TRUE(names(refuses([](Params& p) { p.lever_arm_sigma_m = -1.0; }), "lever_arm_sigma_m"));
   EXPECT_TRUE(names(refuses([](Params& p) { p.imu.rate_hz = 0.0; }), "rate_hz"));
-  EXPECT_TRUE(names(refuses([](Params& p) { p.expert.mapping.expert.matching.neighbours = 1; }), "neighbours"));
+  EXPECT_TRUE(names(refuses([](Params& p) { p.expert->mapping.expert.matching.neighbours = 1; }), "neighbours"));
   // a missing lever arm is an error, but a lever arm of zero is accepted
   EXPECT_TRUE(names(refuses([](Params& p) { p.lever_arm_I_m = Params().lever_arm_I_m; }), "lever_arm_m"));
   EXPECT_EQ(refuses([](Params& p) { p.lever_arm_I_m.setZero(); }), "");

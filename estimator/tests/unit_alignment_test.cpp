@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/odometry/detail/unit_alignment.hpp"
+#include "odometry/unit_alignment.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <optional>
 #include <stdexcept>
+#include <tumble/mapping/lidar_inertial_odometry.hpp>
 #include <tumble/tumble.hpp>
 
 #include "examples/odometry/driver.hpp"

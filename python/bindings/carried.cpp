@@ -16,10 +16,10 @@
 #include "results.hpp"
 #include "streams.hpp"
 #include "tumble/angular_velocity/detail/recording_check.hpp"
-#include "tumble/attitude/clipped_readings.hpp"
+#include "tumble/attitude/detail/clipped_readings.hpp"
 #include "tumble/attitude/detail/hand_held_pipeline.hpp"
-#include "tumble/attitude/hand_held_smoother.hpp"
-#include "tumble/attitude/hand_held_stream.hpp"
+#include "tumble/attitude/detail/hand_held_smoother.hpp"
+#include "tumble/attitude/detail/hand_held_stream.hpp"
 
 namespace tumble::python {
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "parameters.hpp"
-#include "tumble/angular_velocity/clipping_finder.hpp"
-#include "tumble/angular_velocity/rail_plane.hpp"
+#include "tumble/angular_velocity/detail/clipping_finder.hpp"
+#include "tumble/angular_velocity/detail/rail_plane.hpp"
 
 namespace tumble::python {
 

@@ -16,11 +16,11 @@
 #include "results.hpp"
 #include "rig.hpp"
 #include "streams.hpp"
-#include "tumble/angular_velocity/rate_smoother.hpp"
+#include "tumble/angular_velocity/detail/rate_smoother.hpp"
+#include "tumble/angular_velocity/detail/saave.hpp"
 #include "tumble/angular_velocity/rate_stream.hpp"
-#include "tumble/angular_velocity/saave.hpp"
-#include "tumble/attitude/regime_smoother.hpp"
-#include "tumble/attitude/regime_stream.hpp"
+#include "tumble/attitude/detail/regime_smoother.hpp"
+#include "tumble/attitude/detail/regime_stream.hpp"
 
 namespace tumble::python {
 

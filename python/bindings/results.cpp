@@ -14,8 +14,8 @@
 #include "saving.hpp"
 #include "trouble.hpp"
 #include "tumble/common/sensor_health.hpp"
-#include "tumble/mapping/detail/prior_map.hpp"
-#include "tumble/odometry/detail/saved_map.hpp"
+#include "tumble/mapping/prior_map.hpp"
+#include "tumble/odometry/tumbling_odometry.hpp"
 
 namespace tumble::python {
 

@@ -8,7 +8,7 @@
 #include "tumble/angular_velocity/rate_state.hpp"
 #include "tumble/common/pose.hpp"
 #include "tumble/mapping/lidar.hpp"
-#include "tumble/rolling/rolling_smoother.hpp"
+#include "tumble/rolling/detail/rolling_smoother.hpp"
 
 /// results.hpp binds result classes that store rows. Each class exposes its columns as views of the rows.
 namespace tumble::python {

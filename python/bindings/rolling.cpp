@@ -13,9 +13,11 @@
 #include "results.hpp"
 #include "saving.hpp"
 #include "streams.hpp"
+#include "tumble/attitude/detail/imu_merge.hpp"
+#include "tumble/odometry/rolling_expert_params.hpp"
 #include "tumble/odometry/rolling_odometry.hpp"
+#include "tumble/rolling/detail/rolling_smoother.hpp"
 #include "tumble/rolling/rolling_filter.hpp"
-#include "tumble/rolling/rolling_smoother.hpp"
 
 namespace tumble::python {
 

@@ -5,8 +5,7 @@
 
 #include "bindings.hpp"
 #include "parameters.hpp"
-#include "tumble/odometry/imu_sheet.hpp"
-#include "tumble/odometry/lidar_sheet.hpp"
+#include "tumble/odometry/sensor_sheets.hpp"
 
 namespace tumble::python {
 

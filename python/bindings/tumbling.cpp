@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/odometry/tumbling_expert_params.hpp"
 #include "tumble/odometry/tumbling_odometry.hpp"
 
 #include <nanobind/nanobind.h>
@@ -75,7 +76,7 @@ TumblingOdometry::Params tumbling_params(const nb::kwargs& given) {
   if (const nb::object further = keywords.take("further_lidars"); further.is_valid())
     params.further_lidars = further_lidars_of(further);
   if (const nb::object rig = keywords.take("calibration"); rig.is_valid() && !rig.is_none())
-    params.expert.rate.rate.model.calibration = rig_of(rig, "calibration");
+    params.expert->rate.rate.model.calibration = rig_of(rig, "calibration");
   read_fields(keywords, params, derived_tumbling_parameters());
   keywords.done();
   return params;

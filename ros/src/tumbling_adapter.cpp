@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tumble_ros/tumbling_adapter.hpp"
+#include "tumble/angular_velocity/rig_constants.hpp"
+#include "tumble/odometry/tumbling_expert_params.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -90,7 +92,7 @@ Status TumblingAdapter::add_sweep(TimedSweep sweep) {
   const Status status = clouds_.count(odometry_.add_sweep(sweep.start_ns, sweep.end_ns, sweep.points));
   if (!status.ok()) return status;
   if (publisher_.wants(Output::points)) sweeps_.push_back(std::move(sweep));
-  if (sweeps_.size() > params_.odometry.expert.sweeps_max) sweeps_.pop_front();
+  if (sweeps_.size() > params_.odometry.expert->sweeps_max) sweeps_.pop_front();
   return status;
 }
 

@@ -10,7 +10,7 @@
 #include "scenarios/methods/report_rates.hpp"
 #include "scenarios/methods/sample_times.hpp"
 #include "scenarios/methods/sphere_imus.hpp"
-#include "tumble/attitude/tumble_attitude.hpp"
+#include "tumble/attitude/detail/tumble_attitude.hpp"
 
 namespace tumble::scenarios {
 

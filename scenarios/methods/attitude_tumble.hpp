@@ -5,7 +5,7 @@
 #include "scenarios/methods/settings.hpp"
 #include "sim/parameters.hpp"
 #include "sim/recording.hpp"
-#include "tumble/attitude/tumble_attitude.hpp"
+#include "tumble/attitude/detail/tumble_attitude.hpp"
 
 namespace tumble::scenarios {
 

@@ -15,9 +15,9 @@
 #include "scenarios/methods/report_rates.hpp"
 #include "scenarios/methods/sample_times.hpp"
 #include "scenarios/methods/settings.hpp"
-#include "tumble/angular_velocity/clipping_finder.hpp"
-#include "tumble/attitude/clipped_readings.hpp"
-#include "tumble/attitude/hand_held_smoother.hpp"
+#include "tumble/angular_velocity/detail/clipping_finder.hpp"
+#include "tumble/attitude/detail/clipped_readings.hpp"
+#include "tumble/attitude/detail/hand_held_smoother.hpp"
 
 namespace tumble::scenarios {
 

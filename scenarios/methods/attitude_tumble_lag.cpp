@@ -9,7 +9,7 @@
 #include "scenarios/methods/rate_tumble.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/sample_times.hpp"
-#include "tumble/attitude/tumble_attitude.hpp"
+#include "tumble/attitude/detail/tumble_attitude.hpp"
 
 namespace tumble::scenarios {
 

@@ -2,7 +2,7 @@
 #include "scenarios/methods/attitude_filter.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/settings.hpp"
-#include "tumble/attitude/vqf.hpp"
+#include "tumble/attitude/detail/vqf.hpp"
 
 namespace tumble::scenarios {
 

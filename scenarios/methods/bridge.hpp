@@ -14,7 +14,7 @@
 #include "tumble/common/imu.hpp"
 #include "tumble/common/status.hpp"
 #include "tumble/mapping/lidar.hpp"
-#include "tumble/odometry/imu_sheet.hpp"
+#include "tumble/odometry/sensor_sheets.hpp"
 
 /// The libraries `sim` and `estimator` have these conventions:
 ///

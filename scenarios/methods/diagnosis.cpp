@@ -11,8 +11,8 @@
 #include "scenarios/methods/findings.hpp"
 #include "scenarios/methods/rate_baseline.hpp"
 #include "scenarios/recordings/number_text.hpp"
-#include "tumble/angular_velocity/clipping_finder.hpp"
-#include "tumble/angular_velocity/rest_detector.hpp"
+#include "tumble/angular_velocity/detail/clipping_finder.hpp"
+#include "tumble/angular_velocity/detail/rest_detector.hpp"
 #include "tumble/common/sensor_health.hpp"
 
 namespace tumble::scenarios {

@@ -10,6 +10,9 @@
 #include "scenarios/methods/robot_presets.hpp"
 #include "scenarios/methods/sample_times.hpp"
 #include "scenarios/methods/sphere_attitude.hpp"
+#include "tumble/odometry/detail/merge_recordings.hpp"
+#include "tumble/odometry/rolling_expert_params.hpp"
+#include "tumble/rolling/detail/rolling_smoother.hpp"
 
 namespace tumble::scenarios {
 
@@ -30,7 +33,7 @@ bool prepare(const sim::Sensors& sensors, Prepared& out, Estimate& estimate) {
   require_sphere("position/oracle", sensors);
   RollingOdometry::Params params;
   params.lag_s = RollingOdometry::kWholeRecording;
-  out.params = RollingOdometry::smoother_params(stated_params(sensors, units, params), imus.merged);
+  out.params = rolling_smoother_params(stated_params(sensors, units, params), imus.merged);
   out.samples = std::move(imus.merged.samples);
   return true;
 }

@@ -13,6 +13,8 @@
 #include "scenarios/methods/robot_presets.hpp"
 #include "scenarios/methods/settings.hpp"
 #include "scenarios/methods/sphere_attitude.hpp"
+#include "tumble/odometry/detail/imu_findings.hpp"
+#include "tumble/odometry/rolling_expert_params.hpp"
 
 namespace tumble::scenarios {
 

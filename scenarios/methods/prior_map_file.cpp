@@ -11,8 +11,8 @@
 #include "scenarios/recordings/clouds/cloud_file.hpp"
 #include "scenarios/recordings/replace_file.hpp"
 #include "scenarios/regular_file.hpp"
-#include "tumble/mapping/detail/prior_map.hpp"
-#include "tumble/odometry/detail/saved_map.hpp"
+#include "tumble/mapping/prior_map.hpp"
+#include "tumble/odometry/tumbling_odometry.hpp"
 
 namespace tumble::scenarios {
 

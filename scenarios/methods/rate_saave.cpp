@@ -3,7 +3,7 @@
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/robot_presets.hpp"
-#include "tumble/angular_velocity/saave.hpp"
+#include "tumble/angular_velocity/detail/saave.hpp"
 
 namespace tumble::scenarios {
 

@@ -6,8 +6,8 @@
 
 #include "scenarios/methods/settings.hpp"
 #include "sim/recording.hpp"
+#include "tumble/angular_velocity/detail/saave.hpp"
 #include "tumble/angular_velocity/rate_state.hpp"
-#include "tumble/angular_velocity/saave.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/common/status.hpp"
 

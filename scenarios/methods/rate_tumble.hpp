@@ -14,8 +14,8 @@
 #include "sim/parameters.hpp"
 #include "sim/recording.hpp"
 #include "tumble/angular_velocity/detail/auxiliary_recording.hpp"
-#include "tumble/angular_velocity/rate_smoother.hpp"
-#include "tumble/attitude/regime_smoother.hpp"
+#include "tumble/angular_velocity/detail/rate_smoother.hpp"
+#include "tumble/attitude/detail/regime_smoother.hpp"
 
 namespace tumble::scenarios {
 

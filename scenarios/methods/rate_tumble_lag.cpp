@@ -13,7 +13,7 @@
 #include "scenarios/methods/report_rates.hpp"
 #include "scenarios/methods/sample_times.hpp"
 #include "tumble/angular_velocity/rate_stream.hpp"
-#include "tumble/attitude/regime_stream.hpp"
+#include "tumble/attitude/detail/regime_stream.hpp"
 
 namespace tumble::scenarios {
 

@@ -11,7 +11,7 @@
 
 #include "scenarios/methods/method.hpp"
 #include "tumble/common/imu.hpp"
-#include "tumble/mapping/detail/odometer_reading.hpp"
+#include "tumble/mapping/further_readings.hpp"
 
 /// A new method needs a file KIND_NAME.cpp that defines `Method KIND_NAME()`, a declaration in this header, a line in
 /// registry.cpp, and a line in CMakeLists.txt.

@@ -4,8 +4,8 @@
 #include <map>
 #include <string>
 
-#include "tumble/angular_velocity/clipping_finder.hpp"
-#include "tumble/angular_velocity/rate_smoother.hpp"
+#include "tumble/angular_velocity/detail/clipping_finder.hpp"
+#include "tumble/angular_velocity/detail/rate_smoother.hpp"
 
 namespace tumble::scenarios {
 

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "scenarios/methods/method.hpp"
-#include "tumble/attitude/regime_smoother.hpp"
+#include "tumble/attitude/detail/regime_smoother.hpp"
 
 namespace tumble::scenarios {
 

@@ -11,7 +11,7 @@
 #include "scenarios/methods/robot_presets.hpp"
 #include "scenarios/methods/slam_registry.hpp"
 #include "scenarios/methods/sweep_log.hpp"
-#include "tumble/angular_velocity/rest_detector.hpp"
+#include "tumble/angular_velocity/detail/rest_detector.hpp"
 #include "tumble/attitude/strapdown.hpp"
 
 namespace tumble::scenarios {

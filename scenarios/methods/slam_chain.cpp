@@ -11,10 +11,11 @@
 #include "scenarios/methods/slam_registry.hpp"
 #include "scenarios/methods/slam_settings.hpp"
 #include "scenarios/methods/sweep_log.hpp"
+#include "tumble/mapping/detail/registration_params.hpp"
 #include "tumble/mapping/detail/sweep_scale.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
-#include "tumble/mapping/registration_params.hpp"
 #include "tumble/odometry/detail/mapping_passes.hpp"
+#include "tumble/odometry/tumbling_expert_params.hpp"
 #include "tumble/odometry/tumbling_odometry.hpp"
 
 namespace tumble::scenarios {
@@ -98,7 +99,7 @@ SlamParams with_calibration(SlamParams params) {
   params.odometry.mount_sigma_rad = door.mount_sigma_rad;
   params.odometry.mount_sigma_m = door.mount_sigma_m;
   params.odometry.time_offset_sigma_s = door.time_offset_sigma_s;
-  params.odometry.expert.gravity_sigma_m_s2 = door.expert.mapping.expert.gravity_sigma_m_s2;
+  params.odometry.expert.gravity_sigma_m_s2 = door.expert->mapping.expert.gravity_sigma_m_s2;
   return params;
 }
 

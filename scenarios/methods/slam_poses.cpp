@@ -3,7 +3,7 @@
 #include "scenarios/methods/position_stage.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/sweep_log.hpp"
-#include "tumble/mapping/voxel_map.hpp"
+#include "tumble/mapping/detail/voxel_map.hpp"
 
 /// Published methods build maps of a rolling sphere from the poses of a position method, without registration.
 namespace tumble::scenarios {

@@ -11,7 +11,7 @@
 #include "scenarios/methods/method.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "tumble/common/imu.hpp"
-#include "tumble/mapping/detail/prior_map.hpp"
+#include "tumble/mapping/prior_map.hpp"
 
 namespace tumble::scenarios {
 

@@ -19,6 +19,7 @@
 #include "scenarios/methods/slam_registry.hpp"
 #include "scenarios/methods/sweep_log.hpp"
 #include "tumble/odometry/detail/recording_estimate.hpp"
+#include "tumble/odometry/tumbling_expert_params.hpp"
 #include "tumble/odometry/tumbling_odometry.hpp"
 
 namespace tumble::scenarios {
@@ -61,7 +62,7 @@ TumblingOdometry::Params stated_params(const sim::Sensors& sensors, TumblingOdom
   params.lever_arm_I_m = bridge::lever_arm_I_m(imu);
   params.T_IL = bridge::T_IL(imu, sensors.lidars.front());
   params.own_body_L = presets::rig_body_L();
-  params.expert.gravity_m_s2 = sensors.gravity_m_s2;
+  params.expert->gravity_m_s2 = sensors.gravity_m_s2;
   return params;
 }
 

@@ -14,9 +14,9 @@
 
 #include "tests/estimator/mapping/endless_corridor.hpp"
 #include "tests/estimator/mapping/synthetic_room.hpp"
+#include "tumble/mapping/detail/plane_fit.hpp"
+#include "tumble/mapping/detail/voxel_map.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
-#include "tumble/mapping/plane_fit.hpp"
-#include "tumble/mapping/voxel_map.hpp"
 
 namespace {
 

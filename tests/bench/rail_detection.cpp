@@ -15,7 +15,7 @@
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/rate_baseline.hpp"
 #include "scenarios/recordings/recording_file.hpp"
-#include "tumble/angular_velocity/clipping_finder.hpp"
+#include "tumble/angular_velocity/detail/clipping_finder.hpp"
 
 namespace {
 

@@ -15,7 +15,7 @@
 #include "examples/online/online.hpp"
 #include "scenarios/baselines/rolling/rolling_odometry.hpp"
 #include "tests/estimator/rolling/rolling_truth.hpp"
-#include "tumble/rolling/rolling_smoother.hpp"
+#include "tumble/rolling/detail/rolling_smoother.hpp"
 
 namespace {
 std::size_t allocations = 0, held = 0;

@@ -11,7 +11,8 @@
 
 #include "estimator/src/odometry/saved_bytes.hpp"
 #include "scenarios/errors.hpp"
-#include "tumble/odometry/detail/saved_map.hpp"
+#include "tumble/mapping/lidar_inertial_odometry.hpp"
+#include "tumble/odometry/tumbling_odometry.hpp"
 
 namespace tumble::fuzz {
 

@@ -2,6 +2,7 @@
 // The test checks that TumblingAdapter publishes the library's results bit for bit, for the base frame, also after a
 // step of the clock.
 #include "tumble_ros/tumbling_adapter.hpp"
+#include "tumble/mapping/lidar_inertial_odometry.hpp"
 
 #include <gtest/gtest.h>
 

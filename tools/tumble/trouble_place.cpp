@@ -10,7 +10,7 @@
 
 #include "scenarios/methods/bridge.hpp"
 #include "tumble/common/imu.hpp"
-#include "tumble/mapping/odometry_params.hpp"
+#include "tumble/mapping/detail/odometry_params.hpp"
 
 namespace tumble::tools {
 

@@ -3,9 +3,7 @@
 
 /// Includes the parts of the library that most robots need, and the data sheets of sensors. Link with tumble::odometry.
 /// TumblingOdometry processes the IMU and lidar of a tumbling body. RollingOdometry processes one to four IMUs of a
-/// rolling sphere.
-#include "tumble/odometry/detail/saved_map.hpp"   // IWYU pragma: export
-#include "tumble/odometry/imu_sheet.hpp"          // IWYU pragma: export
-#include "tumble/odometry/lidar_sheet.hpp"        // IWYU pragma: export
+/// rolling sphere. Every other estimator has a separate header, in one folder per estimated quantity.
 #include "tumble/odometry/rolling_odometry.hpp"   // IWYU pragma: export
+#include "tumble/odometry/sensor_sheets.hpp"      // IWYU pragma: export
 #include "tumble/odometry/tumbling_odometry.hpp"  // IWYU pragma: export

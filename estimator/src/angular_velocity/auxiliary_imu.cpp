@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/angular_velocity/auxiliary_imu.hpp"
+#include "tumble/angular_velocity/detail/auxiliary_imu.hpp"
 
 #include <cmath>
 #include <limits>

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "tumble/angular_velocity/clipping_finder.hpp"
+#include "tumble/angular_velocity/detail/clipping_finder.hpp"
 
 namespace tumble {
 

@@ -7,10 +7,10 @@
 #include <optional>
 #include <span>
 
-#include "tumble/angular_velocity/clipping_finder.hpp"
+#include "tumble/angular_velocity/detail/clipping_finder.hpp"
+#include "tumble/angular_velocity/detail/rail_detector.hpp"
+#include "tumble/angular_velocity/detail/rail_planes.hpp"
 #include "tumble/angular_velocity/detail/rate_model.hpp"
-#include "tumble/angular_velocity/rail_detector.hpp"
-#include "tumble/angular_velocity/rail_planes.hpp"
 
 namespace tumble {
 

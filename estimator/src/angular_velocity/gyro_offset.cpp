@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/angular_velocity/detail/gyro_offset.hpp"
+#include "gyro_offset.hpp"
 
 namespace tumble {
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "tumble/angular_velocity/rail_plane.hpp"
+#include "tumble/angular_velocity/detail/rail_plane.hpp"
 #include "tumble/common/imu.hpp"
 
 namespace tumble {

@@ -4,8 +4,8 @@
 #include <span>
 
 #include "tumble/angular_velocity/detail/min_saturation_levels.hpp"
+#include "tumble/angular_velocity/detail/rail_plane.hpp"
 #include "tumble/angular_velocity/detail/rate_model.hpp"
-#include "tumble/angular_velocity/rail_plane.hpp"
 
 namespace tumble {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/angular_velocity/rail_detector.hpp"
+#include "tumble/angular_velocity/detail/rail_detector.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "rail_evidence.hpp"
-#include "tumble/angular_velocity/rail_planes.hpp"
+#include "tumble/angular_velocity/detail/rail_planes.hpp"
 
 namespace tumble::rails {
 

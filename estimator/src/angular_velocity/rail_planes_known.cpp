@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
 
-#include "tumble/angular_velocity/rail_planes.hpp"
+#include "tumble/angular_velocity/detail/rail_planes.hpp"
 
 namespace tumble {
 

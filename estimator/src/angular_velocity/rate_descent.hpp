@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "tumble/angular_velocity/detail/rate_model.hpp"
-#include "tumble/angular_velocity/rate_smoother.hpp"
+#include "tumble/angular_velocity/detail/rate_smoother.hpp"
 
 namespace tumble {
 

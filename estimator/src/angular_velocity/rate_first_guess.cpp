@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tumble/angular_velocity/saave.hpp"
+#include "tumble/angular_velocity/detail/saave.hpp"
 #include "wnoj_smoother.hpp"
 
 namespace tumble {

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "../common/dense.hpp"
-#include "tumble/angular_velocity/rate_model_params.hpp"
+#include "tumble/angular_velocity/detail/rate_model_params.hpp"
 #include "tumble/common/status.hpp"
 
 namespace tumble {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/angular_velocity/rate_smoother.hpp"
+#include "tumble/angular_velocity/detail/rate_smoother.hpp"
 
 #include <limits>
 #include <utility>
 
+#include "gyro_offset.hpp"
 #include "rate_readings.hpp"
 #include "rate_rounds.hpp"
 #include "rate_states.hpp"
-#include "tumble/angular_velocity/detail/gyro_offset.hpp"
 #include "tumble/angular_velocity/detail/recording_check.hpp"
 
 namespace tumble {

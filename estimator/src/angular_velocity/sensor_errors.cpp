@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/angular_velocity/sensor_errors.hpp"
+#include "tumble/angular_velocity/detail/sensor_errors.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/attitude/clipped_readings.hpp"
+#include "tumble/attitude/detail/clipped_readings.hpp"
 
 #include <cstddef>
 #include <optional>

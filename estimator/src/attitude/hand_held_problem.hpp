@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "hand_held_readings.hpp"
-#include "tumble/attitude/hand_held_smoother.hpp"
+#include "tumble/attitude/detail/hand_held_smoother.hpp"
 
 namespace tumble::hand_held {
 

@@ -7,9 +7,9 @@
 #include <limits>
 
 #include "../angular_velocity/sample_hold.hpp"
-#include "tumble/angular_velocity/clipping_finder.hpp"
+#include "tumble/angular_velocity/detail/clipping_finder.hpp"
 #include "tumble/angular_velocity/detail/subsample_saturation.hpp"
-#include "tumble/attitude/vqf.hpp"
+#include "tumble/attitude/detail/vqf.hpp"
 
 namespace tumble {
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "tumble/attitude/hand_held_smoother.hpp"
+#include "tumble/attitude/detail/hand_held_smoother.hpp"
 
 namespace tumble::hand_held {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/attitude/hand_held_stream.hpp"
+#include "tumble/attitude/detail/hand_held_stream.hpp"
 
 #include <Eigen/LU>
 #include <algorithm>

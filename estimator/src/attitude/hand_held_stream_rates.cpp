@@ -6,7 +6,7 @@
 
 #include "hand_held_problem.hpp"
 #include "revolution_hypotheses.hpp"
-#include "tumble/attitude/hand_held_stream.hpp"
+#include "tumble/attitude/detail/hand_held_stream.hpp"
 
 namespace tumble {
 

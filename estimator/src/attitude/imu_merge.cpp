@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/attitude/imu_merge.hpp"
+#include "tumble/attitude/detail/imu_merge.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,6 +14,9 @@
 namespace tumble {
 
 namespace {
+
+// Additional difference, as a fraction of the rate.
+constexpr double kRateToleranceRatio = 0.03;
 
 constexpr double kBiasSigma_rad_s = 0.01, kScaleSigma = 0.01;
 constexpr double kRotating_rad_s2 = 1.0;  // minimum angular acceleration for estimating a time offset
@@ -179,8 +182,7 @@ ImuMerge::UnitMask ImuMerge::select_units(const Readings& readings, const UnitMa
   // If the body rotates, IMUs at different positions measure different specific forces.
   const Eigen::Vector3d middle_rate = median(rates, present), middle_force = median(forces, present);
   const auto units = std::count(present.begin(), present.end(), true);
-  const double rate_tolerance =
-      params_.expert.outliers.rate_rad_s + params_.expert.outliers.rate_share * middle_rate.norm();
+  const double rate_tolerance = params_.expert.outliers.rate_rad_s + kRateToleranceRatio * middle_rate.norm();
   UnitMask used{};
   for (std::size_t i = 0; i < used.size(); ++i) {
     if (!present[i]) continue;

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "tumble/attitude/imu_merge.hpp"
+#include "tumble/attitude/detail/imu_merge.hpp"
 
 namespace tumble {
 

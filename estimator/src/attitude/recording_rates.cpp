@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "tumble/angular_velocity/detail/interpolated_rates.hpp"
-#include "tumble/attitude/clipped_readings.hpp"
+#include "tumble/attitude/detail/clipped_readings.hpp"
 
 namespace tumble {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/attitude/regime_smoother.hpp"
+#include "tumble/attitude/detail/regime_smoother.hpp"
 
 #include <algorithm>
 #include <cstddef>
 
 #include "tumble/angular_velocity/detail/interpolated_rates.hpp"
-#include "tumble/attitude/clipped_readings.hpp"
+#include "tumble/attitude/detail/clipped_readings.hpp"
 
 namespace tumble {
 

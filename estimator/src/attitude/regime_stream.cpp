@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/attitude/regime_stream.hpp"
+#include "tumble/attitude/detail/regime_stream.hpp"
 
 #include <algorithm>
 #include <cmath>

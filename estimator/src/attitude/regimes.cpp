@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/attitude/regimes.hpp"
+#include "tumble/attitude/detail/regimes.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>

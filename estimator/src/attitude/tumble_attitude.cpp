@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/attitude/tumble_attitude.hpp"
+#include "tumble/attitude/detail/tumble_attitude.hpp"
 
 #include <algorithm>
 #include <array>
@@ -14,6 +14,15 @@
 namespace tumble {
 
 namespace {
+
+constexpr double kAccelerationNoise_m_s_sqrts = 0.01;  // velocity random walk
+// Velocity residual above which slip starts; slip ends below half of this value.
+constexpr double kSlipVelocity_m_s = 0.12;
+// Duration of small velocity residuals after which slip ends.
+constexpr double kSlipQuiet_s = 0.2;
+constexpr double kSlipTimeout_s = 3.0;  // maximum duration of a slip
+// A longer time between two samples is a gap.
+constexpr double kGapMin_s = 0.05;
 
 constexpr double kTiltSigmaStart_rad = 0.01;
 constexpr double kVelocitySigmaStart_m_s = 0.1;
@@ -74,7 +83,7 @@ Status TumbleAttitude::step(const ImuSample& sample, const Eigen::Matrix3d& rate
     double dt_s = 0.0;
     if (const Status bad = elapsed(sample.time_ns, state.last_time_ns, params_.expert.gap_max_s, dt_s); !bad.ok())
       return bad;
-    if (dt_s > params_.expert.gap.duration_min_s) {
+    if (dt_s > kGapMin_s) {
       bridge_gap(sample, rate_covariance_rad2_s2, dt_s, state);
       state.last_time_ns = sample.time_ns;
       return {};
@@ -282,23 +291,22 @@ void TumbleAttitude::predict_node(State& state) const {
   if (state.alignment.running) state.alignment.tilt_variance_growth_rad2 += turn + state.recovered_variance_rad2[0];
   state.covariance(kHeading, kHeading) += state.at_rest ? 0.0 : turn + state.recovered_variance_rad2[1];
   state.covariance.diagonal().segment<3>(kBias).array() += squared(params_.expert.bias_walk_rad_s_sqrts) * h;
-  state.covariance.diagonal().segment<2>(kVelocity).array() += squared(params_.expert.acceleration_noise_m_s_sqrts) * h;
+  state.covariance.diagonal().segment<2>(kVelocity).array() += squared(kAccelerationNoise_m_s_sqrts) * h;
 }
 
 bool TumbleAttitude::detect_slip(const Eigen::Vector2d& misfit_m_s, State& state) const {
   const double misfit = misfit_m_s.norm();
   state.slip_duration_s = state.slipping ? state.slip_duration_s + state.node_s : 0.0;
-  state.grip_duration_s =
-      misfit < 0.5 * params_.expert.rolling.slip_velocity_m_s ? state.grip_duration_s + state.node_s : 0.0;
+  state.grip_duration_s = misfit < 0.5 * kSlipVelocity_m_s ? state.grip_duration_s + state.node_s : 0.0;
   if (state.slipping) {
-    state.slipping = !state.at_rest && state.grip_duration_s <= params_.expert.rolling.slip_quiet_s;
-    if (state.slip_duration_s > params_.expert.rolling.slip_timeout_s) {
+    state.slipping = !state.at_rest && state.grip_duration_s <= kSlipQuiet_s;
+    if (state.slip_duration_s > kSlipTimeout_s) {
       // After a slip, the velocity from rolling is more accurate than the integrated velocity.
       state.covariance.diagonal().segment<2>(kVelocity).array() += squared(misfit);
       state.slipping = false;
     }
   } else {
-    state.slipping = !state.at_rest && misfit > params_.expert.rolling.slip_velocity_m_s;
+    state.slipping = !state.at_rest && misfit > kSlipVelocity_m_s;
   }
   return state.slipping;
 }

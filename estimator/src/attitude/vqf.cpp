@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/attitude/vqf.hpp"
+#include "tumble/attitude/detail/vqf.hpp"
 
 #include <cmath>
 
@@ -12,6 +12,24 @@
 namespace tumble {
 
 namespace {
+
+// Standard deviation of the bias in motion: 0.1 deg/s.
+constexpr double kBiasSigmaMotion_rad_s = 1.7453e-3;
+// Standard deviation of the bias at rest: 0.03 deg/s.
+constexpr double kBiasSigmaRest_rad_s = 5.2360e-4;
+// Decay of the unobservable vertical bias to zero.
+constexpr double kVerticalForgetting = 1e-4;
+// Time constant of the low-pass filter for detecting rest.
+constexpr double kRestTau_s = 0.5;
+// Time in which the bias variance grows to (0.1 deg/s)^2.
+constexpr double kBiasForgetting_s = 100.0;
+constexpr double kBiasClip_rad_s = 3.4907e-2;  // largest accepted bias: 2 deg/s
+// Duration of quiet readings after which the sensor is at rest.
+constexpr double kRestTime_s = 1.5;
+// Maximum difference of gyro and low-passed gyro at rest: 2 deg/s.
+constexpr double kRestRate_rad_s = 3.4907e-2;
+// Maximum difference of force and low-passed force at rest.
+constexpr double kRestForce_m_s2 = 0.5;
 
 constexpr double kNoDirection_m_s2 = 1e-6;
 /// growth of the bias' standard deviation within the forgetting time (0.1 deg/s in the VQF publication)
@@ -55,14 +73,14 @@ Status Vqf::step(const ImuSample& sample, State& state) const {
 }
 
 void Vqf::detect_rest(const ImuSample& sample, double dt_s, State& state) const {
-  const double warp = low_pass_prewarp(params_.expert.rest_tau_s, dt_s);
-  state.rest_rate_rad_s.advance(sample.angular_velocity_rad_s, params_.expert.rest_tau_s, dt_s, warp);
-  state.rest_force_m_s2.advance(sample.specific_force_m_s2, params_.expert.rest_tau_s, dt_s, warp);
-  const bool quiet = (sample.angular_velocity_rad_s - state.rest_rate_rad_s.value).norm() < params_.rest_rate_rad_s &&
-                     (sample.specific_force_m_s2 - state.rest_force_m_s2.value).norm() < params_.rest_force_m_s2 &&
-                     state.rest_rate_rad_s.value.cwiseAbs().maxCoeff() <= params_.bias_clip_rad_s;
+  const double warp = low_pass_prewarp(kRestTau_s, dt_s);
+  state.rest_rate_rad_s.advance(sample.angular_velocity_rad_s, kRestTau_s, dt_s, warp);
+  state.rest_force_m_s2.advance(sample.specific_force_m_s2, kRestTau_s, dt_s, warp);
+  const bool quiet = (sample.angular_velocity_rad_s - state.rest_rate_rad_s.value).norm() < kRestRate_rad_s &&
+                     (sample.specific_force_m_s2 - state.rest_force_m_s2.value).norm() < kRestForce_m_s2 &&
+                     state.rest_rate_rad_s.value.cwiseAbs().maxCoeff() <= kBiasClip_rad_s;
   state.rest_s = quiet ? state.rest_s + dt_s : 0.0;
-  state.at_rest = state.rest_s >= params_.rest_time_s && quiet;
+  state.at_rest = state.rest_s >= kRestTime_s && quiet;
 }
 
 /// Returns the unit vector along the specific force (upwards), in frame W before the correction.
@@ -85,7 +103,7 @@ void Vqf::estimate_bias(const Eigen::Vector3d& up_W, double dt_s, State& state) 
   state.R_WI.advance(Eigen::Map<const Eigen::Matrix<double, 9, 1>>(R.data()), params_.tau_s, dt_s, warp);
 
   Eigen::Matrix3d& P = state.bias_covariance_rad2_s2;
-  const double growth = kForgottenSigma_rad_s * kForgottenSigma_rad_s * dt_s / params_.bias_forgetting_s;
+  const double growth = kForgottenSigma_rad_s * kForgottenSigma_rad_s * dt_s / kBiasForgetting_s;
   const double start = params_.bias_sigma_start_rad_s * params_.bias_sigma_start_rad_s;
   for (int axis = 0; axis < 3; ++axis) {
     if (P(axis, axis) < start) P(axis, axis) += growth;
@@ -95,18 +113,18 @@ void Vqf::estimate_bias(const Eigen::Vector3d& up_W, double dt_s, State& state) 
   Eigen::Vector3d innovation, noise;
   if (state.at_rest && params_.rest_bias_estimation) {
     innovation = state.rest_rate_rad_s.value - b;
-    noise.setConstant(steady_noise(params_.expert.bias_sigma_rest_rad_s, growth));
+    noise.setConstant(steady_noise(kBiasSigmaRest_rad_s, growth));
   } else if (params_.motion_bias_estimation) {
     H = Eigen::Map<const Eigen::Matrix3d>(state.R_WI.value.data());
     // The correction rate of the vertical contains the remaining gyro bias and the recently corrected gyro bias.
     const Eigen::Vector2d low_passed = state.bias_W_rad_s.value;
     innovation = Eigen::Vector3d(low_passed.x() - up_W.y() / dt_s, low_passed.y() + up_W.x() / dt_s, 0.0) - H * b;
-    const double motion = steady_noise(params_.expert.bias_sigma_motion_rad_s, growth);
-    noise = {motion, motion, motion / params_.expert.vertical_forgetting};
+    const double motion = steady_noise(kBiasSigmaMotion_rad_s, growth);
+    noise = {motion, motion, motion / kVerticalForgetting};
   } else {
     return;
   }
-  const double clip = params_.bias_clip_rad_s;
+  const double clip = kBiasClip_rad_s;
   innovation = innovation.cwiseMax(-clip).cwiseMin(clip);
   const Eigen::Vector3d correction = vector_update<3, 3>(H, innovation, noise.asDiagonal(), P);
   state.bias_rad_s = (b + correction).cwiseMax(-clip).cwiseMin(clip);

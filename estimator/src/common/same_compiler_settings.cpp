@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/common/detail/same_compiler_settings.hpp"
+#include "tumble/common/same_compiler_settings.hpp"
 
 namespace tumble::detail {
 

@@ -8,9 +8,18 @@ namespace tumble::mapping {
 
 namespace {
 
+// Stages of a registration: iterations with all points, further iterations with a subsample, and a coarse stage for
+// starting poses far from the prior. The iterations with the subsample decide whether a starting pose converges.
+constexpr int kFullIterations = 8, kCoarseIterations = 15;
+constexpr std::size_t kSubsamplePoints = 1000, kCoarsePoints = 300, kCoarseMatchesMin = 50;
+constexpr double kCoarseKernelMin_m = 0.5;  // minimum width of the robust kernel
+constexpr double kCoarseRematch_m = 0.2;    // motion of a point after which its plane is searched again
+constexpr double kCoarseStep_m = 5e-3, kCoarseStep_rad = 2e-3;  // converged if a step is below both
+constexpr double kCoarseInlierRatioMin = 0.2;  // minimum fraction of matches within three standard deviations
+
 Registration::Params full_params(const LidarInertialOdometry::Params& params) {
   Registration::Params out = registration_params(params);
-  out.iterations_max = std::min(params.expert.matching.iterations_max, params.expert.stages.full_iterations);
+  out.iterations_max = std::min(params.expert.matching.iterations_max, kFullIterations);
   return out;
 }
 
@@ -19,16 +28,15 @@ constexpr double kCoarseReach = 2.0;
 /// The result of a coarse registration only needs to be near the solution.
 Registration::Params coarse_params(const LidarInertialOdometry::Params& params) {
   const MatchingParams& matching = params.expert.matching;
-  const RegistrationStagesParams& stages = params.expert.stages;
   Registration::Params out = registration_params(params);
   out.match_distance_m = std::min(kCoarseReach * matching.distance_m, Registration::Params::kMatchDistanceMax_m);
-  out.iterations_max = std::min(matching.iterations_max, stages.coarse_iterations);
-  out.matches_min = std::min(matching.matches_min, stages.coarse_matches_min);
-  out.expert.kernel_min_m = stages.coarse_kernel_min_m;
-  out.expert.rematch_m = stages.coarse_rematch_m;
-  out.expert.step_m = stages.coarse_step_m;
-  out.expert.step_rad = stages.coarse_step_rad;
-  out.expert.inlier_ratio_min = stages.coarse_inlier_ratio_min;
+  out.iterations_max = std::min(matching.iterations_max, kCoarseIterations);
+  out.matches_min = std::min(matching.matches_min, kCoarseMatchesMin);
+  out.expert.kernel_min_m = kCoarseKernelMin_m;
+  out.expert.rematch_m = kCoarseRematch_m;
+  out.expert.step_m = kCoarseStep_m;
+  out.expert.step_rad = kCoarseStep_rad;
+  out.expert.inlier_ratio_min = kCoarseInlierRatioMin;
   out.expert.agreeing_matches_needed = out.matches_min;  // a coarse start has no prior that it could agree with
   return out;
 }
@@ -57,11 +65,7 @@ Registration::Prior from(const Registration::Result& found, const Registration::
 }  // namespace
 
 Aligner::Aligner(const LidarInertialOdometry::Params& params)
-    : full_(full_params(params)),
-      subsampled_(registration_params(params)),
-      coarse_(coarse_params(params)),
-      subsample_points_(params.expert.stages.subsample_points),
-      coarse_points_(params.expert.stages.coarse_points) {}
+    : full_(full_params(params)), subsampled_(registration_params(params)), coarse_(coarse_params(params)) {}
 
 void Aligner::align_with_all_points(const Registration::Prior& prior, const Scene& scene, SweepTrajectory& trajectory,
                                     Registration::Result& found) {
@@ -70,7 +74,7 @@ void Aligner::align_with_all_points(const Registration::Prior& prior, const Scen
 
 void Aligner::align_to_convergence(const Registration::Prior& prior, const Scene& scene, SweepTrajectory& trajectory,
                                    Registration::Result& found) {
-  select_evenly(scene.points, subsample_points_, thinned_);
+  select_evenly(scene.points, kSubsamplePoints, thinned_);
   align(subsampled_, prior, scene, thinned_, trajectory, found);
   if (found.verdict != RegistrationVerdict::converged) return;
   const int iterations = found.iterations;
@@ -81,7 +85,7 @@ void Aligner::align_to_convergence(const Registration::Prior& prior, const Scene
 
 void Aligner::align_coarse_to_fine(const Registration::Prior& start, const Registration::Prior& prior,
                                    const Scene& scene, SweepTrajectory& trajectory, Registration::Result& found) {
-  select_evenly(scene.points, coarse_points_, thinned_);
+  select_evenly(scene.points, kCoarsePoints, thinned_);
   const auto rough = std::make_unique<Registration::Result>();
   align(coarse_, start, scene, thinned_, trajectory, *rough);
   found.verdict = rough->verdict;

@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "tumble/mapping/detail/registration.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
-#include "tumble/mapping/registration.hpp"
 
 namespace tumble::mapping {
 
@@ -36,7 +36,6 @@ class Aligner {
 
  private:
   Registration full_, subsampled_, coarse_;
-  std::size_t subsample_points_, coarse_points_;
   std::vector<SweepPoint> thinned_;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/mapping/deskew.hpp"
+#include "tumble/mapping/detail/deskew.hpp"
 
 #include <cmath>
 

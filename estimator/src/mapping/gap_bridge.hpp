@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "tumble/mapping/detail/inertial_params.hpp"
-#include "tumble/mapping/sweep_trajectory.hpp"
+#include "tumble/mapping/detail/sweep_trajectory.hpp"
 
 namespace tumble::mapping {
 

@@ -9,6 +9,17 @@
 
 namespace tumble::mapping {
 
+namespace {
+
+// Standard deviation of a saturated force reading.
+constexpr double kSaturatedForceSigma_m_s2 = 50.0;
+// Ratio of the inertial prediction's noise at rest to its noise in motion.
+constexpr double kRestNoiseRatio = 0.02;
+// Standard deviation of the speed of a robot that seems to be at rest.
+constexpr double kStartSpeedSigma_m_s = 0.05;
+
+}  // namespace
+
 namespace u = unknowns;
 
 /// See mapping.md (R39), (R40), (R41), (R43).
@@ -50,16 +61,14 @@ Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& 
   const auto rests = [&](const MotionSample& sample) {
     return sample.at_rest || seconds(sample.from_ns - start_ns) >= trajectory.duration_s();
   };
-  if (std::all_of(samples.begin(), samples.end(), rests))
-    return params.expert.standstill.noise_share * params.expert.standstill.noise_share * noise;
+  if (std::all_of(samples.begin(), samples.end(), rests)) return kRestNoiseRatio * kRestNoiseRatio * noise;
   u::block(noise, u::attitude) += trajectory.duration_s() * turned;  // mapping.md (R42)
   u::variances(noise, u::attitude).array() += std::pow(params.expert.prior.rotation_noise_ratio * rotated_rad, 2);
   return noise;
 }
 
-/// See mapping.md (R45).
-Eigen::Matrix3d clipped_velocity_variance(const LidarInertialOdometry::Params& params,
-                                          const SweepTrajectory& trajectory, std::span<const MotionSample> samples) {
+/// Computes the covariance of the velocity due to saturated accelerometer readings: mapping.md (R45).
+Eigen::Matrix3d clipped_velocity_variance(const SweepTrajectory& trajectory, std::span<const MotionSample> samples) {
   std::size_t hint = 0;
   Eigen::Matrix3d lasted = Eigen::Matrix3d::Zero();  // column j: saturated time of axis j, as a vector in W
   for (const MotionSample& sample : samples) {
@@ -71,7 +80,7 @@ Eigen::Matrix3d clipped_velocity_variance(const LidarInertialOdometry::Params& p
       if (sample.accel_saturated_axes >> axis & 1) lasted.col(axis) += (to - from) * R.col(axis);
     }
   }
-  return params.expert.rails.force_sigma_m_s2 * params.expert.rails.force_sigma_m_s2 * lasted * lasted.transpose();
+  return kSaturatedForceSigma_m_s2 * kSaturatedForceSigma_m_s2 * lasted * lasted.transpose();
 }
 
 Status start_at_rest(const LidarInertialOdometry::Params& params, std::span<const MotionSample> samples,
@@ -97,8 +106,7 @@ Status level_at_rest(const LidarInertialOdometry::Params& params, const Eigen::V
   if (Status status = level(force_I_m_s2, state.q_WI); !status.ok()) return status;
   u::variances(state.covariance, u::tilt)
       .setConstant(params.expert.start.level_sigma_rad * params.expert.start.level_sigma_rad);
-  u::variances(state.covariance, u::velocity)
-      .setConstant(params.expert.start.speed_sigma_m_s * params.expert.start.speed_sigma_m_s);
+  u::variances(state.covariance, u::velocity).setConstant(kStartSpeedSigma_m_s * kStartSpeedSigma_m_s);
   return {};
 }
 

@@ -4,8 +4,8 @@
 #include <Eigen/Core>
 #include <span>
 
+#include "tumble/mapping/detail/sweep_trajectory.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
-#include "tumble/mapping/sweep_trajectory.hpp"
 
 namespace tumble::mapping {
 
@@ -16,9 +16,9 @@ Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& 
                                            const SweepTrajectory& trajectory, std::span<const MotionSample> samples,
                                            unsigned deficit_axes);
 
-/// Returns the covariance, in frame W, of the velocity change over a sweep due to accelerometer saturation.
-Eigen::Matrix3d clipped_velocity_variance(const LidarInertialOdometry::Params& params,
-                                          const SweepTrajectory& trajectory, std::span<const MotionSample> samples);
+/// Returns the covariance, in frame W, of the velocity change over a sweep due to accelerometer saturation. The
+/// saturation deficit of the specific force is assumed constant while the saturation lasts.
+Eigen::Matrix3d clipped_velocity_variance(const SweepTrajectory& trajectory, std::span<const MotionSample> samples);
 
 /// Computes the state of an IMU at rest, at the origin of W with yaw 0, at the start of the first averaging window. The
 /// mean specific force of the first `rest.levelling_max_s` seconds levels the attitude. Returns `degenerate` if the

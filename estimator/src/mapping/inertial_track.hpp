@@ -7,7 +7,7 @@
 
 #include "gap_bridge.hpp"
 #include "inertial_prior.hpp"
-#include "tumble/angular_velocity/rest_detector.hpp"
+#include "tumble/angular_velocity/detail/rest_detector.hpp"
 
 namespace tumble::mapping {
 

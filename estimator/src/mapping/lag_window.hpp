@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "local_map.hpp"
-#include "tumble/mapping/registration.hpp"
+#include "tumble/mapping/detail/registration.hpp"
 
 namespace tumble::mapping {
 

@@ -12,7 +12,10 @@ namespace tumble::mapping {
 
 namespace {
 
-/// See mapping.md (R64).
+// Points with a larger standard deviation are not inserted.
+constexpr double kPointSigmaMax_m = 0.25;
+
+/// PoseVariance computes the variance of a map point due to the uncertain trajectory of its sweep: mapping.md (R64).
 class PoseVariance {
  public:
   PoseVariance(const Registration::Matrix& covariance, const SweepTrajectory& trajectory)
@@ -69,7 +72,7 @@ std::size_t LocalMap::insert(const Params& params, const SweepToInsert& sweep, c
     }
     return added;
   };
-  std::size_t added = add(params.expert.map.sigma_max_m);
+  std::size_t added = add(kPointSigmaMax_m);
   if (empty()) added = add(std::numeric_limits<double>::infinity());  // an uncertain map is better than none
   seen_from_W_m_.push_back(middle.p_WI_m.cast<float>());
   if (sweep.pose_certain) check_free_space(free_space_);

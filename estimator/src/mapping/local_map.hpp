@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "sight_grid.hpp"
-#include "tumble/mapping/deskew.hpp"
+#include "tumble/mapping/detail/deskew.hpp"
 #include "tumble/mapping/detail/map_drawing.hpp"
+#include "tumble/mapping/detail/registration.hpp"
+#include "tumble/mapping/detail/voxel_map.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
-#include "tumble/mapping/registration.hpp"
-#include "tumble/mapping/voxel_map.hpp"
 
 namespace tumble::mapping {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "tumble/mapping/deskew.hpp"
+#include "tumble/mapping/detail/deskew.hpp"
 
 namespace tumble {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tumble/mapping/detail/map_drawing.hpp"
 
-#include "tumble/mapping/plane_fit.hpp"
+#include "tumble/mapping/detail/plane_fit.hpp"
 
 namespace tumble::mapping {
 

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <variant>
 
-#include "tumble/mapping/detail/odometer_reading.hpp"
+#include "tumble/mapping/further_readings.hpp"
 
 namespace tumble::mapping {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/mapping/odometry_params.hpp"
+#include "tumble/mapping/detail/odometry_params.hpp"
 
 #include "odometry_impl.hpp"
 

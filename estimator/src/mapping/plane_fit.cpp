@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/mapping/plane_fit.hpp"
+#include "tumble/mapping/detail/plane_fit.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>

@@ -5,9 +5,9 @@
 #include <cstddef>
 
 #include "tumble/mapping/calibration.hpp"
-#include "tumble/mapping/deskew.hpp"
+#include "tumble/mapping/detail/deskew.hpp"
+#include "tumble/mapping/detail/sweep_trajectory.hpp"
 #include "tumble/mapping/detail/sweep_unknowns.hpp"
-#include "tumble/mapping/sweep_trajectory.hpp"
 
 namespace tumble::mapping {
 

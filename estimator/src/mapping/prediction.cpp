@@ -16,6 +16,22 @@ namespace tumble::mapping {
 
 namespace {
 
+// Maximum standard deviation of the attitude of a sweep with too few matches that still extends the map.
+constexpr double kExtendSigmaMax_rad = 0.1;
+// Minimum prior standard deviation of the saturation deficit of a clipped axis.
+constexpr double kDeficitSigmaMin_rad_s = 1.0;
+// Correlation time of the saturation deficit.
+constexpr double kDeficitTime_s = 0.3;
+// Maximum growth factor of the saturation deficit at a sweep boundary.
+constexpr double kDeficitCarryMax = 3.0;
+// Standard deviation of the change between adjacent knots, relative to the standard deviation of the saturation
+// deficit.
+constexpr double kKnotSigmaRatio = 0.05;
+// Standard deviation of the velocity during the initial rest.
+constexpr double kStartSigma_m_s = 0.01;
+// Minimum number of consecutive sweeps at rest before creep_max_m_s applies.
+constexpr int kRestingSweepsMin = 3;
+
 namespace u = unknowns;
 using Params = LidarInertialOdometry::Params;
 
@@ -26,11 +42,10 @@ void carry_deficit(const Params& params, const SweepBoundary& boundary, const Sw
   u::rows(next.jacobian_boundary, u::deficit).setZero();
   if (!params.expert.rails.estimate_deficit) return;
   const Eigen::Vector3d boundary_factor = trajectory.deficit_factor_at_start();
-  const double rho = knot_correlation(params, trajectory);
+  const double rho = knot_correlation(trajectory);
   for (int axis = 0; axis < 3; ++axis) {
     if (!(boundary_factor[axis] > 0.0 && boundary.deficit_factor[axis] > 0.0)) continue;
-    double remains =
-        std::clamp(boundary.deficit_factor[axis] / boundary_factor[axis], 0.0, params.expert.rails.deficit_carry_max);
+    double remains = std::clamp(boundary.deficit_factor[axis] / boundary_factor[axis], 0.0, kDeficitCarryMax);
     for (int knot = 0; knot <= kLast; ++knot) {
       next.prior.mean.deficit_rad_s(axis, knot) = remains * boundary.state_estimate.mean.deficit_rad_s(axis, kLast);
       next.jacobian_boundary(u::deficit_at(axis, knot), u::deficit_at(axis, kLast)) = remains;
@@ -39,9 +54,10 @@ void carry_deficit(const Params& params, const SweepBoundary& boundary, const Sw
   }
 }
 
-/// Only samples in which `axis` is clipped count.
-double deficit_sigma(const Params& params, const MotionWindow& window, const SweepTrajectory& trajectory, int axis) {
-  double sigma = params.expert.rails.deficit_sigma_min_rad_s;
+/// Returns the largest reported standard deviation of the rate among samples of a sweep with clipped `axis`. The result
+/// is at least kDeficitSigmaMin_rad_s.
+double deficit_sigma(const MotionWindow& window, const SweepTrajectory& trajectory, int axis) {
+  double sigma = kDeficitSigmaMin_rad_s;
   for (const MotionSample& sample : window.samples) {
     if (seconds(sample.from_ns - trajectory.start_ns()) >= trajectory.duration_s()) break;
     if (sample.clipped_axes >> axis & 1) sigma = std::max(sigma, sample.rate_sigma_rad_s[axis]);
@@ -54,10 +70,10 @@ double deficit_sigma(const Params& params, const MotionWindow& window, const Swe
 void add_deficit_noise(const Params& params, const MotionWindow& window, const SweepTrajectory& trajectory,
                        Prediction& next) {
   if (!params.expert.rails.estimate_deficit) return;
-  const double rho = knot_correlation(params, trajectory);
+  const double rho = knot_correlation(trajectory);
   for (int axis = 0; axis < 3; ++axis) {
     if (!(trajectory.clipped_axes() >> axis & 1)) continue;
-    const double sigma = deficit_sigma(params, window, trajectory, axis);
+    const double sigma = deficit_sigma(window, trajectory, axis);
     const bool carried = next.jacobian_boundary.row(u::deficit_at(axis, 0)).squaredNorm() > 0.0;
     for (int a = 0; a < SweepTrajectory::kKnots; ++a) {
       for (int b = 0; b < SweepTrajectory::kKnots; ++b) {
@@ -65,16 +81,15 @@ void add_deficit_noise(const Params& params, const MotionWindow& window, const S
         next.noise(u::deficit_at(axis, a), u::deficit_at(axis, b)) +=
             sigma * sigma * (std::pow(rho, std::abs(a - b)) - known);
       }
-      next.noise(u::deficit_at(axis, a), u::deficit_at(axis, a)) +=
-          params.expert.rails.knot_sigma_ratio * params.expert.rails.knot_sigma_ratio * sigma * sigma;
+      next.noise(u::deficit_at(axis, a), u::deficit_at(axis, a)) += kKnotSigmaRatio * kKnotSigmaRatio * sigma * sigma;
     }
   }
 }
 
 }  // namespace
 
-double knot_correlation(const Params& params, const SweepTrajectory& trajectory) {
-  return std::exp(-trajectory.duration_s() / (SweepTrajectory::kKnots - 1) / params.expert.rails.deficit_time_s);
+double knot_correlation(const SweepTrajectory& trajectory) {
+  return std::exp(-trajectory.duration_s() / (SweepTrajectory::kKnots - 1) / kDeficitTime_s);
 }
 
 /// See mapping.md (R32).
@@ -108,15 +123,15 @@ Prediction predict(const Params& params, const SweepBoundary& boundary, const Mo
   next.prior.mean.state = boundary.state_estimate.mean.state;
   next.prior.mean.calibration = boundary.state_estimate.mean.calibration;
   carry_deficit(params, boundary, trajectory, next);
-  if (window.samples.front().at_rest) next.zero_velocity_update(params.expert.standstill.start_sigma_m_s);
-  // The IMU cannot distinguish constant motion from rest, so rest is only accepted up to the speed creep_max_m_s.
+  if (window.samples.front().at_rest) next.zero_velocity_update(kStartSigma_m_s);
+  // The speed limit creep_max_m_s excludes constant motion, which the IMU cannot distinguish from rest.
   const bool creeps = boundary.state_estimate.mean.state.v_WI_m_s.norm() < params.expert.standstill.creep_max_m_s;
-  if (window.resting_sweeps >= params.expert.standstill.sweeps_min && !boundary.constrained && creeps)
+  if (window.resting_sweeps >= kRestingSweepsMin && !boundary.constrained && creeps)
     next.zero_velocity_update(params.expert.standstill.sigma_m_s);
   apply_velocity_prior(known, next);
   const std::uint8_t axes = params.expert.rails.estimate_deficit ? trajectory.clipped_axes() : 0;
   MotionNoise within = inertial_noise(params, trajectory, window.samples, axes);
-  const Eigen::Matrix3d clipped_force_m2_s2 = clipped_velocity_variance(params, trajectory, window.samples);
+  const Eigen::Matrix3d clipped_force_m2_s2 = clipped_velocity_variance(trajectory, window.samples);
   u::block(next.noise, u::motion) += within;
   // A force that saturates late in a sweep hardly affects the registration of the sweep, but changes the velocity in
   // the next sweep.
@@ -140,8 +155,7 @@ bool prior_is_certain(const Params& params, const SweepBoundary& boundary, const
       boundary.state_estimate.mean.state.covariance + inertial_noise(params, trajectory, window.samples, 0);
   return u::variances(P, u::position).maxCoeff() <=
              params.expert.tracking.extend_sigma_max_m * params.expert.tracking.extend_sigma_max_m &&
-         u::variances(P, u::attitude).maxCoeff() <=
-             params.expert.tracking.extend_sigma_max_rad * params.expert.tracking.extend_sigma_max_rad;
+         u::variances(P, u::attitude).maxCoeff() <= kExtendSigmaMax_rad * kExtendSigmaMax_rad;
 }
 
 StateEstimate posterior(const Prediction& prediction) {
@@ -196,7 +210,7 @@ void boundary_after(const Params& params, const StateEstimate& start, const Moti
                     const SweepTrajectory& trajectory, const Registration::Result* alignment, SweepBoundary& boundary) {
   boundary.end_start_jacobian = unknowns_at(trajectory, trajectory.duration_s());
   at_end(start, trajectory, boundary.end_start_jacobian, window.end_ns, boundary.state_estimate);
-  boundary.clipped_velocity_m2_s2 = clipped_velocity_variance(params, trajectory, window.samples);
+  boundary.clipped_velocity_m2_s2 = clipped_velocity_variance(trajectory, window.samples);
   const bool aligned = alignment != nullptr;
   boundary.deficit_factor = Eigen::Vector3d::Zero();
   if (aligned) boundary.deficit_factor = trajectory.deficit_factor_at_end();

@@ -66,7 +66,7 @@ bool is_expected(const LidarInertialOdometry::Params& params, const Prediction& 
 void boundary_after(const LidarInertialOdometry::Params& params, const StateEstimate& start, const MotionWindow& window,
                     const SweepTrajectory& trajectory, const Registration::Result* alignment, SweepBoundary& boundary);
 
-/// Returns the correlation of the saturation deficit between adjacent knots of a sweep: mapping.md (R46).
-double knot_correlation(const LidarInertialOdometry::Params& params, const SweepTrajectory& trajectory);
+/// Returns the correlation of the saturation deficit between adjacent knots of a sweep, see mapping.md (R46).
+double knot_correlation(const SweepTrajectory& trajectory);
 
 }  // namespace tumble::mapping

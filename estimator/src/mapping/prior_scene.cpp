@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "tumble/common/so3.hpp"
-#include "tumble/mapping/plane_fit.hpp"
+#include "tumble/mapping/detail/plane_fit.hpp"
 #include "voxel_cube.hpp"
 
 namespace tumble::mapping {

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "tumble/mapping/detail/prior_map.hpp"
-#include "tumble/mapping/voxel_map.hpp"
+#include "tumble/mapping/detail/voxel_map.hpp"
+#include "tumble/mapping/prior_map.hpp"
 
 /// See mapping.md, "Localisation in a prior map".
 namespace tumble::mapping {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/mapping/registration.hpp"
+#include "tumble/mapping/detail/registration.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -16,6 +16,8 @@
 namespace tumble {
 
 namespace {
+
+constexpr double kMatchRatioMin = 0.1;  // minimum ratio of matches to points
 
 using Vector = Registration::Vector;
 using Matrix = Registration::Matrix;
@@ -116,8 +118,8 @@ Status Registration::align(const Prior& prior, std::span<const MotionSample> sam
                            Result& result) {
   const std::unique_ptr<Problem> posed(new Problem{prior, samples, end_ns, points, map});
   Problem& problem = *posed;
-  problem.matches_needed = std::max(params_.matches_min, static_cast<std::size_t>(params_.expert.match_ratio_min *
-                                                                                  static_cast<double>(points.size())));
+  problem.matches_needed =
+      std::max(params_.matches_min, static_cast<std::size_t>(kMatchRatioMin * static_cast<double>(points.size())));
   std::destroy_at(&result);  // reconstructed in place, because a Result needs 22 KiB
   std::construct_at(&result);
   result.mean = prior.mean;

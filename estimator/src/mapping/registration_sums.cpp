@@ -14,6 +14,9 @@ namespace tumble {
 
 namespace {
 
+// Edge of a cube whose points have correlated errors.
+constexpr double kCluster_m = 1.0;
+
 constexpr int kRigid = Registration::kMotionSize;
 constexpr float kRounding = 1.0001f;
 
@@ -286,7 +289,7 @@ void Registration::compute_error_statistics(std::span<const SweepPoint> points, 
   cluster_index_.clear();
   cluster_gradients_.clear();
   NormalNoise noise(unknowns);
-  Pulls pulls{cluster_index_, cluster_gradients_, static_cast<float>(1.0 / params_.expert.cluster_m)};
+  Pulls pulls{cluster_index_, cluster_gradients_, static_cast<float>(1.0 / kCluster_m)};
   std::size_t hint = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Match& match = matches_[i];

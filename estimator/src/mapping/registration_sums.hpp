@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-#include "tumble/mapping/registration.hpp"
+#include "tumble/mapping/detail/registration.hpp"
 
 namespace tumble {
 

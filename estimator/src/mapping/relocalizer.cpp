@@ -12,9 +12,20 @@ namespace tumble::mapping {
 
 namespace {
 
+// Minimum fraction of a sweep's matches within three standard deviations that confirms a relocalisation. The expected
+// fraction for normal errors is 0.997. A smaller fraction contradicts the relocalisation.
+constexpr double kConfirmInlierRatio = 0.9;
+// Number of larger saturation deficits tried per sweep, on all axes together.
+constexpr int kDeficitTriesMax = 5;
+// Smallest tried saturation deficit; two, three and five times this value follow.
+constexpr double kDeficitTry_rad_s = 3.0;
+// Number of starting poses after tracking failure, including the prior.
+constexpr int kStartsPerSweep = 3;
+
 using Params = LidarInertialOdometry::Params;
 
-// Saturation deficits to try, as multiples of deficit_try_rad_s; small saturation deficits are the most frequent.
+// kDeficitTries lists the saturation deficits that are tried, as multiples of kDeficitTry_rad_s. Small deficits are the
+// most frequent, so most values are small.
 constexpr double kDeficitTries[] = {1.0, 2.0, 3.0, 5.0};
 constexpr double kDeficitSigmas = 5.0;  // largest tried deficit, in standard deviations
 
@@ -25,9 +36,9 @@ bool converged(const Registration::Result& found) {
   return found.verdict == RegistrationVerdict::converged;
 }
 
-/// See mapping.md (R68).
-bool fits(const Params& params, const Registration::Result& found) {
-  return double(found.inliers) >= params.expert.tracking.confirm_inlier_ratio * double(found.matches);
+/// Returns whether enough matched points of a registration are close to their surfaces: mapping.md (R68).
+bool fits(const Registration::Result& found) {
+  return double(found.inliers) >= kConfirmInlierRatio * double(found.matches);
 }
 
 /// If the registration fails and a gyro axis is clipped, larger saturation deficits are tried. Saturation within one
@@ -44,9 +55,9 @@ void track(const Params& params, const Registration::Prior& prior, const Scene& 
     iterations += found.iterations;
   }
   for (const double times : kDeficitTries) {
-    const double more = times * params.expert.search.deficit_try_rad_s;
+    const double more = times * kDeficitTry_rad_s;
     for (int axis = 0; axis < 3; ++axis) {
-      if (converged(found) || tries == params.expert.search.deficit_tries_max) break;
+      if (converged(found) || tries == kDeficitTriesMax) break;
       const int first = unknowns::deficit_at(axis, 0);
       if (std::sqrt(prior.covariance(first, first)) < more / kDeficitSigmas) continue;
       const auto start = std::make_unique<Registration::Prior>(prior);
@@ -69,7 +80,7 @@ void search(const Params& params, const SearchContext& from, const Scene& scene,
     const auto start = std::make_unique<Registration::Prior>(prior);
     start->mean.state = *from.contradicted;
     aligner.align_coarse_to_fine(*start, prior, scene, trajectory, found);
-    if (converged(found) && fits(params, found)) return;
+    if (converged(found) && fits(found)) return;
   }
   struct Best {
     Registration::Result found;
@@ -78,8 +89,8 @@ void search(const Params& params, const SearchContext& from, const Scene& scene,
   std::unique_ptr<Best> best;
   aligner.align_coarse_to_fine(prior, prior, scene, trajectory, found);
   const RegistrationVerdict verdict = found.verdict;  // verdict of the sweep if the search fails
-  const int moved = starts.starts_per_sweep - 1;
-  for (int k = 0; k < moved && !(converged(found) && fits(params, found)); ++k) {
+  const int moved = kStartsPerSweep - 1;
+  for (int k = 0; k < moved && !(converged(found) && fits(found)); ++k) {
     if (converged(found) && (!best || found.inliers > best->found.inliers))
       best = std::make_unique<Best>(Best{found, trajectory});
     const int index = 1 + (failed_searches(from.tracking) * moved + k) % (kStartsPerRound * starts.rounds);
@@ -87,7 +98,7 @@ void search(const Params& params, const SearchContext& from, const Scene& scene,
     move_start(starts, index, *start);
     aligner.align_coarse_to_fine(*start, prior, scene, trajectory, found);
   }
-  if (best && !(converged(found) && (fits(params, found) || found.inliers >= best->found.inliers))) {
+  if (best && !(converged(found) && (fits(found) || found.inliers >= best->found.inliers))) {
     found = best->found;
     trajectory = best->trajectory;
   }
@@ -135,8 +146,7 @@ void judge(const Params& params, const TrackingState& before, std::size_t points
   if (out.alignment) {
     const bool holds = out.alignment->least_constrained_sigma_m <= params.expert.matching.degenerate_sigma_m;
     out.verdict = holds ? SweepVerdict::registered : SweepVerdict::degenerate;
-    const bool fits =
-        double(out.alignment->inliers) >= params.expert.tracking.confirm_inlier_ratio * double(out.alignment->matches);
+    const bool fits = double(out.alignment->inliers) >= kConfirmInlierRatio * double(out.alignment->matches);
     const bool relocalisation_unconfirmed =
         (is_lost(before) && !(out.expected && fits)) || (is_unconfirmed(before) && !fits);
     out.placement =

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "tumble/mapping/detail/registration.hpp"
+#include "tumble/mapping/detail/sweep_trajectory.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
-#include "tumble/mapping/registration.hpp"
-#include "tumble/mapping/sweep_trajectory.hpp"
 
 namespace tumble::mapping {
 

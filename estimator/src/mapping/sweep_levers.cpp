@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "rotation_series.hpp"
-#include "tumble/mapping/deskew.hpp"
-#include "tumble/mapping/sweep_trajectory.hpp"
+#include "tumble/mapping/detail/deskew.hpp"
+#include "tumble/mapping/detail/sweep_trajectory.hpp"
 
 namespace tumble {
 

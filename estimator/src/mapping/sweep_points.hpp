@@ -6,7 +6,7 @@
 
 #include "lone_returns.hpp"
 #include "tumble/common/status.hpp"
-#include "tumble/mapping/deskew.hpp"
+#include "tumble/mapping/detail/deskew.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 
 namespace tumble::mapping {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/mapping/sweep_trajectory.hpp"
+#include "tumble/mapping/detail/sweep_trajectory.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "tumble/mapping/registration.hpp"
+#include "tumble/mapping/detail/registration.hpp"
 
 /// The blocks name the unknowns of docs/maths/mapping.md, as in `rows(F, velocity)` and `segment(step, velocity)`.
 namespace tumble::mapping::unknowns {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/mapping/voxel_map.hpp"
+#include "tumble/mapping/detail/voxel_map.hpp"
 
 #include <algorithm>
 #include <bit>

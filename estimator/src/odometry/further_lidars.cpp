@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/odometry/detail/further_lidars.hpp"
+#include "further_lidars.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,8 +9,8 @@
 
 #include "tumble/common/detail/sample_check.hpp"
 #include "tumble/common/parameters.hpp"
+#include "tumble/mapping/detail/odometry_params.hpp"
 #include "tumble/mapping/detail/sweep_check.hpp"
-#include "tumble/mapping/odometry_params.hpp"
 
 namespace tumble {
 

@@ -6,10 +6,10 @@
 #include <cstddef>
 
 #include "tumble/angular_velocity/detail/flight_sign_check.hpp"
+#include "tumble/attitude/detail/imu_merge.hpp"
 #include "tumble/attitude/detail/pivot_check.hpp"
 #include "tumble/attitude/detail/rest_gravity.hpp"
-#include "tumble/attitude/imu_merge.hpp"
-#include "tumble/odometry/imu_sheet.hpp"
+#include "tumble/odometry/sensor_sheets.hpp"
 
 namespace tumble {
 

@@ -7,9 +7,9 @@
 #include <memory>
 #include <utility>
 
-#include "tumble/angular_velocity/clipping_finder.hpp"
+#include "tumble/angular_velocity/detail/clipping_finder.hpp"
 #include "tumble/angular_velocity/detail/frozen_axes.hpp"
-#include "tumble/odometry/detail/unit_alignment.hpp"
+#include "unit_alignment.hpp"
 
 namespace tumble {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/odometry/detail/odometry_pass.hpp"
+#include "odometry_pass.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <string>
 
-#include "tumble/odometry/rolling_odometry.hpp"
+#include "rolling_odometry_impl.hpp"
 
 namespace tumble {
 
@@ -28,7 +28,7 @@ void add_forces_at_rest(const MergedChecks& checks, std::size_t count, SensorHea
 
 }  // namespace
 
-SensorHealth RollingOdometry::health() const {
+SensorHealth RollingOdometry::Impl::health() const {
   if (is_whole()) return whole_ ? whole_->health : SensorHealth{};
   SensorHealth out;
   add_frozen(frozen_, out);
@@ -51,8 +51,8 @@ SensorHealth RollingOdometry::health() const {
   return out;
 }
 
-/// If other IMUs replace the frozen IMU, the finding is `unit_frozen`.
-void RollingOdometry::add_frozen(const Frozen& frozen, SensorHealth& health) const {
+/// Adds findings about frozen axes. If other IMUs replace the frozen IMU, the finding is `unit_frozen`.
+void RollingOdometry::Impl::add_frozen(const Frozen& frozen, SensorHealth& health) const {
   const std::size_t count = params_.units.size();
   const auto end = frozen.begin() + static_cast<std::ptrdiff_t>(count);
   const bool replaced = !std::all_of(frozen.begin(), end, FrozenAxes::any_frozen);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/odometry/rolling_odometry.hpp"
+#include "rolling_odometry_impl.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -40,19 +40,16 @@ RollingOdometry::Pose as_pose(const RollingEstimate& estimate) {
 
 }  // namespace
 
-RollingOdometry::RollingOdometry(const Params& params) : RollingOdometry(params, merge_params(params)) {}
+RollingOdometry::Impl::Impl(const Params& params) : Impl(params, merge_params(params)) {}
 
-RollingOdometry::RollingOdometry(const Params& params, const ImuMerge::Params& merged)
+RollingOdometry::Impl::Impl(const Params& params, const ImuMerge::Params& merged)
     : params_(params),
-      stamp_order_(params.expert.rolling.filter.expert.gap.gap_max_s),
-      sample_clock_(params.expert.stamps),
+      stamp_order_(params.expert->rolling.filter.expert.gap.gap_max_s),
+      sample_clock_(params.expert->stamps),
       imu_merge_(merged),
       smoother_(rolling_params(params, merged, params.units.size(), imu_merge_.p_C_m())),
       rails_(sheets_of(params)),
       unit_alignment_(params.units.size()),
-      imu_merge_state_(std::make_unique<ImuMerge::State>()),
-      merge_state_buffer_(std::make_unique<ImuMerge::State>()),
-      state_(std::make_unique<RollingSmoother::State>()),
       rails_state_(rails_.start()),
       outlier_filters_(filters_of(params)),
       frozen_axis_detectors_(frozen_axis_detectors(params)),
@@ -60,43 +57,7 @@ RollingOdometry::RollingOdometry(const Params& params, const ImuMerge::Params& m
               ImuPlausibility(plausibility_params(params.gravity_m_s2, 0.0))},
       live_(params.lag_s <= 0.0) {}
 
-RollingOdometry::RollingOdometry(const RollingOdometry& other)
-    : params_(other.params_),
-      stamp_order_(other.stamp_order_),
-      stamp_order_state_(other.stamp_order_state_),
-      sample_clock_(other.sample_clock_),
-      sample_clock_state_(other.sample_clock_state_),
-      imu_merge_(other.imu_merge_),
-      smoother_(other.smoother_),
-      rails_(other.rails_),
-      unit_alignment_(other.unit_alignment_),
-      unit_alignment_state_(other.unit_alignment_state_),
-      recorded_(other.recorded_),
-      imu_merge_state_(std::make_unique<ImuMerge::State>(*other.imu_merge_state_)),
-      merge_state_buffer_(std::make_unique<ImuMerge::State>()),
-      state_(std::make_unique<RollingSmoother::State>(*other.state_)),
-      rails_state_(other.rails_state_),
-      outlier_filters_(other.outlier_filters_),
-      outlier_filter_state_(other.outlier_filter_state_),
-      delayed_samples_(other.delayed_samples_),
-      frozen_axis_detectors_(other.frozen_axis_detectors_),
-      frozen_(other.frozen_),
-      checks_(other.checks_),
-      whole_(other.whole_),
-      results_(other.results_),
-      returned_count_(other.returned_count_),
-      start_(other.start_),
-      T_W_run_(other.T_W_run_),
-      restart_count_(other.restart_count_),
-      restart_(other.restart_),
-      live_(other.live_),
-      finished_(other.finished_) {}
-
-RollingOdometry& RollingOdometry::operator=(const RollingOdometry& other) {
-  return *this = RollingOdometry(other);
-}
-
-Status RollingOdometry::add_imus(std::span<const ImuSample> samples) {
+Status RollingOdometry::Impl::add_imus(std::span<const ImuSample> samples) {
   if (finished_) return {ErrorCode::out_of_range, "samples after finish()", 1.0, 0.0};
   if (samples.size() != params_.units.size())
     return {ErrorCode::too_few, "samples", double(samples.size()), double(params_.units.size())};
@@ -134,7 +95,7 @@ Status RollingOdometry::add_imus(std::span<const ImuSample> samples) {
   return holds || !any_reading(inliers) ? Status{} : add_inliers(inliers);
 }
 
-Status RollingOdometry::add_imu(std::size_t unit, const ImuSample& sample) {
+Status RollingOdometry::Impl::add_imu(std::size_t unit, const ImuSample& sample) {
   if (finished_) return {ErrorCode::out_of_range, "samples after finish()", 1.0, 0.0};
   const std::size_t units = params_.units.size();
   if (unit >= units) return {ErrorCode::out_of_range, "unit", double(unit), double(units - 1)};
@@ -143,8 +104,9 @@ Status RollingOdometry::add_imu(std::size_t unit, const ImuSample& sample) {
   return add_aligned(false);
 }
 
-/// `ended` is true if no further readings follow.
-Status RollingOdometry::add_aligned(bool ended) {
+/// Processes the readings at all common times that UnitAlignment has completed. `ended` is true if no further readings
+/// follow.
+Status RollingOdometry::Impl::add_aligned(bool ended) {
   Status first;
   UnitAlignment::Readings readings;
   while (unit_alignment_.next(unit_alignment_state_, readings, ended)) {
@@ -154,8 +116,8 @@ Status RollingOdometry::add_aligned(bool ended) {
   return first;
 }
 
-/// The next samples decide which delayed readings are outliers.
-Status RollingOdometry::add_delayed_samples(std::span<const ImuSample> next) {
+/// Processes the samples that the outlier filter delayed. The next samples decide which delayed readings are outliers.
+Status RollingOdometry::Impl::add_delayed_samples(std::span<const ImuSample> next) {
   if (!delayed_samples_) return {};
   for (std::size_t k = 0; k < next.size(); ++k) {
     if (!outlier_filter_state_[k].delayed) continue;
@@ -170,7 +132,7 @@ Status RollingOdometry::add_delayed_samples(std::span<const ImuSample> next) {
   return any_reading(inliers) ? add_inliers(inliers) : Status{};
 }
 
-Status RollingOdometry::add_inliers(std::span<const ImuSample> samples) {
+Status RollingOdometry::Impl::add_inliers(std::span<const ImuSample> samples) {
   std::optional<ImuSample> merged;
   SampleClock::State stamps = sample_clock_state_;
   TimeNs time_ns = 0;
@@ -191,7 +153,7 @@ Status RollingOdometry::add_inliers(std::span<const ImuSample> samples) {
   if (merged) {
     if (Status status = process_accepted_sample(*merged); !status.ok()) return status;
   }
-  imu_merge_state_.swap(merge_state_buffer_);
+  std::swap(imu_merge_state_, merge_state_buffer_);
   sample_clock_state_ = stamps;
   frozen_ = frozen;
   for (std::size_t k = 0; k < samples.size(); ++k) {
@@ -207,14 +169,14 @@ Status RollingOdometry::add_inliers(std::span<const ImuSample> samples) {
   return {};
 }
 
-std::size_t RollingOdometry::rejected_readings() const {
+std::size_t RollingOdometry::Impl::rejected_readings() const {
   std::size_t out = 0;
   for (const OutlierFilter::State& unit : outlier_filter_state_) out += unit.rejected;
   return out;
 }
 
-/// Sets the readings of IMUs with frozen axes to NaN. Returns an error if all IMUs have a frozen axis.
-Status RollingOdometry::exclude_frozen(const Frozen& states, std::span<ImuSample> samples) const {
+/// Sets the readings of IMUs with frozen axes to NaN. Returns an error if no IMU remains.
+Status RollingOdometry::Impl::exclude_frozen(const Frozen& states, std::span<ImuSample> samples) const {
   bool any = false, received = false;
   for (std::size_t k = 0; k < samples.size(); ++k) {
     const bool finite = check_sample(samples[k]).ok();
@@ -229,16 +191,16 @@ Status RollingOdometry::exclude_frozen(const Frozen& states, std::span<ImuSample
   return health.worst();
 }
 
-std::optional<double> RollingOdometry::estimated_jitter_s() const {
+std::optional<double> RollingOdometry::Impl::estimated_jitter_s() const {
   return sample_clock_.corrects_stamps(sample_clock_state_) ? SampleClock::jitter_s(sample_clock_state_) : std::nullopt;
 }
 
-std::optional<RollingOdometry::Pose> RollingOdometry::newest() const {
+std::optional<RollingOdometry::Pose> RollingOdometry::Impl::newest() const {
   if (!state_->live.started) return std::nullopt;
   return as_pose(transform_to_world(RollingFilter::estimate(state_->live)));
 }
 
-std::optional<RollingOdometry::Pose> RollingOdometry::take() {
+std::optional<RollingOdometry::Pose> RollingOdometry::Impl::take() {
   if (returned_count_ == results_.size()) return std::nullopt;
   const Pose out = as_pose(results_[returned_count_++]);
   if (returned_count_ == results_.size()) {
@@ -248,13 +210,13 @@ std::optional<RollingOdometry::Pose> RollingOdometry::take() {
   return out;
 }
 
-RollingOdometry::Calibration RollingOdometry::calibration() const {
+RollingOdometry::Calibration RollingOdometry::Impl::calibration() const {
   const bool newest = live_ || (!finished_ && !state_->committed.started);
   const RollingNominal& constants = newest ? state_->live.nominal : state_->constants;
   return {-constants.lever_arm_error_m, params_.radius_m + constants.radius_error_m, state_->radius_sigma_m};
 }
 
-Status RollingOdometry::finish() {
+Status RollingOdometry::Impl::finish() {
   if (finished_) return {};
   const Status status = is_whole() ? finish_whole_recording() : add_aligned(true);
   end_run();
@@ -262,7 +224,8 @@ Status RollingOdometry::finish() {
   return status;
 }
 
-void RollingOdometry::end_run() {
+/// Ends a run, and smooths the poses that are still within the lag.
+void RollingOdometry::Impl::end_run() {
   for (OutlierFilter::State& unit : outlier_filter_state_) OutlierFilter::finish(unit);
   delayed_samples_.reset();
   const std::size_t before = results_.size();
@@ -270,17 +233,17 @@ void RollingOdometry::end_run() {
   for (std::size_t k = before; k < results_.size(); ++k) results_[k] = transform_to_world(results_[k]);
 }
 
-void RollingOdometry::reset() {
+void RollingOdometry::Impl::reset() {
   start_run();
   unit_alignment_state_ = {};
   recorded_ = {};
 }
 
-/// Readings that UnitAlignment has not completed yet remain.
-void RollingOdometry::start_run() {
+/// Resets all states of a run, except the readings that UnitAlignment has not completed yet.
+void RollingOdometry::Impl::start_run() {
   sample_clock_state_ = {};
-  imu_merge_state_ = std::make_unique<ImuMerge::State>();
-  state_ = std::make_unique<RollingSmoother::State>();
+  imu_merge_state_ = {};
+  state_ = {};
   rails_state_ = rails_.start();
   frozen_ = {};
   for (OutlierFilter::State& unit : outlier_filter_state_) {
@@ -297,12 +260,12 @@ void RollingOdometry::start_run() {
   finished_ = false;
 }
 
-void RollingOdometry::reset(const Eigen::Isometry3d& T_WG) {
+void RollingOdometry::Impl::reset(const Eigen::Isometry3d& T_WG) {
   reset();
   start_ = T_WG;
 }
 
-Status RollingOdometry::process_accepted_sample(const ImuSample& merged) {
+Status RollingOdometry::Impl::process_accepted_sample(const ImuSample& merged) {
   const std::size_t before = results_.size();
   Status status;
   if (live_) {

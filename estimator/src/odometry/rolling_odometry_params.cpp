@@ -18,7 +18,7 @@ constexpr double kLevelInclinePerS = 1e-9;  // rate at which slopes begin, for a
 
 // The radius has no default.
 void require_stated(RollingOdometry::Params params) {
-  params.expert.rolling.filter.radius_m = params.radius_m;
+  params.expert->rolling.filter.radius_m = params.radius_m;
   require_valid_fields(params);
 }
 
@@ -41,7 +41,7 @@ std::span<const char* const> RollingOdometry::Params::derived_fields() {
 
 void RollingOdometry::Params::widen_priors_for_unknown_imus() {
   const auto widen = [](double& sigma, double least) { sigma = std::max(sigma, least); };
-  RollingParams& filter = expert.rolling.filter;
+  RollingParams& filter = expert->rolling.filter;
   widen(filter.expert.prior.gyro_bias_sigma_rad_s, kUnknownGyroBias_rad_s);
   widen(filter.expert.prior.accel_bias_sigma_m_s2, kUnknownAccelBias_m_s2);
   widen(filter.expert.prior.tilt_sigma_rad, kUnknownAccelBias_m_s2 / gravity_m_s2);
@@ -58,7 +58,7 @@ namespace odometry {
 ImuMerge::Params merge_params(const RollingOdometry::Params& params) {
   require_stated(params);
   require_within("units", static_cast<double>(params.units.size()), 1.0, ImuMerge::kImus);
-  ImuMerge::Params out = params.expert.merge;
+  ImuMerge::Params out = params.expert->merge;
   out.count = static_cast<int>(params.units.size());
   for (std::size_t k = 0; k < params.units.size(); ++k) {
     const RollingOdometry::Unit& unit = params.units[k];
@@ -74,7 +74,7 @@ ImuMerge::Params merge_params(const RollingOdometry::Params& params) {
 
 RollingSmoother::Params rolling_params(const RollingOdometry::Params& params, const ImuMerge::Params& merged,
                                        std::size_t units, const Eigen::Vector3d& lever_arm_m) {
-  RollingSmoother::Params out = params.expert.rolling;
+  RollingSmoother::Params out = params.expert->rolling;
   out.filter.radius_m = params.radius_m;
   out.filter.gravity_m_s2 = params.gravity_m_s2;
   out.filter.lever_arm_m = lever_arm_m;

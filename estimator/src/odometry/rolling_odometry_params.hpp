@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
-#include "tumble/odometry/rolling_odometry.hpp"
+#include "tumble/angular_velocity/detail/frozen_axes.hpp"
+#include "tumble/common/detail/outlier_filter.hpp"
+#include "tumble/odometry/rolling_expert_params.hpp"
 
 namespace tumble::odometry {
 

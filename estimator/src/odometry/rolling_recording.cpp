@@ -3,18 +3,19 @@
 #include <memory>
 #include <utility>
 
+#include "rolling_odometry_impl.hpp"
 #include "rolling_odometry_params.hpp"
-#include "tumble/odometry/detail/imu_findings.hpp"
-#include "tumble/odometry/rolling_odometry.hpp"
 
 namespace tumble {
 
-RollingSmoother::Params RollingOdometry::smoother_params(const Params& params, const MergedRecordings& merged) {
+static_assert(RollingOdometry::kWholeRecording == RollingSmoother::kWholeRun, "both classes use one value");
+
+RollingSmoother::Params rolling_smoother_params(const RollingOdometry::Params& params, const MergedRecordings& merged) {
   return odometry::rolling_params(params, odometry::merge_params(params), merged.units.size(), merged.lever_arm_m);
 }
 
-/// Non-finite readings are ignored.
-Status RollingOdometry::record(std::size_t unit, ImuSample sample) {
+/// Stores a reading until finish(). Non-finite readings are ignored.
+Status RollingOdometry::Impl::record(std::size_t unit, ImuSample sample) {
   if (!check_sample(sample).ok()) return {};
   std::vector<ImuSample>& samples = recorded_[unit];
   if (!samples.empty() && sample.time_ns <= samples.back().time_ns)
@@ -23,7 +24,7 @@ Status RollingOdometry::record(std::size_t unit, ImuSample sample) {
   return {};
 }
 
-Status RollingOdometry::finish_whole_recording() {
+Status RollingOdometry::Impl::finish_whole_recording() {
   std::vector<UnitRecording> recordings;
   for (std::size_t k = 0; k < params_.units.size(); ++k) {
     std::vector<ImuSample>& samples = recorded_[k];
@@ -45,10 +46,10 @@ Status RollingOdometry::finish_whole_recording() {
   whole_ = whole;
   if (!merge_status.ok()) return merge_status;
   whole->health = check_merged({.gravity_m_s2 = params_.gravity_m_s2, .merged = true}, merged);
-  smoother_ = RollingSmoother(smoother_params(params_, merged));
+  smoother_ = RollingSmoother(rolling_smoother_params(params_, merged));
   for (const ImuSample& sample : merged.samples) {
     const TimeNs last_ns = state_->live.started ? state_->live.last_time_ns : sample.time_ns;
-    if (seconds(sample.time_ns - last_ns) > params_.expert.rolling.filter.expert.gap.gap_max_s)
+    if (seconds(sample.time_ns - last_ns) > params_.expert->rolling.filter.expert.gap.gap_max_s)
       restart_at_newest(seconds(sample.time_ns - last_ns));
     if (Status status = smoother_.step(sample, *state_, results_); !status.ok()) return status;
     initialise_pose();

@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <optional>
 
+#include "rolling_odometry_impl.hpp"
 #include "tumble/common/so3.hpp"
-#include "tumble/odometry/rolling_odometry.hpp"
 
 namespace tumble {
 
@@ -23,7 +23,8 @@ Eigen::Matrix<double, 6, 6> position_and_heading(Eigen::Matrix<double, 6, 6> cov
 
 }  // namespace
 
-void RollingOdometry::restart_at_newest(double gap_s) {
+/// Starts a new run at the newest pose, after `gap_s` seconds without data.
+void RollingOdometry::Impl::restart_at_newest(double gap_s) {
   const std::size_t before = results_.size();
   end_run();
   std::optional<PoseState> pose;
@@ -49,7 +50,8 @@ void RollingOdometry::restart_at_newest(double gap_s) {
   restart_ = restart;
 }
 
-void RollingOdometry::initialise_pose() {
+/// Computes the pose of the run's frame in the world from the first pose of the run.
+void RollingOdometry::Impl::initialise_pose() {
   if (!start_ || !state_->live.started) return;
   const RollingEstimate first = RollingFilter::estimate(state_->live);
   const Eigen::Quaterniond turn = Eigen::Quaterniond(start_->linear()) * first.q_WI.conjugate();
@@ -60,7 +62,8 @@ void RollingOdometry::initialise_pose() {
   start_.reset();
 }
 
-RollingEstimate RollingOdometry::transform_to_world(RollingEstimate estimate) const {
+/// Converts an estimate of the filter or the smoother from the frame of the run to the world.
+RollingEstimate RollingOdometry::Impl::transform_to_world(RollingEstimate estimate) const {
   estimate.uncertain = estimate.uncertain || restart_.has_value();
   if (!T_W_run_) return estimate;
   const Eigen::Matrix3d R = T_W_run_->linear();

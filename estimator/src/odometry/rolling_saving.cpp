@@ -2,8 +2,8 @@
 #include <memory>
 #include <utility>
 
+#include "rolling_odometry_impl.hpp"
 #include "saved_rails.hpp"
-#include "tumble/odometry/rolling_odometry.hpp"
 
 namespace tumble {
 
@@ -34,8 +34,8 @@ void visit_saved(Visit& visit, Saved& saved) {
 
 }  // namespace
 
-std::vector<std::byte> RollingOdometry::save() const {
-  const auto ended = std::make_unique<RollingOdometry>(*this);
+std::vector<std::byte> RollingOdometry::Impl::save() const {
+  const auto ended = std::make_unique<Impl>(*this);
   if (state_->live.started) ended->restart_at_newest(0.0);  // needs most of the stack, so this function needs little
   if (!ended->start_) return save_at(std::nullopt);
   PoseState pose;
@@ -46,12 +46,12 @@ std::vector<std::byte> RollingOdometry::save() const {
   return save_at(pose);
 }
 
-std::vector<std::byte> RollingOdometry::save_at(const std::optional<PoseState>& pose) const {
+std::vector<std::byte> RollingOdometry::Impl::save_at(const std::optional<PoseState>& pose) const {
   SavedRolling saved{params_.radius_m, imu_merge_.p_C_m(), static_cast<std::uint32_t>(params_.units.size()), {}, pose};
   if (state_->live.started) {
     saved.calibration = RollingFilter::calibration(state_->live);
-  } else if (params_.expert.rolling.filter.calibration) {
-    saved.calibration = *params_.expert.rolling.filter.calibration;
+  } else if (params_.expert->rolling.filter.calibration) {
+    saved.calibration = *params_.expert->rolling.filter.calibration;
   }
   odometry::SavedWriter out;
   visit_saved(out, std::as_const(saved));
@@ -59,7 +59,7 @@ std::vector<std::byte> RollingOdometry::save_at(const std::optional<PoseState>& 
   return std::move(out).finish(odometry::SavedKind::rolling);
 }
 
-Status RollingOdometry::load(std::span<const std::byte> bytes, std::optional<PoseState>* last_pose) {
+Status RollingOdometry::Impl::load(std::span<const std::byte> bytes, std::optional<PoseState>* last_pose) {
   odometry::SavedReader in(odometry::SavedKind::rolling, bytes);
   SavedRolling saved;
   visit_saved(in, saved);
@@ -76,15 +76,15 @@ Status RollingOdometry::load(std::span<const std::byte> bytes, std::optional<Pos
 
   Params params = params_;
   if (saved.calibration)
-    params.expert.rolling.filter.calibration = std::make_shared<RollingCalibration>(*saved.calibration);
-  RollingOdometry fresh(params);
-  for (std::size_t k = 0; k < units; ++k) fresh.rails_.start_from(k, rails[k]);
-  fresh.rails_state_ = fresh.rails_.start();
+    params.expert->rolling.filter.calibration = std::make_shared<RollingCalibration>(*saved.calibration);
+  const auto fresh = std::make_unique<Impl>(params);
+  for (std::size_t k = 0; k < units; ++k) fresh->rails_.start_from(k, rails[k]);
+  fresh->rails_state_ = fresh->rails_.start();
   if (saved.pose) {
-    fresh.start_.emplace(Eigen::Translation3d(saved.pose->p_WA_m) * saved.pose->q_WA);
-    fresh.restart_ = RollingRestart{saved.pose->p_WA_m, saved.pose->covariance};
+    fresh->start_.emplace(Eigen::Translation3d(saved.pose->p_WA_m) * saved.pose->q_WA);
+    fresh->restart_ = RollingRestart{saved.pose->p_WA_m, saved.pose->covariance};
   }
-  *this = std::move(fresh);
+  *this = std::move(*fresh);
   if (last_pose) *last_pose = saved.pose;
   return {};
 }

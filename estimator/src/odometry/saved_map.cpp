@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/odometry/detail/saved_map.hpp"
+#include "tumble/odometry/tumbling_odometry.hpp"
 
 #include "saved_bytes.hpp"
-#include "tumble/mapping/detail/prior_map.hpp"
+#include "tumble/mapping/prior_map.hpp"
 
 namespace tumble {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "saved_bytes.hpp"
-#include "tumble/angular_velocity/clipping_finder.hpp"
+#include "tumble/angular_velocity/detail/clipping_finder.hpp"
 
 namespace tumble::odometry {
 

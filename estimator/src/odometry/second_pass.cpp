@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/odometry/detail/second_pass.hpp"
+#include "second_pass.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +11,9 @@
 namespace tumble {
 
 namespace {
+
+// Duration of motion after which the second pass is abandoned.
+constexpr double kAbandonAfter_s = 10.0;
 
 constexpr double kBufferLead_s = 0.1;  // buffered time before the first sweep, because the clocks may differ
 constexpr std::size_t kSweepsPerExtraRejection =
@@ -40,7 +43,7 @@ SecondPass::SecondPass(const Params& params, const RegimeStream::Params& rate,
       rest_detector_(mapping::mapper_rest(mapping)) {
   require_valid_fields(params);
   if (!enabled_) return;
-  const double most_s = params.rest_s + kBufferLead_s + params.abandon_after_s;
+  const double most_s = params.rest_s + kBufferLead_s + kAbandonAfter_s;
   samples_.samples.reserve(static_cast<std::size_t>(std::ceil(most_s / rate.rate.period_s)) + 16);
 }
 
@@ -60,7 +63,7 @@ void SecondPass::store(const ImuSample& sample) {
     const TimeNs from_ns = sample.time_ns - static_cast<TimeNs>(1e9 * params_.rest_s);
     while (!sweeps_.empty() && sweeps_.front().start_ns < from_ns) sweeps_.pop_front();
     samples_.drop_until(from_ns - static_cast<TimeNs>(1e9 * kBufferLead_s));
-  } else if (seconds(sample.time_ns - buffer_start_ns()) > params_.abandon_after_s) {
+  } else if (seconds(sample.time_ns - buffer_start_ns()) > kAbandonAfter_s) {
     abandon();
     return;
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/odometry/detail/stamp_order.hpp"
+#include "stamp_order.hpp"
 
 #include "tumble/common/detail/sample_check.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/odometry/tumbling_odometry.hpp"
+#include "tumbling_odometry_impl.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -8,7 +8,6 @@
 
 #include "tumble/common/detail/sample_check.hpp"
 #include "tumble/mapping/detail/sweep_check.hpp"
-#include "tumble/odometry/detail/recording_estimate.hpp"
 #include "tumbling_odometry_params.hpp"
 
 namespace tumble {
@@ -43,18 +42,18 @@ constexpr double kSweepsMax_hz = 20.0;  // maximum sweep rate of a lidar, for th
 
 }  // namespace
 
-TumblingOdometry::TumblingOdometry(const Params& params)
+TumblingOdometry::Impl::Impl(const Params& params)
     : params_(params),
       stated_(params.stated_calibration()),
-      stamp_order_(params.expert.rate.rate.gap_max_s),
+      stamp_order_(params.expert->rate.rate.gap_max_s),
       outlier_filter_(outlier_params(params)),
-      sample_clock_(params.expert.stamps),
-      plausibility_(plausibility_params(params.expert.gravity_m_s2, params.imu.gyro_range_rad_s)),
+      sample_clock_(params.expert->stamps),
+      plausibility_(plausibility_params(params.expert->gravity_m_s2, params.imu.gyro_range_rad_s)),
       pass_(rate_params(params), mapper_params(params)),
-      second_pass_(params.expert.second_pass, rate_params(params), mapper_params(params)),
+      second_pass_(params.expert->second_pass, rate_params(params), mapper_params(params)),
       further_lidars_(params.further_lidars, params.T_IL) {}
 
-Status TumblingOdometry::add_imu(const ImuSample& sample) {
+Status TumblingOdometry::Impl::add_imu(const ImuSample& sample) {
   if (const Status status = check_sample(sample); !status.ok()) return status;
   if (is_whole()) return record(sample);
   StampOrder::Verdict verdict{};
@@ -74,7 +73,7 @@ Status TumblingOdometry::add_imu(const ImuSample& sample) {
   return process_accepted_sample(sample);
 }
 
-Status TumblingOdometry::process_accepted_sample(const ImuSample& sample) {
+Status TumblingOdometry::Impl::process_accepted_sample(const ImuSample& sample) {
   SampleClock::State stamps = sample_clock_state_;  // a copy, because a rejected sample must not change the clock
   ImuSample timed = sample;
   if (const Status status = sample_clock_.push(sample.time_ns, stamps, timed.time_ns); !status.ok()) return status;
@@ -94,7 +93,7 @@ Status TumblingOdometry::process_accepted_sample(const ImuSample& sample) {
   return {};
 }
 
-Status TumblingOdometry::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points) {
+Status TumblingOdometry::Impl::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points) {
   if (finished_) return {ErrorCode::out_of_range, "sweeps after finish()", 1.0, 0.0};
   if (end_ns < start_ns) return {ErrorCode::time_order, "end_ns", double(end_ns), double(start_ns)};
   if (const Status status = check_stamp(start_ns, "start_ns"); !status.ok()) return status;
@@ -119,12 +118,12 @@ Status TumblingOdometry::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<con
   return {};
 }
 
-std::size_t TumblingOdometry::most_waiting() const {
-  return params_.expert.sweeps_max + static_cast<std::size_t>(kSweepsMax_hz * params_.lag_s);
+std::size_t TumblingOdometry::Impl::most_waiting() const {
+  return params_.expert->sweeps_max + static_cast<std::size_t>(kSweepsMax_hz * params_.lag_s);
 }
 
-Status TumblingOdometry::add_sweep(std::size_t lidar, TimeNs start_ns, TimeNs end_ns,
-                                   std::span<const LidarPoint> points) {
+Status TumblingOdometry::Impl::add_sweep(std::size_t lidar, TimeNs start_ns, TimeNs end_ns,
+                                         std::span<const LidarPoint> points) {
   if (lidar == 0) return add_sweep(start_ns, end_ns, points);
   if (finished_) return {ErrorCode::out_of_range, "sweeps after finish()", 1.0, 0.0};
   const TimeNs latest_ns = newest_ns_.value_or(end_ns) + static_cast<TimeNs>(1e9 * kAhead_s);
@@ -132,48 +131,36 @@ Status TumblingOdometry::add_sweep(std::size_t lidar, TimeNs start_ns, TimeNs en
                              params_.further_lidars.size() * most_waiting());
 }
 
-Status TumblingOdometry::add_velocity(const VelocityReading& velocity) {
-  return add_reading(velocity);
-}
-
-Status TumblingOdometry::add_motion(const MotionReading& motion) {
-  return add_reading(motion);
-}
-
-Status TumblingOdometry::add_reading(const OdometerReading& reading) {
+Status TumblingOdometry::Impl::add_reading(const OdometerReading& reading) {
   if (!newest_ns_) return {ErrorCode::empty, "imu samples", 0.0, 1.0};
   const std::size_t most = is_whole() ? std::numeric_limits<std::size_t>::max() : WaitingReadings::kReadingsMax;
   const TimeNs latest_ns = *newest_ns_ + static_cast<TimeNs>(1e9 * kAhead_s);
   return readings_.add(reading, pass_.oldest_needed_ns(*last_registered_ns_), latest_ns, most);
 }
 
-Status TumblingOdometry::add_position(const PositionReading& position) {
+Status TumblingOdometry::Impl::add_position(const PositionReading& position) {
   if (!newest_ns_) return {ErrorCode::empty, "imu samples", 0.0, 1.0};
   const std::size_t most = is_whole() ? std::numeric_limits<std::size_t>::max() : PositionAlignment::kReadingsMax;
   const TimeNs latest_ns = *newest_ns_ + static_cast<TimeNs>(1e9 * kAhead_s);
   return positions_.add(position, pass_.oldest_needed_ns(*last_registered_ns_), latest_ns, most);
 }
 
-Status TumblingOdometry::use_map(PriorMap map) {
-  return pass_.use_map(std::move(map));
-}
-
-std::optional<TumblingOdometry::Sweep> TumblingOdometry::take() {
+std::optional<TumblingOdometry::Sweep> TumblingOdometry::Impl::take() {
   if (results_.empty()) return std::nullopt;
   std::optional<Sweep> out(std::move(results_.front()));
   results_.pop_front();
   return out;
 }
 
-Status TumblingOdometry::newest(PoseState& pose, Eigen::Matrix3d* velocity_covariance_I_m2_s2) const {
+Status TumblingOdometry::Impl::newest(PoseState& pose, Eigen::Matrix3d* velocity_covariance_I_m2_s2) const {
   return pass_.newest(pose, velocity_covariance_I_m2_s2);
 }
 
-std::optional<double> TumblingOdometry::estimated_jitter_s() const {
+std::optional<double> TumblingOdometry::Impl::estimated_jitter_s() const {
   return sample_clock_.corrects_stamps(sample_clock_state_) ? SampleClock::jitter_s(sample_clock_state_) : std::nullopt;
 }
 
-SensorHealth TumblingOdometry::health() const {
+SensorHealth TumblingOdometry::Impl::health() const {
   if (is_whole()) return whole_ ? whole_->health : SensorHealth{};
   using Kind = HealthFinding::Kind;
   SensorHealth out = pass_.rates().rate().health(pass_.rate_state().rate);
@@ -188,7 +175,7 @@ SensorHealth TumblingOdometry::health() const {
   return out;
 }
 
-Status TumblingOdometry::finish(const SweepProgress& on_sweep) {
+Status TumblingOdometry::Impl::finish(const SweepProgress& on_sweep) {
   if (is_whole()) return finish_whole_recording(on_sweep);
   OutlierFilter::finish(outlier_filter_state_);
   if (!newest_rate()) return {};  // no rate since the last call
@@ -198,8 +185,8 @@ Status TumblingOdometry::finish(const SweepProgress& on_sweep) {
   return {};
 }
 
-void TumblingOdometry::register_sweep(TimeNs start_ns, TimeNs end_ns, std::vector<LidarPoint> points) {
-  if (results_.size() >= params_.expert.sweeps_max) {
+void TumblingOdometry::Impl::register_sweep(TimeNs start_ns, TimeNs end_ns, std::vector<LidarPoint> points) {
+  if (results_.size() >= params_.expert->sweeps_max) {
     results_.pop_front();
     ++dropped_sweeps_;
   }
@@ -219,9 +206,10 @@ void TumblingOdometry::register_sweep(TimeNs start_ns, TimeNs end_ns, std::vecto
   if (second_pass_.applied() != applied_before) positions_.restart_fit();
 }
 
-/// A sweep is due if its latency would exceed lag_s when the next sample arrives. After a gap, the condition `newest
-/// sample - end of sweep > lag_s - 1.5 periods` delays a sweep.
-bool TumblingOdometry::is_due(TimeNs end_ns) const {
+/// Returns whether a sweep that ends at `end_ns` must be registered now, because its latency would exceed lag_s when
+/// the next sample arrives. In addition, newest sample - end of sweep > lag_s - 1.5 periods must hold, which delays a
+/// sweep after a gap.
+bool TumblingOdometry::Impl::is_due(TimeNs end_ns) const {
   const std::optional<TimeNs> covering_ns = pass_.covering_ns(end_ns);
   if (!covering_ns) return false;
   const double period_s = 1.0 / params_.imu.rate_hz, lag_s = std::max(params_.lag_s, 2.0 * period_s);
@@ -229,7 +217,7 @@ bool TumblingOdometry::is_due(TimeNs end_ns) const {
          seconds(*newest_ns_ - *covering_ns) > lag_s - 1.5 * period_s;
 }
 
-void TumblingOdometry::register_covered_sweeps() {
+void TumblingOdometry::Impl::register_covered_sweeps() {
   while (!waiting_.empty()) {
     const TimeNs end_ns = waiting_.front().end_ns;
     // The sample that covers the end of a sweep may be up to one period later than the end. The rate of the sample that
@@ -250,12 +238,12 @@ void TumblingOdometry::register_covered_sweeps() {
   }
 }
 
-void TumblingOdometry::flush_all() {
+void TumblingOdometry::Impl::flush_all() {
   pass_.flush_until(*newest_ns_);
   register_covered_sweeps();
 }
 
-void TumblingOdometry::restart_rates() {
+void TumblingOdometry::Impl::restart_rates() {
   ++restart_count_;
   OutlierFilter::finish(outlier_filter_state_);
   flush_all();
@@ -263,8 +251,9 @@ void TumblingOdometry::restart_rates() {
   start_rate_estimation();
 }
 
-/// Waiting sweeps with complete IMU samples are registered before the restart.
-void TumblingOdometry::restart_at_newest() {
+/// Restarts the run at its newest pose after the clock has stepped back. The sweeps with IMU samples are registered
+/// before the restart.
+void TumblingOdometry::Impl::restart_at_newest() {
   ++restart_count_;
   PoseState pose;
   const bool located = newest(pose).ok();
@@ -284,7 +273,8 @@ void TumblingOdometry::restart_at_newest() {
   if (!offset_rad_s.isZero(0.0)) set_gyro_offset(offset_rad_s);
 }
 
-void TumblingOdometry::restart_without_first_sample() {
+/// Restarts a run whose only sample is an outlier.
+void TumblingOdometry::Impl::restart_without_first_sample() {
   const std::optional<Eigen::Isometry3d> start = mapper().start();
   std::deque<WaitingSweep> waiting = std::move(waiting_);
   FurtherLidars further = std::move(further_lidars_);
@@ -300,8 +290,8 @@ void TumblingOdometry::restart_without_first_sample() {
   outlier_filter_state_ = outliers;
 }
 
-/// The measured zero offset of the gyro becomes the nominal bias.
-void TumblingOdometry::restart_with_offset(const Eigen::Vector3d& offset_rad_s) {
+/// Restarts a run that is still at rest, with the measured zero offset of the gyro as nominal bias.
+void TumblingOdometry::Impl::restart_with_offset(const Eigen::Vector3d& offset_rad_s) {
   const std::optional<Eigen::Isometry3d> start = mapper().start();
   early_sweeps_ += waiting_.size();
   reset();
@@ -309,7 +299,7 @@ void TumblingOdometry::restart_with_offset(const Eigen::Vector3d& offset_rad_s) 
   set_gyro_offset(offset_rad_s);
 }
 
-void TumblingOdometry::set_gyro_offset(const Eigen::Vector3d& offset_rad_s) {
+void TumblingOdometry::Impl::set_gyro_offset(const Eigen::Vector3d& offset_rad_s) {
   gyro_offset_state_.decided = true;
   RegimeStream::Params rate = rate_params(params_);
   rate.rate.model.nominal.gyro_bias_rad_s = offset_rad_s;
@@ -318,8 +308,8 @@ void TumblingOdometry::set_gyro_offset(const Eigen::Vector3d& offset_rad_s) {
   second_pass_.set_gyro_offset(offset_rad_s);
 }
 
-void TumblingOdometry::reset() {
-  const auto fresh = std::make_unique<TumblingOdometry>(params_);
+void TumblingOdometry::Impl::reset() {
+  const auto fresh = std::make_unique<Impl>(params_);
   fresh->stated_ = stated_;
   fresh->restart_count_ = restart_count_;
   fresh->dropped_sweeps_ = dropped_sweeps_;
@@ -330,13 +320,13 @@ void TumblingOdometry::reset() {
   *this = std::move(*fresh);
 }
 
-void TumblingOdometry::reset(const Eigen::Isometry3d& T_WI) {
+void TumblingOdometry::Impl::reset(const Eigen::Isometry3d& T_WI) {
   reset();
   pass_.set_start_pose(T_WI);
   pass_.use_map_of(pass_);
 }
 
-void TumblingOdometry::start_rate_estimation() {
+void TumblingOdometry::Impl::start_rate_estimation() {
   RegimeStream::Params params = rate_params(params_);
   params.rate.model.nominal.gyro_bias_rad_s = gyro_offset_rad_s();
   // An estimated calibration that is out of bounds is discarded.

@@ -50,7 +50,7 @@ namespace odometry {
 
 RegimeStream::Params rate_params(const TumblingOdometry::Params& params) {
   require_valid_fields(params);
-  RegimeStream::Params out = params.expert.rate;
+  RegimeStream::Params out = params.expert->rate;
   RateModelParams& model = out.rate.model;
   model.nominal.lever_arm_m = params.lever_arm_I_m;
   model.lever_arm_sigma_m = params.lever_arm_sigma_m;
@@ -61,7 +61,7 @@ RegimeStream::Params rate_params(const TumblingOdometry::Params& params) {
   out.rate.period_s = 1.0 / params.imu.rate_hz;
   const bool whole = params.lag_s >= TumblingOdometry::kWholeRecording;  // rates_ is unused for a whole recording
   out.rate.lag_s = std::max(whole ? TumblingParams{}.lag_s : params.lag_s, 2.0 * out.rate.period_s);
-  out.evidence.gravity_m_s2 = out.hand_held.body.gravity_m_s2 = params.expert.gravity_m_s2;
+  out.evidence.gravity_m_s2 = out.hand_held.body.gravity_m_s2 = params.expert->gravity_m_s2;
   out.hand_held.body.expert.gap_max_s = out.rate.gap_max_s;
   return out;
 }
@@ -70,16 +70,16 @@ OutlierFilter::Device outlier_params(const TumblingOdometry::Params& params) {
   return {.gyro_range_rad_s = params.imu.gyro_range_rad_s,
           .accel_range_m_s2 = params.imu.accel_range_m_s2,
           .period_s = 1.0 / params.imu.rate_hz,
-          .gap_max_s = params.expert.rate.rate.gap_max_s};
+          .gap_max_s = params.expert->rate.rate.gap_max_s};
 }
 
 LidarInertialOdometry::Params mapper_params(const TumblingOdometry::Params& params) {
-  LidarInertialOdometry::Params out = params.expert.mapping;
+  LidarInertialOdometry::Params out = params.expert->mapping;
   out.T_IL = params.T_IL;
   out.mount_sigma_rad = params.mount_sigma_rad;
   out.mount_sigma_m = params.mount_sigma_m;
   out.time_offset_sigma_s = params.time_offset_sigma_s;
-  out.expert.gravity_m_s2 = params.expert.gravity_m_s2;
+  out.expert.gravity_m_s2 = params.expert->gravity_m_s2;
   out.range_min_m = params.lidar.range_min_m;
   out.range_max_m = params.lidar.range_max_m;
   out.own_body_L = params.own_body_L;

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "tumble/attitude/regime_smoother.hpp"
+#include "tumble/attitude/detail/regime_smoother.hpp"
 #include "tumble/common/detail/outlier_filter.hpp"
+#include "tumble/mapping/lidar_inertial_odometry.hpp"
+#include "tumble/odometry/tumbling_expert_params.hpp"
 #include "tumble/odometry/tumbling_odometry.hpp"
 
 namespace tumble::odometry {

@@ -3,21 +3,17 @@
 #include <memory>
 #include <utility>
 
-#include "tumble/odometry/detail/recording_estimate.hpp"
-#include "tumble/odometry/tumbling_odometry.hpp"
-#include "tumble/rolling/rolling_smoother.hpp"
+#include "tumbling_odometry_impl.hpp"
 #include "tumbling_odometry_params.hpp"
 
 namespace tumble {
-
-static_assert(TumblingParams::kWholeRecording == RollingSmoother::kWholeRun, "both classes use one value");
 
 namespace {
 
 CheckedImu checked_imu(const TumblingOdometry::Params& params) {
   return {.gyro_range_rad_s = params.imu.gyro_range_rad_s,
           .accel_range_m_s2 = params.imu.accel_range_m_s2,
-          .gravity_m_s2 = params.expert.gravity_m_s2,
+          .gravity_m_s2 = params.expert->gravity_m_s2,
           .lever_arm_I_m = params.lever_arm_I_m};
 }
 
@@ -49,7 +45,8 @@ Status estimate_rates(const TumblingOdometry::Params& params, std::span<const Im
 
 }  // namespace
 
-Status TumblingOdometry::record(const ImuSample& sample) {
+/// Stores a sample until finish().
+Status TumblingOdometry::Impl::record(const ImuSample& sample) {
   if (finished_) return {ErrorCode::out_of_range, "samples after finish()", 1.0, 0.0};
   StampOrder::Verdict verdict{};
   if (const Status status = stamp_order_.classify_stamp(sample.time_ns, stamp_order_state_, verdict); !status.ok())
@@ -70,7 +67,7 @@ Status TumblingOdometry::record(const ImuSample& sample) {
   return {};
 }
 
-Status TumblingOdometry::finish_whole_recording(const SweepProgress& on_sweep) {
+Status TumblingOdometry::Impl::finish_whole_recording(const SweepProgress& on_sweep) {
   if (finished_) return {};
   finished_ = true;
   results_.clear();
@@ -94,7 +91,7 @@ Status TumblingOdometry::finish_whole_recording(const SweepProgress& on_sweep) {
                              [this](TimeNs from_ns, TimeNs to_ns) { return readings_.find(from_ns, to_ns); },
                              pass_.mapper().start()};
     whole->mapped = map_with_calibration(input, mapping);
-    whole->scale = find_sweep_scale(samples, whole->mapped, params_.expert.gravity_m_s2);
+    whole->scale = find_sweep_scale(samples, whole->mapped, params_.expert->gravity_m_s2);
   }
   PositionAlignment positions = positions_;
   for (MappedSweep& sweep : whole->mapped.sweeps) {
@@ -108,19 +105,19 @@ Status TumblingOdometry::finish_whole_recording(const SweepProgress& on_sweep) {
   return whole->mapped.status;
 }
 
-const LidarInertialOdometry& TumblingOdometry::mapper() const {
+const LidarInertialOdometry& TumblingOdometry::Impl::mapper() const {
   return whole_ ? whole_->mapped.mapper : pass_.mapper();
 }
 
-const SweepScale& TumblingOdometry::sweep_scale() const {
+const SweepScale& TumblingOdometry::Impl::sweep_scale() const {
   return whole_ ? whole_->scale : pass_.sweep_scale();
 }
 
-RigCalibration TumblingOdometry::rig() const {
+RigCalibration TumblingOdometry::Impl::rig() const {
   return whole_ ? whole_->report.rate.calibration : pass_.rates().rate().calibration(pass_.rate_state().rate);
 }
 
-const SaturationLevels& TumblingOdometry::rails() const {
+const SaturationLevels& TumblingOdometry::Impl::rails() const {
   return whole_ ? whole_->rails : pass_.rate_state().rate.rails.known;
 }
 

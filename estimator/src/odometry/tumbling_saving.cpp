@@ -5,9 +5,8 @@
 
 #include "saved_rails.hpp"
 #include "tumble/angular_velocity/detail/learnt_rig.hpp"
-#include "tumble/odometry/detail/recording_estimate.hpp"
-#include "tumble/odometry/detail/saved_map.hpp"
 #include "tumble/odometry/tumbling_odometry.hpp"
+#include "tumbling_odometry_impl.hpp"
 #include "tumbling_odometry_params.hpp"
 
 namespace tumble {
@@ -105,8 +104,8 @@ void set_search(const PoseState& pose, PriorMap& map) {
   map.sigma_rad = std::sqrt(pose.covariance(5, 5));
 }
 
-/// While a run is not localised in its prior map, the run's start pose relates the run to this map.
-std::optional<PoseState> newest_or_start(const TumblingOdometry& odometry) {
+/// Returns the pose to save. While a run is not localised in its prior map, its start pose relates it to this map.
+std::optional<PoseState> newest_or_start(const TumblingOdometry::Impl& odometry) {
   const LidarInertialOdometry& mapper = odometry.mapper();
   const std::optional<Eigen::Isometry3d>& start = mapper.start();
   const bool in_map = mapper.localised().ok();
@@ -114,7 +113,7 @@ std::optional<PoseState> newest_or_start(const TumblingOdometry& odometry) {
   const bool moved = odometry.newest(out).ok() || mapper.predict({}, {}, out).ok();
   if (!start && (!moved || !in_map)) return std::nullopt;
   if (!moved) {
-    out.time_ns = odometry.newest_ns().value_or(0);
+    out.time_ns = odometry.newest_ns_.value_or(0);
     out.p_WA_m = start->translation();
     out.q_WA = Eigen::Quaterniond(start->linear()).normalized();
   }
@@ -127,11 +126,11 @@ std::optional<PoseState> newest_or_start(const TumblingOdometry& odometry) {
 
 }  // namespace
 
-std::vector<std::byte> TumblingOdometry::save() const {
+std::vector<std::byte> TumblingOdometry::Impl::save() const {
   return save_at(newest_or_start(*this));  // the pose needs most of the stack, so this function needs little
 }
 
-std::vector<std::byte> TumblingOdometry::save_at(const std::optional<PoseState>& pose) const {
+std::vector<std::byte> TumblingOdometry::Impl::save_at(const std::optional<PoseState>& pose) const {
   const auto out = std::make_unique<SavedTumbling>();  // too large for a small stack
   out->lever_arm_I_m = params_.lever_arm_I_m;
   out->stated_T_IL = stated_.calibration.T_IL;
@@ -154,7 +153,7 @@ std::vector<std::byte> TumblingOdometry::save_at(const std::optional<PoseState>&
   return write(*out, mapper().localised().ok() ? mapper().map() : prior->points);
 }
 
-Status TumblingOdometry::load(std::span<const std::byte> bytes, std::optional<PoseState>* last_pose) {
+Status TumblingOdometry::Impl::load(std::span<const std::byte> bytes, std::optional<PoseState>* last_pose) {
   const auto heap = std::make_unique<SavedTumbling>();  // too large for a small stack
   SavedTumbling& saved = *heap;
   PriorMap map;
@@ -162,7 +161,7 @@ Status TumblingOdometry::load(std::span<const std::byte> bytes, std::optional<Po
   if (!read_status.ok()) return read_status;
   const auto changed = std::make_unique<Params>(params_);
   Params& params = *changed;
-  RateStreamParams& rate = params.expert.rate.rate;
+  RateStreamParams& rate = params.expert->rate.rate;
   if (saved.rig) {
     rate.model.nominal.gyro_bias_rad_s = saved.rig->constants.gyro_bias_rad_s;
     // Biases change at every switch-on.
@@ -177,20 +176,20 @@ Status TumblingOdometry::load(std::span<const std::byte> bytes, std::optional<Po
   for (FurtherLidar& further : params.further_lidars)
     further.T_IL = saved.lidar.calibration.T_IL * params.T_IL.inverse() * further.T_IL;
   params.T_IL = saved.lidar.calibration.T_IL;
-  params.expert.mapping.time_offset_s = saved.lidar.calibration.time_offset_s;
+  params.expert->mapping.time_offset_s = saved.lidar.calibration.time_offset_s;
   params.mount_sigma_rad = saved.lidar.mount_sigma_rad;
   params.mount_sigma_m = saved.lidar.mount_sigma_m;
   params.time_offset_sigma_s = saved.lidar.time_offset_sigma_s;
   if (const Status status = check_odometry_params(odometry::mapper_params(params)); !status.ok()) return status;
 
-  auto fresh = std::make_unique<TumblingOdometry>(params);
+  auto fresh = std::make_unique<Impl>(params);
   fresh->stated_ = stated_;
   map.extend = saved.extend;
   if (saved.pose) {
     set_search(*saved.pose, map);
     fresh->pass_.set_start_pose(*map.T_MI);
   }
-  if (check_prior_map(map).ok()) (void)fresh->use_map(std::move(map));
+  if (check_prior_map(map).ok()) (void)fresh->pass_.use_map(std::move(map));
   *this = std::move(*fresh);
   if (last_pose) *last_pose = saved.pose;
   return {};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/odometry/detail/unit_alignment.hpp"
+#include "unit_alignment.hpp"
 
 #include <algorithm>
 #include <limits>

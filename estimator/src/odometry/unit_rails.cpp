@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/odometry/detail/unit_rails.hpp"
+#include "unit_rails.hpp"
 
 #include <cstddef>
 

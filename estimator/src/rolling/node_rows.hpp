@@ -20,7 +20,7 @@ void contact_rows(const RollingParams& params, const Contact& c, RollingMode mod
     for (int axis = 0; axis < 2; ++axis) take(Row(c.H.row(axis)), -u[axis], variance[axis]);
   }
   if (mode != RollingMode::bump) take(Row(c.H.row(2)), -u.z(), variance.z());
-  if (const auto lost = lost_velocity_variance(params, node_s, P)) {
+  if (const auto lost = lost_velocity_variance(node_s, P)) {
     for (int axis = 0; axis < 2; ++axis) take(kVelocity + axis, -v_WI_m_s[axis], *lost);
   }
 }

@@ -55,7 +55,7 @@ void RollingFilter::start(const ImuSample& sample, const Eigen::Quaterniond& q_W
   const Eigen::Vector3d& rate = sample.angular_velocity_rad_s;
   state.nominal = rolling::start_nominal(params_, q_WI, rate);
   rolling::set_prior(params_, rate, state.hypotheses[0].P);
-  state.started_in_motion = rolling::starts_in_motion(params_, rate);
+  state.started_in_motion = rolling::starts_in_motion(rate);
   state.last_rate_rad_s = rate;
   state.count = 1;
   state.started = true;

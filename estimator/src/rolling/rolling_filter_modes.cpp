@@ -18,6 +18,12 @@ namespace tumble {
 
 namespace {
 
+// Mean velocity change per node by impacts that the model does not explain, while the sphere stays on the floor.
+constexpr double kUnexplainedImpact_m_s = 0.03;
+constexpr double kSlipBumpPerS = 0.2;                            // from slip to bump, and from bump to slip
+constexpr double kInclineEndsPerS = 0.1;                         // rate of changes from a slope to the level floor
+constexpr double kRoughBeginsPerS = 0.02, kRoughEndsPerS = 0.1;  // rates of changes to and from a rough floor
+
 constexpr double kPruneLogWeight = -120.0;  // minimum log weight of a hypothesis, relative to the best hypothesis
 constexpr double kRestLogLikelihoodMin =
     -60.0;                             // smallest log likelihood at rest; limits the effect of a single bad node
@@ -111,11 +117,11 @@ double log_transition(const RollingParams& params, RollingMode from, RollingMode
     if (b == RollingMode::incline) {
       return modes.incline_begins_per_s * (a == RollingMode::bump ? kInclineAfterBump : 1.0);
     }
-    if (b == RollingMode::rough) return modes.rough_begins_per_s;
-    if (b == RollingMode::slip) return a == RollingMode::bump ? modes.slip_bump_per_s : modes.slip_begins_per_s;
-    if (b == RollingMode::bump) return a == RollingMode::slip ? modes.slip_bump_per_s : modes.bump_begins_per_s;
-    if (a == RollingMode::incline) return modes.incline_ends_per_s;
-    if (a == RollingMode::rough) return modes.rough_ends_per_s;
+    if (b == RollingMode::rough) return kRoughBeginsPerS;
+    if (b == RollingMode::slip) return a == RollingMode::bump ? kSlipBumpPerS : modes.slip_begins_per_s;
+    if (b == RollingMode::bump) return a == RollingMode::slip ? kSlipBumpPerS : modes.bump_begins_per_s;
+    if (a == RollingMode::incline) return kInclineEndsPerS;
+    if (a == RollingMode::rough) return kRoughEndsPerS;
     return a == RollingMode::slip ? modes.slip_ends_per_s : modes.bump_ends_per_s;
   };
   if (from != to) return std::log(rate(from, to) * h_s);
@@ -149,9 +155,8 @@ std::span<const Candidate> propose(const RollingParams& params, const rolling::C
       if (too_fast && !may_slip(mode)) continue;
       double likelihood = 0.0;  // a gap is no evidence of a mode
       if (!in_gap) likelihood = may_slip(mode) ? log_moving(c, h, mode, u, params) : log_stationary(c, h, mode, params);
-      const double impact = mode == RollingMode::bump
-                                ? 0.0
-                                : state.sums.unexplained_impact_m_s / params.expert.contact.unexplained_impact_m_s;
+      const double impact =
+          mode == RollingMode::bump ? 0.0 : state.sums.unexplained_impact_m_s / kUnexplainedImpact_m_s;
       out[total++] = {h.log_weight + log_transition(params, h.mode, mode, node_s) + likelihood - impact, parent, mode,
                       mode == h.mode ? h.mode_start_node : state.node};
     }

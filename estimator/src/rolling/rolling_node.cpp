@@ -12,8 +12,13 @@ namespace tumble::rolling {
 
 namespace {
 
+// Random walks: rolling radius on a rough floor, slope, accelerometer bias, and velocity per (rad/s)^2 of the rate.
+constexpr double kRoughRadiusWalk_m_sqrts = 1e-4, kSlopeWalk_sqrts = 0.02, kAccelBiasWalk_m_s2_sqrts = 2e-3,
+                 kVelocityWalkPerRate2_sqrts = 4e-5;
+constexpr double kImpactSigmaRatio = 0.06;  // timing and direction of an impact, relative to its velocity change
+constexpr double kClippedRateSigma_rad_s = 5.0, kClippedForceSigma_m_s2 = 4.0;  // error of a saturated reading
 constexpr double kSteepest = 0.95;  // maximum sine of a slope, so that the normal points up
-constexpr double kLevelSlopeSigma = 1e-3;
+constexpr double kLevelSlopeSigma = 1e-3, kStartRate_rad_s = 0.1;  // rate of the first sample at a start in motion
 
 double upward(const Eigen::Vector2d& slope) {
   return std::sqrt(1.0 - std::min(slope.squaredNorm(), squared(kSteepest)));
@@ -35,9 +40,11 @@ constexpr double kPushForceRatio = 0.15;
 constexpr double kLostSpeed_m_s = 1.0;
 constexpr double kRecoveredTau_s = 0.1;  // correlation time of the error of a recovered rate
 constexpr double kFastRate_rad_s = 6.0;  // at higher rates, the force rotates too far within a node for levelling
-constexpr double kUnsureSpeed_m_s = 0.1, kSpeedWindow_s = 1.0;
+constexpr double kUnsureSpeed_m_s = 0.1, kSpeedWindow_s = 1.0, kSpeedSigma_m_s = 1.0;
 constexpr double kStartTilt_rad = 0.15;  // tilt error of a start in motion, caused by a push of 1.5 m/s^2
-constexpr double kGapRate_rad_s = 1.0, kGapStill_rad_s2 = 0.5;
+// If the rates before and after a gap are below kGapRate_rad_s, the sphere was hardly pushed during the gap.
+// kGapStill_rad_s2 is the smallest standard deviation of the angular acceleration in a gap.
+constexpr double kGapRate_rad_s = 1.0, kGapStill_rad_s2 = 0.5, kGapAcceleration_rad_s2 = 15.0;
 constexpr double kGapVelocityChangeRatio =
     0.5;  // unknown velocity change in a gap, as a fraction of the rolling velocity's change
 constexpr double kGapTimeSigmaRatio = 0.15;  // uncertain time of a rate change within a gap, as a fraction of the gap
@@ -58,8 +65,8 @@ Eigen::Vector3d Contact::velocity(const Vector& x) const {
   return contact_velocity_W_m_s + H * x + curved * lift_W;
 }
 
-bool starts_in_motion(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s) {
-  return rate_I_rad_s.norm() > params.expert.prior.start_rate_rad_s;
+bool starts_in_motion(const Eigen::Vector3d& rate_I_rad_s) {
+  return rate_I_rad_s.norm() > kStartRate_rad_s;
 }
 
 RollingNominal start_nominal(const RollingParams& params, const Eigen::Quaterniond& q_WI,
@@ -73,7 +80,7 @@ RollingNominal start_nominal(const RollingParams& params, const Eigen::Quaternio
   nominal.q_WI = q_WI;
   nominal.p_WI_m = q_WI * (params.lever_arm_m + nominal.lever_arm_error_m);
   nominal.last_rate_I_rad_s = rate_I_rad_s;
-  if (starts_in_motion(params, rate_I_rad_s)) {
+  if (starts_in_motion(rate_I_rad_s)) {
     const Eigen::Vector3d w_W = q_WI * rate_I_rad_s;
     nominal.v_WI_m_s = w_W.cross(params.radius_m * Eigen::Vector3d::UnitZ() + nominal.p_WI_m);
   }
@@ -85,7 +92,7 @@ void set_prior(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s,
   P.setZero();
   auto prior = P.diagonal();
   // While a sphere is pushed, the force is not gravity. A rotating sphere may slip with its full rolling speed.
-  const bool moves = starts_in_motion(params, rate_I_rad_s);
+  const bool moves = starts_in_motion(rate_I_rad_s);
   const double tilt = moves ? kStartTilt_rad : 0.0, velocity = moves ? params.radius_m * rate_I_rad_s.norm() : 0.0;
   // The initial heading defines the world's x axis, so its prior variance is 0.
   prior.segment<2>(kAttitude).setConstant(squared(params.expert.prior.tilt_sigma_rad) + squared(tilt));
@@ -224,8 +231,7 @@ ImuAverage gap_step(const RollingParams& params, const ImuSample& before, const 
   sample.angular_velocity_rad_s = before.angular_velocity_rad_s + share * change;
   sample.device_clip_flags = 0;  // flags of the reading after the gap do not apply within the gap
   const double turning = std::max(before.angular_velocity_rad_s.norm(), after.angular_velocity_rad_s.norm());
-  const double acceleration =
-      kGapStill_rad_s2 + params.expert.gap.gap_acceleration_rad_s2 * std::min(1.0, turning / kGapRate_rad_s);
+  const double acceleration = kGapStill_rad_s2 + kGapAcceleration_rad_s2 * std::min(1.0, turning / kGapRate_rad_s);
   // A parabola between the rates before and after a gap of duration T has the integral a T^3 / 12: rolling.md (R31).
   const double mean_force_tilt_rad =
       acceleration * gap_s * gap_s * gap_s / 12.0 + kGapTimeSigmaRatio * change.norm() * gap_s;
@@ -272,20 +278,19 @@ void predict(const RollingParams& params, const RollingIntegrals& sums, const Mo
   const double attitude =
       squared(params.expert.noise.attitude_walk_rad_sqrts) * h +
       squared(params.expert.noise.rate_error_sqrts) * sums.squared_rate_integral_rad2_s + sums.gap_angle_variance_rad2 +
-      squared(params.expert.rails.clipped_rate_sigma_rad_s * sums.rate_clipped_s) +
+      squared(kClippedRateSigma_rad_s * sums.rate_clipped_s) +
       squared(params.expert.rails.recovered_rate_sigma_rad_s) * 2.0 * kRecoveredTau_s * sums.recovered_rate_s;
-  const double velocity =
-      squared(params.expert.noise.velocity_walk_m_s_sqrts) * h +
-      squared(params.expert.contact.impact_sigma_ratio * sums.impact_m_s) +
-      squared(params.expert.noise.velocity_walk_per_rate2_sqrts * sums.squared_rate_integral_rad2_s) / h +
-      sums.gap_speed_variance_m2_s2 + squared(params.expert.rails.clipped_force_sigma_m_s2 * sums.force_clipped_s);
+  const double velocity = squared(params.expert.noise.velocity_walk_m_s_sqrts) * h +
+                          squared(kImpactSigmaRatio * sums.impact_m_s) +
+                          squared(kVelocityWalkPerRate2_sqrts * sums.squared_rate_integral_rad2_s) / h +
+                          sums.gap_speed_variance_m2_s2 + squared(kClippedForceSigma_m_s2 * sums.force_clipped_s);
   P.block<3, 3>(kVelocity, kVelocity) += sums.subsample_saturation_W_m_s * sums.subsample_saturation_W_m_s.transpose();
   auto diagonal = P.diagonal();
   diagonal.segment<3>(kAttitude).array() += attitude;
   diagonal.segment<3>(kVelocity).array() += velocity;
   diagonal.segment<3>(kPosition).array() += velocity * h * h / 3.0;
   diagonal.segment<3>(kGyroBias).array() += squared(params.expert.noise.gyro_bias_walk_rad_s_sqrts) * h;
-  diagonal.segment<3>(kAccelBias).array() += squared(params.expert.noise.accel_bias_walk_m_s2_sqrts) * h;
+  diagonal.segment<3>(kAccelBias).array() += squared(kAccelBiasWalk_m_s2_sqrts) * h;
 }
 
 /// See rolling.md (R15), (R16), (R18).
@@ -321,7 +326,7 @@ Contact contact(const RollingParams& params, const RollingNominal& nominal, cons
   const bool beyond = rate_I_rad_s.cwiseAbs().maxCoeff() >= params.gyro_range_rad_s || sums.recovered_rate_s > 0.0;
   const bool recovered = params.expert.rails.recovered_rate_sigma_rad_s > 0.0;
   if (sums.rate_clipped_s > 0.0 || (beyond && !recovered)) {
-    out.grip_variance += squared(r * params.expert.rails.clipped_rate_sigma_rad_s);
+    out.grip_variance += squared(r * kClippedRateSigma_rad_s);
   } else if (beyond) {
     out.grip_variance += squared(r * params.expert.rails.recovered_rate_sigma_rad_s);
   }
@@ -332,10 +337,11 @@ Contact contact(const RollingParams& params, const RollingNominal& nominal, cons
   return out;
 }
 
-/// See rolling.md (R20).
-std::optional<double> lost_velocity_variance(const RollingParams& params, double node_s, const Covariance& P) {
+/// Returns the variance of a pseudo-measurement of zero velocity, or nothing if the velocity is certain enough:
+/// rolling.md (R20).
+std::optional<double> lost_velocity_variance(double node_s, const Covariance& P) {
   if (P(kVelocity, kVelocity) + P(kVelocity + 1, kVelocity + 1) < squared(kUnsureSpeed_m_s)) return std::nullopt;
-  return squared(params.expert.contact.speed_sigma_m_s) * kSpeedWindow_s / node_s;
+  return squared(kSpeedSigma_m_s) * kSpeedWindow_s / node_s;
 }
 
 bool resets_slope(RollingMode from, RollingMode to) {
@@ -346,10 +352,10 @@ bool resets_slope(RollingMode from, RollingMode to) {
 void update_slope_for_mode(const RollingParams& params, RollingMode from, RollingMode to, double h_s,
                            const RollingNominal& nominal, Vector& x, Covariance& P) {
   if (from == RollingMode::incline && to == from) {
-    P.diagonal().segment<2>(kSlope).array() += squared(params.expert.contact.slope_walk_sqrts) * h_s;
+    P.diagonal().segment<2>(kSlope).array() += squared(kSlopeWalk_sqrts) * h_s;
   }
   // On a rough floor, the path is shorter than radius times rotation, by an unknown amount.
-  if (to == RollingMode::rough) P(kRadius, kRadius) += squared(params.expert.contact.rough_radius_walk_m_sqrts) * h_s;
+  if (to == RollingMode::rough) P(kRadius, kRadius) += squared(kRoughRadiusWalk_m_sqrts) * h_s;
   if (!resets_slope(from, to)) return;
   P.middleRows<2>(kSlope).setZero();
   P.middleCols<2>(kSlope).setZero();

@@ -6,8 +6,8 @@
 
 #include "tumble/common/detail/imu_average.hpp"
 #include "tumble/common/detail/squared.hpp"
-#include "tumble/rolling/rolling_model.hpp"
-#include "tumble/rolling/rolling_params.hpp"
+#include "tumble/rolling/detail/rolling_model.hpp"
+#include "tumble/rolling/detail/rolling_params.hpp"
 
 namespace tumble::rolling {
 
@@ -43,7 +43,7 @@ struct Contact {
 /// For slip, only the vertical component of the variance is valid.
 Eigen::Vector3d contact_variance(const RollingParams& params, const Contact& c, RollingMode mode);
 
-bool starts_in_motion(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s);
+bool starts_in_motion(const Eigen::Vector3d& rate_I_rad_s);
 
 /// The initial state has a levelled or stated attitude, the centre at the origin, and zero or rolling velocity.
 RollingNominal start_nominal(const RollingParams& params, const Eigen::Quaterniond& q_WI,
@@ -85,7 +85,7 @@ void update_slope_for_mode(const RollingParams& params, RollingMode from, Rollin
                            const RollingNominal& nominal, Vector& x, Covariance& P);
 
 /// Returns the variance of a pseudo-measurement of zero velocity, or nothing if the velocity is certain enough.
-std::optional<double> lost_velocity_variance(const RollingParams& params, double node_s, const Covariance& P);
+std::optional<double> lost_velocity_variance(double node_s, const Covariance& P);
 
 bool resets_slope(RollingMode from, RollingMode to);
 

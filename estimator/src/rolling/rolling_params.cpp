@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/rolling/rolling_params.hpp"
+#include "tumble/rolling/detail/rolling_params.hpp"
 #include "tumble/common/parameters.hpp"
 
 namespace tumble {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/rolling/rolling_smoother.hpp"
+#include "tumble/rolling/detail/rolling_smoother.hpp"
 
 #include <algorithm>
 #include <cmath>

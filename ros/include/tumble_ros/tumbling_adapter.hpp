@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "tumble/mapping/lidar_inertial_odometry.hpp"
 #include "tumble/tumble.hpp"
 #include "tumble_ros/node_params.hpp"
 #include "tumble_ros/point_cloud.hpp"

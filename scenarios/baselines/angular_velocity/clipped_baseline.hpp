@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "tumble/angular_velocity/clipping_finder.hpp"
+#include "tumble/angular_velocity/detail/clipping_finder.hpp"
 #include "tumble/angular_velocity/rate_state.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/common/parameters.hpp"

@@ -10,9 +10,9 @@
 #include "scenarios/baselines/mapping/trimmed_icp.hpp"
 #include "tumble/common/parameters.hpp"
 #include "tumble/common/status.hpp"
+#include "tumble/mapping/detail/voxel_map.hpp"
 #include "tumble/mapping/lidar.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
-#include "tumble/mapping/voxel_map.hpp"
 
 namespace tumble::baselines {
 

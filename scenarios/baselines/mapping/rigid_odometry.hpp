@@ -8,11 +8,11 @@
 #include "tumble/common/parameters.hpp"
 #include "tumble/common/status.hpp"
 #include "tumble/mapping/detail/map_drawing.hpp"
+#include "tumble/mapping/detail/registration.hpp"
+#include "tumble/mapping/detail/sweep_trajectory.hpp"
+#include "tumble/mapping/detail/voxel_map.hpp"
 #include "tumble/mapping/lidar.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
-#include "tumble/mapping/registration.hpp"
-#include "tumble/mapping/sweep_trajectory.hpp"
-#include "tumble/mapping/voxel_map.hpp"
 
 namespace tumble::baselines {
 

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "tumble/common/parameters.hpp"
-#include "tumble/mapping/plane_fit.hpp"
-#include "tumble/mapping/registration.hpp"
-#include "tumble/mapping/voxel_map.hpp"
+#include "tumble/mapping/detail/plane_fit.hpp"
+#include "tumble/mapping/detail/registration.hpp"
+#include "tumble/mapping/detail/voxel_map.hpp"
 
 namespace tumble::baselines {
 

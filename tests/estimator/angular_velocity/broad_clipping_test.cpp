@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "stand_ins/broad_trial.hpp"
-#include "tumble/angular_velocity/rate_smoother.hpp"
-#include "tumble/angular_velocity/saave.hpp"
+#include "tumble/angular_velocity/detail/rate_smoother.hpp"
+#include "tumble/angular_velocity/detail/saave.hpp"
 
 namespace tumble {
 namespace {

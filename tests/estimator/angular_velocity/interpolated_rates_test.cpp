@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "tumble/angular_velocity/rate_smoother.hpp"
+#include "tumble/angular_velocity/detail/rate_smoother.hpp"
 #include "tumble/angular_velocity/rate_stream.hpp"
 #include "tumble_recording.hpp"
 

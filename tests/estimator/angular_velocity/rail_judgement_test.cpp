@@ -16,10 +16,10 @@
 #include "estimator/angular_velocity/tumble_recording.hpp"
 #include "oracles/gaussian.hpp"
 #include "scenarios/baselines/angular_velocity/clipped_baseline.hpp"
-#include "tumble/angular_velocity/auxiliary_imu.hpp"
-#include "tumble/angular_velocity/clipping_finder.hpp"
+#include "tumble/angular_velocity/detail/auxiliary_imu.hpp"
+#include "tumble/angular_velocity/detail/clipping_finder.hpp"
+#include "tumble/angular_velocity/detail/rate_smoother.hpp"
 #include "tumble/angular_velocity/detail/streaming_clipping_finder.hpp"
-#include "tumble/angular_velocity/rate_smoother.hpp"
 #include "tumble/angular_velocity/rate_stream.hpp"
 
 namespace tumble {

@@ -12,7 +12,7 @@
 
 #include "stand_ins/broad_trial.hpp"
 #include "stand_ins/stand_ins.hpp"
-#include "tumble/angular_velocity/rail_planes.hpp"
+#include "tumble/angular_velocity/detail/rail_planes.hpp"
 
 namespace tumble {
 namespace {

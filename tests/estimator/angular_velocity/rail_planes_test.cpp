@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/angular_velocity/rail_planes.hpp"
+#include "tumble/angular_velocity/detail/rail_planes.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 
 #include "estimator/src/angular_velocity/sample_hold.hpp"
 #include "oracles/gaussian.hpp"
-#include "tumble/angular_velocity/rail_planes.hpp"
+#include "tumble/angular_velocity/detail/rail_planes.hpp"
 
 namespace tumble {
 namespace {

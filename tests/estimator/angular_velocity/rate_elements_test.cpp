@@ -12,7 +12,7 @@
 #include "estimator/angular_velocity/tumble_recording.hpp"
 #include "estimator/src/angular_velocity/possible_saturation.hpp"
 #include "tumble/angular_velocity/detail/rate_model.hpp"
-#include "tumble/angular_velocity/rate_smoother.hpp"
+#include "tumble/angular_velocity/detail/rate_smoother.hpp"
 
 namespace tumble {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "estimator/angular_velocity/tumble_recording.hpp"
-#include "tumble/angular_velocity/rate_smoother.hpp"
+#include "tumble/angular_velocity/detail/rate_smoother.hpp"
 
 namespace tumble {
 namespace {

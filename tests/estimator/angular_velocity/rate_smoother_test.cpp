@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Tests accuracy, covariance and symmetry of the batch smoother on synthetic tumbles.
-#include "tumble/angular_velocity/rate_smoother.hpp"
+#include "tumble/angular_velocity/detail/rate_smoother.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 
 #include "estimator/angular_velocity/tumble_recording.hpp"
 #include "oracles/gaussian.hpp"
-#include "tumble/angular_velocity/saave.hpp"
+#include "tumble/angular_velocity/detail/saave.hpp"
 
 namespace tumble {
 namespace {

@@ -12,7 +12,7 @@
 #include "estimator/angular_velocity/tumble_recording.hpp"
 #include "tumble/angular_velocity/detail/device_uncertainty.hpp"
 #include "tumble/angular_velocity/detail/impact_sums.hpp"
-#include "tumble/angular_velocity/rate_smoother.hpp"
+#include "tumble/angular_velocity/detail/rate_smoother.hpp"
 #include "tumble/angular_velocity/rate_stream.hpp"
 
 namespace tumble {

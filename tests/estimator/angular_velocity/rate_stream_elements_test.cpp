@@ -15,7 +15,7 @@
 #include "estimator/angular_velocity/streamed_rates.hpp"
 #include "estimator/angular_velocity/tumble_recording.hpp"
 #include "oracles/gaussian.hpp"
-#include "tumble/angular_velocity/rate_smoother.hpp"
+#include "tumble/angular_velocity/detail/rate_smoother.hpp"
 #include "tumble/angular_velocity/rate_stream.hpp"
 
 namespace tumble {

@@ -11,7 +11,7 @@
 
 #include "estimator/angular_velocity/streamed_rates.hpp"
 #include "estimator/angular_velocity/tumble_recording.hpp"
-#include "tumble/angular_velocity/rate_smoother.hpp"
+#include "tumble/angular_velocity/detail/rate_smoother.hpp"
 
 namespace {
 // counts the allocations of this program, to show that push() makes none

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/angular_velocity/rest_detector.hpp"
+#include "tumble/angular_velocity/detail/rest_detector.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 
 #include "estimator/angular_velocity/tumble_recording.hpp"
 #include "oracles/gaussian.hpp"
-#include "tumble/angular_velocity/rate_smoother.hpp"
+#include "tumble/angular_velocity/detail/rate_smoother.hpp"
 #include "tumble/common/status.hpp"
 
 namespace tumble {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "tumble/angular_velocity/saave.hpp"
+#include "tumble/angular_velocity/detail/saave.hpp"
 
 namespace tumble {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Tests the published results and the published edge cases.
-#include "tumble/angular_velocity/saave.hpp"
+#include "tumble/angular_velocity/detail/saave.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/angular_velocity/sensor_errors.hpp"
+#include "tumble/angular_velocity/detail/sensor_errors.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 #include "estimator/src/angular_velocity/triad_delay.hpp"
 #include "oracles/gaussian.hpp"
 #include "tumble/angular_velocity/detail/rate_model.hpp"
-#include "tumble/angular_velocity/rate_smoother.hpp"
+#include "tumble/angular_velocity/detail/rate_smoother.hpp"
 #include "tumble/common/so3.hpp"
 #include "tumble_recording.hpp"
 

@@ -14,8 +14,8 @@
 #include "stand_ins/broad_trial.hpp"
 #include "stand_ins/stand_ins.hpp"
 #include "tumble/attitude/detail/imu_plausibility.hpp"
-#include "tumble/attitude/tumble_attitude.hpp"
-#include "tumble/attitude/vqf.hpp"
+#include "tumble/attitude/detail/tumble_attitude.hpp"
+#include "tumble/attitude/detail/vqf.hpp"
 #include "tumble/common/so3.hpp"
 
 namespace tumble {

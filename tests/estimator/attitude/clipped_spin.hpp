@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "estimator/attitude/filter_contract.hpp"
-#include "tumble/attitude/hand_held_smoother.hpp"
+#include "tumble/attitude/detail/hand_held_smoother.hpp"
 
 namespace tumble::testing {
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "tumble/attitude/tumble_attitude.hpp"
+#include "tumble/attitude/detail/tumble_attitude.hpp"
 #include "tumble/common/so3.hpp"
 
 namespace tumble {

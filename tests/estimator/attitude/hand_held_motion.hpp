@@ -7,7 +7,7 @@
 #include <numbers>
 #include <vector>
 
-#include "tumble/attitude/hand_held_smoother.hpp"
+#include "tumble/attitude/detail/hand_held_smoother.hpp"
 #include "tumble/common/so3.hpp"
 
 /// hand_held_motion.hpp is a hand-held body in closed form, similar to a twirled wand: Exp(a(t) x) Exp(b(t) y) with a

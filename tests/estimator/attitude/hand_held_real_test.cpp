@@ -17,7 +17,7 @@
 #include "estimator/attitude/hand_held_errors.hpp"
 #include "stand_ins/broad_trial.hpp"
 #include "stand_ins/stand_ins.hpp"
-#include "tumble/attitude/hand_held_smoother.hpp"
+#include "tumble/attitude/detail/hand_held_smoother.hpp"
 #include "tumble/common/so3.hpp"
 
 namespace tumble {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "estimator/attitude/clipped_spin.hpp"
-#include "tumble/attitude/hand_held_stream.hpp"
+#include "tumble/attitude/detail/hand_held_stream.hpp"
 
 namespace tumble {
 namespace {

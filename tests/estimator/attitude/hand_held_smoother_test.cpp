@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Tests the hand-held smoother against motions in closed form.
-#include "tumble/attitude/hand_held_smoother.hpp"
+#include "tumble/attitude/detail/hand_held_smoother.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Tests the hand-held streams against motions in closed form and against the batch.
-#include "tumble/attitude/hand_held_stream.hpp"
+#include "tumble/attitude/detail/hand_held_stream.hpp"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,7 @@
 #include <random>
 
 #include "estimator/attitude/filter_contract.hpp"
-#include "tumble/attitude/imu_merge.hpp"
+#include "tumble/attitude/detail/imu_merge.hpp"
 #include "tumble/common/so3.hpp"
 
 // IMUs that freeze, fail or disagree are excluded and reported, and no others

@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "estimator/attitude/filter_contract.hpp"
-#include "tumble/attitude/imu_merge.hpp"
+#include "tumble/attitude/detail/imu_merge.hpp"
 #include "tumble/common/so3.hpp"
 
 namespace tumble {

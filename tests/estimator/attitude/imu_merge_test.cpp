@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/attitude/imu_merge.hpp"
+#include "tumble/attitude/detail/imu_merge.hpp"
 
 #include <gtest/gtest.h>
 

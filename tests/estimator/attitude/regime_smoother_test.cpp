@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Tests rates of a whole recording for any motion type: a twirl in closed form uses the hand-held smoother, and a spin
 // in free flight does not.
-#include "tumble/attitude/regime_smoother.hpp"
+#include "tumble/attitude/detail/regime_smoother.hpp"
 
 #include <gtest/gtest.h>
 

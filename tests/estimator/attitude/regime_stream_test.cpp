@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Tests the stream that distinguishes flight, contact and hand-held motion.
-#include "tumble/attitude/regime_stream.hpp"
+#include "tumble/attitude/detail/regime_stream.hpp"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-#include "tumble/attitude/regimes.hpp"
+#include "tumble/attitude/detail/regimes.hpp"
 
 namespace tumble {
 namespace {

@@ -12,7 +12,7 @@
 #include "estimator/attitude/clipped_spin.hpp"
 #include "estimator/src/attitude/hand_held_problem.hpp"
 #include "estimator/src/attitude/revolution_hypotheses.hpp"
-#include "tumble/attitude/hand_held_smoother.hpp"
+#include "tumble/attitude/detail/hand_held_smoother.hpp"
 
 namespace tumble {
 namespace {

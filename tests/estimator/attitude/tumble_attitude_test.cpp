@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/attitude/tumble_attitude.hpp"
+#include "tumble/attitude/detail/tumble_attitude.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "estimator/attitude/filter_contract.hpp"
-#include "tumble/attitude/vqf.hpp"
+#include "tumble/attitude/detail/vqf.hpp"
 
 namespace tumble {
 namespace {

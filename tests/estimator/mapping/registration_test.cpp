@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/mapping/registration.hpp"
+#include "tumble/mapping/detail/registration.hpp"
 
 #include <gtest/gtest.h>
 

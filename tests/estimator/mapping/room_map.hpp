@@ -5,7 +5,7 @@
 
 #include "tests/estimator/mapping/synthetic_room.hpp"
 #include "tumble/common/so3.hpp"
-#include "tumble/mapping/registration.hpp"
+#include "tumble/mapping/detail/registration.hpp"
 
 /// room_map.hpp provides the maps and priors of the registration tests.
 namespace tumble::test {

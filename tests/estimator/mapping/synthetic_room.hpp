@@ -8,8 +8,8 @@
 
 #include "tumble/angular_velocity/rate_state.hpp"
 #include "tumble/common/imu.hpp"
+#include "tumble/mapping/detail/sweep_trajectory.hpp"
 #include "tumble/mapping/lidar.hpp"
-#include "tumble/mapping/sweep_trajectory.hpp"
 
 /// synthetic_room.hpp provides an analytic world, motion and sensors, independent of the mapping code.
 namespace tumble::test {

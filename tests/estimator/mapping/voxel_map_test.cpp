@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/mapping/voxel_map.hpp"
+#include "tumble/mapping/detail/voxel_map.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 
 #include "tests/estimator/mapping/synthetic_room.hpp"
 #include "tumble/common/status.hpp"
-#include "tumble/mapping/plane_fit.hpp"
+#include "tumble/mapping/detail/plane_fit.hpp"
 
 namespace tumble {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "tests/estimator/mapping/synthetic_room.hpp"
 #include "tumble/common/so3.hpp"
-#include "tumble/odometry/detail/saved_map.hpp"
+#include "tumble/mapping/lidar_inertial_odometry.hpp"
 #include "tumble/odometry/tumbling_odometry.hpp"
 
 namespace tumble {

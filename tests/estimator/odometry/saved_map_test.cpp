@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tumble/odometry/detail/saved_map.hpp"
+#include "tumble/odometry/tumbling_odometry.hpp"
 
 #include <gtest/gtest.h>
 

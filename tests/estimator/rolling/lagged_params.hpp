@@ -2,7 +2,7 @@
 #pragma once
 
 #include "estimator/rolling/rolling_truth.hpp"
-#include "tumble/rolling/rolling_smoother.hpp"
+#include "tumble/rolling/detail/rolling_smoother.hpp"
 
 namespace tumble::testing {
 

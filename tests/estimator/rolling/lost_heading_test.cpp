@@ -9,7 +9,7 @@
 #include "estimator/rolling/lagged_params.hpp"
 #include "estimator/rolling/rolling_truth.hpp"
 #include "estimator/src/rolling/lost_heading.hpp"
-#include "tumble/rolling/rolling_smoother.hpp"
+#include "tumble/rolling/detail/rolling_smoother.hpp"
 
 // a bounce without readings: the heading after it is unknown, and contact does not determine it
 namespace tumble {

@@ -11,7 +11,7 @@
 
 #include "estimator/rolling/rolling_truth.hpp"
 #include "estimator/src/rolling/last_pass.hpp"
-#include "tumble/rolling/rolling_smoother.hpp"
+#include "tumble/rolling/detail/rolling_smoother.hpp"
 
 namespace {
 // bytes that this program has allocated, now and at most

@@ -8,7 +8,7 @@
 
 #include "estimator/rolling/lagged_params.hpp"
 #include "estimator/rolling/rolling_truth.hpp"
-#include "tumble/rolling/rolling_smoother.hpp"
+#include "tumble/rolling/detail/rolling_smoother.hpp"
 
 // the IMU's rate, jitter and gaps: the same motion must give the same result
 namespace tumble {

@@ -8,7 +8,7 @@
 
 #include "estimator/attitude/filter_contract.hpp"
 #include "scenarios/baselines/attitude/complementary.hpp"
-#include "tumble/attitude/vqf.hpp"
+#include "tumble/attitude/detail/vqf.hpp"
 
 namespace tumble::baselines {
 namespace {

@@ -7,8 +7,7 @@
 
 #include "scenarios/draw/data_sheet.hpp"
 #include "tests/tree.hpp"
-#include "tumble/odometry/imu_sheet.hpp"
-#include "tumble/odometry/lidar_sheet.hpp"
+#include "tumble/odometry/sensor_sheets.hpp"
 
 namespace tumble::scenarios {
 namespace {

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "tumble/common/detail/same_compiler_settings.hpp"  // IWYU pragma: keep
+#include "tumble/common/same_compiler_settings.hpp"  // IWYU pragma: keep
 
 namespace tumble::so3 {
 

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "tumble/common/detail/same_compiler_settings.hpp"  // IWYU pragma: keep
+#include "tumble/common/same_compiler_settings.hpp"  // IWYU pragma: keep
 
 namespace tumble {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "tumble/common/detail/same_compiler_settings.hpp"  // IWYU pragma: keep
+#include "tumble/common/same_compiler_settings.hpp"  // IWYU pragma: keep
 
 namespace tumble {
 

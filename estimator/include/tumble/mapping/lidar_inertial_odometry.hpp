@@ -12,10 +12,10 @@
 #include "tumble/common/pose.hpp"
 #include "tumble/common/status.hpp"
 #include "tumble/mapping/calibration.hpp"
-#include "tumble/mapping/detail/odometer_reading.hpp"
-#include "tumble/mapping/detail/prior_map.hpp"
+#include "tumble/mapping/detail/odometry_params.hpp"
+#include "tumble/mapping/further_readings.hpp"
 #include "tumble/mapping/lidar.hpp"
-#include "tumble/mapping/odometry_params.hpp"
+#include "tumble/mapping/prior_map.hpp"
 #include "tumble/mapping/sweep_report.hpp"
 
 namespace tumble {

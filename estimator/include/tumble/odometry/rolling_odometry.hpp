@@ -2,28 +2,27 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
-#include "tumble/angular_velocity/detail/frozen_axes.hpp"
-#include "tumble/attitude/imu_merge.hpp"
-#include "tumble/common/detail/outlier_filter.hpp"
+#include "tumble/common/imu.hpp"
+#include "tumble/common/indirect.hpp"
+#include "tumble/common/parameters.hpp"
 #include "tumble/common/pose.hpp"
-#include "tumble/common/sample_clock.hpp"
-#include "tumble/odometry/detail/imu_findings.hpp"
-#include "tumble/odometry/detail/rolling_restart.hpp"
-#include "tumble/odometry/detail/stamp_order.hpp"
-#include "tumble/odometry/detail/unit_alignment.hpp"
-#include "tumble/odometry/detail/unit_rails.hpp"
-#include "tumble/odometry/imu_sheet.hpp"
-#include "tumble/rolling/rolling_smoother.hpp"
+#include "tumble/common/sensor_health.hpp"
+#include "tumble/common/status.hpp"
+#include "tumble/odometry/sensor_sheets.hpp"
+#include "tumble/rolling/rolling_mode.hpp"
 
 namespace tumble {
+
+struct ImuMergeState;
+struct MergedFindings;
+struct RollingOdometryExpertParams;
+extern template class Indirect<RollingOdometryExpertParams>;
 
 /// Estimates the pose of a rolling sphere from one to four IMUs, through grip, slip, bumps and slopes. The reported
 /// poses are live, smoothed with the data of the following `lag_s`, or smoothed with the whole recording. UnitRails
@@ -40,7 +39,7 @@ namespace tumble {
 /// complete state. The limitations of ImuMerge, RollingFilter and RollingSmoother apply to RollingOdometry.
 class RollingOdometry {
  public:
-  static constexpr double kWholeRecording = RollingSmoother::kWholeRun;  ///< value of Params::lag_s
+  static constexpr double kWholeRecording = 1e9;  ///< value of Params::lag_s
 
   struct Unit {
     ImuSheet sheet;
@@ -49,20 +48,17 @@ class RollingOdometry {
   };
   struct Params {
     double radius_m = 0.0;    ///< required; has no default
-    std::vector<Unit> units;  ///< 1 to ImuMerge::kImus IMUs; required
-    /// Standard deviation of the distance between the origin of T_BI and the sphere's true centre, which is estimated.
+    std::vector<Unit> units;  ///< 1 to 4 IMUs; required
+    /// Standard deviation of the distance between the origin of T_BI and the true centre of the sphere. RollingOdometry
+    /// estimates this distance.
     double centre_sigma_m = 6e-3;
     double gravity_m_s2 = 9.80665;
     /// Lag of the poses that take() returns; 0: live poses. With kWholeRecording, add_imus() stores the readings,
     /// newest() returns nothing, and finish() estimates all poses from the whole recording.
     double lag_s = 0.0;
 
-    /// If Params and Expert contain the same parameter, the value in Params applies.
-    struct Expert {
-      ImuMerge::Params merge;
-      RollingSmoother::Params rolling;
-      SampleClock::Params stamps;  ///< correction of time stamps that a host computer assigned
-    } expert;
+    using Expert = RollingOdometryExpertParams;
+    Indirect<Expert> expert;  ///< rarely changed parameters, odometry/rolling_expert_params.hpp
 
     /// Names of parameters that are computed from other parameters and from data sheets; user values are ignored.
     static std::span<const char* const> derived_fields();
@@ -71,6 +67,8 @@ class RollingOdometry {
     /// assumed level, because the accelerometer bias of an uncalibrated IMU resembles a slope.
     void widen_priors_for_unknown_imus();
 
+    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning. A caller needs
+    /// odometry/rolling_expert_params.hpp.
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.radius_m, {"radius_m", "m", 1e-3, 100.0, "radius of the sphere", FieldRank::basic});
@@ -84,9 +82,7 @@ class RollingOdometry {
                       "delay after which a smoothed pose is reported; a longer delay makes poses more accurate; 0: "
                       "live; 1e9: the whole recording",
                       FieldRank::basic});
-      visit.group("merge_", p.expert.merge);
-      visit.group("rolling_", p.expert.rolling);
-      visit.group("stamps_", p.expert.stamps);
+      visit.group("", *p.expert);
     }
   };
   struct Calibration {
@@ -111,9 +107,9 @@ class RollingOdometry {
   explicit RollingOdometry(const Params& params);
   RollingOdometry(const RollingOdometry& other);
   RollingOdometry& operator=(const RollingOdometry& other);
-  RollingOdometry(RollingOdometry&&) noexcept = default;
-  RollingOdometry& operator=(RollingOdometry&&) noexcept = default;
-  ~RollingOdometry() = default;
+  RollingOdometry(RollingOdometry&&) noexcept;
+  RollingOdometry& operator=(RollingOdometry&&) noexcept;
+  ~RollingOdometry();
 
   /// Processes simultaneous readings of all IMUs, with the time stamp of the first IMU. SampleClock corrects time
   /// stamps with jitter. Pass NaN for an IMU without a reading. OutlierFilter rejects single outliers of each IMU, and
@@ -162,24 +158,25 @@ class RollingOdometry {
 
   /// Returns the merged IMUs of a whole recording with their findings (detail/imu_findings.hpp). Returns null before
   /// finish() and without kWholeRecording.
-  const MergedFindings* recording() const { return whole_.get(); }
+  const MergedFindings* recording() const;
 
   /// If `lag_s` is above 0, centre and radius are the estimates at the newest smoothed pose.
   Calibration calibration() const;
 
   /// Returns the number of bridged gaps between samples, and the longest gap [s].
-  std::int64_t bridged_gaps() const { return state_->live.gaps; }
-  double longest_gap_s() const { return state_->live.gap_longest_s; }
-  /// The sphere was already moving at the first samples.
-  bool started_in_motion() const { return state_->live.started_in_motion; }
+  std::int64_t bridged_gaps() const;
+  double longest_gap_s() const;
+  /// Returns true if the sphere was already moving at the first samples.
+  bool started_in_motion() const;
 
-  /// ImuMerge::State contains the frozen, disagreeing and delayed IMUs.
-  const ImuMerge::State& units() const { return *imu_merge_state_; }
+  /// Returns the state of ImuMerge (attitude/detail/imu_merge.hpp), which contains the frozen, disagreeing and delayed
+  /// IMUs.
+  const ImuMergeState& units() const;
 
   /// Returns the number of readings of all IMUs that OutlierFilter rejected.
   std::size_t rejected_readings() const;
-  /// number of restarts after a gap or after a clock that stepped back
-  std::size_t restart_count() const { return restart_count_; }
+  /// Returns the number of restarts after a gap or after a clock that stepped back.
+  std::size_t restart_count() const;
   /// Returns the jitter of the time stamps [s] while SampleClock corrects them, and otherwise an empty value.
   std::optional<double> estimated_jitter_s() const;
 
@@ -199,61 +196,10 @@ class RollingOdometry {
   /// and a saved run with another radius or other IMUs are rejected.
   Status load(std::span<const std::byte> bytes, std::optional<PoseState>* last_pose = nullptr);
 
-  /// Returns the parameters with which RollingSmoother processes merged readings, for programs that use RollingSmoother
-  /// alone.
-  static RollingSmoother::Params smoother_params(const Params& params, const MergedRecordings& merged);
+  struct Impl;  ///< private implementation
 
  private:
-  using Frozen = std::array<FrozenAxes::State, ImuMerge::kImus>;
-  using Outliers = std::array<OutlierFilter::State, ImuMerge::kImus>;
-
-  std::vector<std::byte> save_at(const std::optional<PoseState>& pose) const;
-  RollingOdometry(const Params& params, const ImuMerge::Params& merged);
-
-  void restart_at_newest(double gap_s);
-  void end_run();
-  void start_run();
-  void initialise_pose();
-  RollingEstimate transform_to_world(RollingEstimate estimate) const;
-  Status add_delayed_samples(std::span<const ImuSample> next);
-  Status add_inliers(std::span<const ImuSample> samples);
-  Status process_accepted_sample(const ImuSample& merged);
-  Status add_aligned(bool ended);
-  Status record(std::size_t unit, ImuSample sample);
-  Status finish_whole_recording();
-  bool is_whole() const { return params_.lag_s >= kWholeRecording; }
-  Status exclude_frozen(const Frozen& frozen, std::span<ImuSample> samples) const;
-  void add_frozen(const Frozen& frozen, SensorHealth& health) const;
-
-  Params params_;
-  StampOrder stamp_order_;
-  StampOrder::State stamp_order_state_;
-  SampleClock sample_clock_;
-  SampleClock::State sample_clock_state_;  ///< clock state after the last accepted sample
-  ImuMerge imu_merge_;
-  RollingSmoother smoother_;
-  UnitRails rails_;
-  UnitAlignment unit_alignment_;
-  UnitAlignment::State unit_alignment_state_;
-  std::array<std::vector<ImuSample>, ImuMerge::kImus> recorded_;  ///< readings of each IMU, with kWholeRecording
-  /// state of ImuMerge, and buffer for its next state
-  std::unique_ptr<ImuMerge::State> imu_merge_state_, merge_state_buffer_;
-  std::unique_ptr<RollingSmoother::State> state_;
-  UnitRails::State rails_state_;
-  std::vector<OutlierFilter> outlier_filters_;  ///< one filter per IMU
-  Outliers outlier_filter_state_{};
-  std::optional<UnitRails::Samples> delayed_samples_;  ///< samples of all IMUs while OutlierFilter delays one IMU
-  std::vector<FrozenAxes> frozen_axis_detectors_;      ///< one detector per IMU
-  Frozen frozen_{};
-  MergedChecks checks_;                          ///< checks of the merged IMUs, with their states
-  std::shared_ptr<const MergedFindings> whole_;  ///< set by finish() with kWholeRecording
-  std::vector<RollingEstimate> results_;
-  std::size_t returned_count_ = 0;
-  std::optional<Eigen::Isometry3d> start_;    ///< pose passed to reset(), until the first sample
-  std::optional<Eigen::Isometry3d> T_W_run_;  ///< pose of the run's origin; empty: the world's origin
-  std::size_t restart_count_ = 0;
-  std::optional<RollingRestart> restart_;  ///< last restart; poses after a restart are uncertain
-  bool live_ = true, finished_ = false;
+  Indirect<Impl> impl_;
 };
 
 }  // namespace tumble

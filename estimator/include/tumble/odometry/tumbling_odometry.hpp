@@ -3,30 +3,30 @@
 
 #include <Eigen/Geometry>
 #include <cstddef>
-#include <deque>
 #include <functional>
-#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
-#include "tumble/angular_velocity/detail/gyro_offset.hpp"
-#include "tumble/attitude/detail/imu_plausibility.hpp"
-#include "tumble/common/detail/outlier_filter.hpp"
-#include "tumble/common/sample_clock.hpp"
+#include "tumble/angular_velocity/rate_state.hpp"
+#include "tumble/common/imu.hpp"
+#include "tumble/common/indirect.hpp"
+#include "tumble/common/pose.hpp"
 #include "tumble/common/sensor_health.hpp"
-#include "tumble/mapping/lidar_inertial_odometry.hpp"
-#include "tumble/odometry/detail/further_lidars.hpp"
-#include "tumble/odometry/detail/odometry_pass.hpp"
-#include "tumble/odometry/detail/position_frame.hpp"
-#include "tumble/odometry/detail/second_pass.hpp"
-#include "tumble/odometry/detail/stamp_order.hpp"
-#include "tumble/odometry/detail/waiting_input.hpp"
+#include "tumble/common/status.hpp"
+#include "tumble/mapping/further_readings.hpp"
+#include "tumble/mapping/lidar.hpp"
+#include "tumble/mapping/prior_map.hpp"
+#include "tumble/mapping/sweep_report.hpp"
 #include "tumble/odometry/tumbling_params.hpp"
 
 namespace tumble {
 
+class LidarInertialOdometry;
 struct RecordingEstimate;
+struct RigCalibration;
+struct SaturationLevels;
+struct SweepScale;
 
 /// Estimates pose, velocity and map of a tumbling body from a lidar and one IMU, whose gyro may saturate. SampleClock
 /// corrects time stamps that a host computer assigned. RegimeStream estimates the angular velocity of each sample with
@@ -68,15 +68,20 @@ class TumblingOdometry {
 
   struct Sweep {
     Status status;  ///< status of add_sweep(); `report.trajectory` is empty without a pose
-    LidarInertialOdometry::SweepReport report;
-    /// transform from the world to the frame of the position readings, estimated up to the sweep's end; empty if
-    /// unknown
+    SweepReport report;
+    /// Transform from the world to the frame of the position readings, estimated from readings up to the sweep's end.
+    /// The value is empty if the transform is unknown.
     std::optional<PositionFrame> position_frame;
   };
 
   /// Throws InvalidParams if a parameter is out of bounds, the lever arm is not set, or the box `own_body_L` is
   /// invalid.
   explicit TumblingOdometry(const Params& params);
+  TumblingOdometry(const TumblingOdometry& other);
+  TumblingOdometry& operator=(const TumblingOdometry& other);
+  TumblingOdometry(TumblingOdometry&&) noexcept;
+  TumblingOdometry& operator=(TumblingOdometry&&) noexcept;
+  ~TumblingOdometry();
 
   /// Sets the map of an earlier run, in which the robot is then localised. Call use_map() before the first sweep. Until
   /// the robot is localised, poses are in a local frame, and health() reports the missing localisation. After
@@ -105,7 +110,7 @@ class TumblingOdometry {
   /// the own-body box of the first lidar also apply to the points of further lidars, in axes of the first lidar.
   /// Returns `ok`, an error of add_sweep() for the first lidar, or `out_of_range` for an unknown lidar.
   Status add_sweep(std::size_t lidar, TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points);
-  /// Processes an odometer reading (detail/odometer_reading.hpp). An odometer reading must arrive before the
+  /// Processes an odometer reading (mapping/further_readings.hpp). An odometer reading must arrive before the
   /// registration of its sweep, which is `lag_s` after the end of the sweep. If a sweep has several odometer readings,
   /// only the last reading is used. On error, the state is unchanged. Returns `empty` (no IMU sample yet),
   /// `non_finite`, `time_order` (the sweep is already registered) or `out_of_range`. `out_of_range` means an invalid
@@ -150,42 +155,46 @@ class TumblingOdometry {
   /// before finish() there is no finding. Cost: a few hundred operations; health().ok() allocates nothing without a
   /// finding.
   SensorHealth health() const;
-  /// Returns the estimated scale of the lidar's ranges relative to the IMU, as far as the motion determines the scale.
+  /// Returns the estimated scale of the lidar's ranges relative to the IMU, as far as the motion determines the scale
+  /// (mapping/detail/sweep_scale.hpp).
   const SweepScale& sweep_scale() const;
   /// Returns the newest Sweep::position_frame, for newest(); empty with kWholeRecording.
-  const std::optional<PositionFrame>& position_frame() const { return positions_.frame(); }
-  std::optional<TimeNs> newest_ns() const { return newest_ns_; }
+  const std::optional<PositionFrame>& position_frame() const;
+  /// Returns the time of the newest accepted IMU sample.
+  std::optional<TimeNs> newest_ns() const;
   /// Returns the rate of the newest IMU sample, if any. While the gyro is saturated, the rate of the newest sample is
   /// provisional.
-  std::optional<RateState> newest_rate() const { return pass_.rates().rate().newest(pass_.rate_state().rate); }
+  std::optional<RateState> newest_rate() const;
   /// Returns the latest smoothed rate, which is about `lag_s` old. The result is empty while the lag fills.
-  const std::optional<RateState>& smoothed_rate() const { return pass_.smoothed_rate(); }
-  /// Returns the estimated calibration of the IMU on the body: lever arm, biases, inertia ratios and gyro axis
-  /// directions.
+  const std::optional<RateState>& smoothed_rate() const;
+  /// Returns the estimated calibration of the IMU on the body (angular_velocity/rig_constants.hpp): lever arm, biases,
+  /// inertia ratios and gyro axis directions.
   RigCalibration rig() const;
   const SaturationLevels& rails() const;
-  /// number of restarts after a gap or after a clock that stepped back
-  std::size_t restart_count() const { return restart_count_; }
-  /// number of samples that OutlierFilter rejected because of a wrong reading or time stamp
-  std::size_t rejected_readings() const { return outlier_filter_state_.rejected; }
-  bool second_pass_applied() const { return second_pass_.applied(); }
-  /// The following counters are 0 in normal operation. rejected_samples() counts IMU samples that the mapper rejected.
-  /// dropped_sweeps() counts sweeps that take() did not return in time. early_sweeps() counts sweeps that ended before
-  /// the first IMU sample. unused_odometer_readings() counts odometer readings that span two sweeps.
-  std::size_t rejected_samples() const { return pass_.rejected_samples(); }
-  std::size_t dropped_sweeps() const { return dropped_sweeps_; }
-  std::size_t early_sweeps() const { return early_sweeps_; }
-  std::size_t unused_odometer_readings() const { return readings_.spanning_two_sweeps(); }
+  /// Returns the number of restarts after a gap or after a clock that stepped back.
+  std::size_t restart_count() const;
+  /// Returns the number of samples that OutlierFilter rejected because of a wrong reading or time stamp.
+  std::size_t rejected_readings() const;
+  /// Returns true if SecondPass has replaced the map and the pose.
+  bool second_pass_applied() const;
+  /// The following counters are 0 in normal operation. The function rejected_samples() counts IMU samples that the
+  /// mapper rejected. The function dropped_sweeps() counts sweeps that take() did not return in time. The function
+  /// early_sweeps() counts sweeps that ended before the first IMU sample. The function unused_odometer_readings()
+  /// counts odometer readings that span two sweeps.
+  std::size_t rejected_samples() const;
+  std::size_t dropped_sweeps() const;
+  std::size_t early_sweeps() const;
+  std::size_t unused_odometer_readings() const;
   /// Returns the number of unused points of further lidars: the points arrived late, or the first lidar had no sweep.
-  std::size_t unused_points() const { return further_lidars_.unused_points(); }
+  std::size_t unused_points() const;
   /// Returns the jitter of the IMU's time stamps about a regular clock [s] while SampleClock corrects them, and
   /// otherwise an empty value.
   std::optional<double> estimated_jitter_s() const;
-  /// The mapper provides the map and the calibration of the lidar.
+  /// Returns the mapper (mapping/lidar_inertial_odometry.hpp), which provides the map and the calibration of the lidar.
   const LidarInertialOdometry& mapper() const;
   /// Returns the rates of all samples, the checks and the mapping passes of a whole recording
   /// (detail/recording_estimate.hpp). Returns null before finish() and without kWholeRecording.
-  const RecordingEstimate* recording() const { return whole_.get(); }
+  const RecordingEstimate* recording() const;
 
   /// Saves calibration, saturation limits, map and newest pose as bytes with a checksum, for load() after a reboot. The
   /// calibration consists of rig(), the detected delay and errors of the IMU, and the lidar's mounting and time offset,
@@ -209,53 +218,21 @@ class TumblingOdometry {
   /// another version, and a saved run with another stated lever arm or lidar mounting are rejected.
   Status load(std::span<const std::byte> bytes, std::optional<PoseState>* last_pose = nullptr);
 
- private:
-  std::vector<std::byte> save_at(const std::optional<PoseState>& pose) const;
-  Status add_reading(const OdometerReading& reading);
-  Status process_accepted_sample(const ImuSample& sample);
-  void register_sweep(TimeNs start_ns, TimeNs end_ns, std::vector<LidarPoint> points);
-  bool is_due(TimeNs end_ns) const;
-  std::size_t most_waiting() const;
-  void register_covered_sweeps();
-  void flush_all();
-  void restart_rates();
-  void restart_at_newest();
-  void restart_without_first_sample();
-  void restart_with_offset(const Eigen::Vector3d& offset_rad_s);
-  void set_gyro_offset(const Eigen::Vector3d& offset_rad_s);
-  const Eigen::Vector3d& gyro_offset_rad_s() const { return pass_.rates().params().rate.model.nominal.gyro_bias_rad_s; }
-  void start_rate_estimation();
-  bool is_whole() const { return params_.lag_s >= kWholeRecording; }
-  Status record(const ImuSample& sample);
-  Status finish_whole_recording(const SweepProgress& on_sweep);
+  struct Impl;  ///< private implementation
 
-  Params params_;             ///< with the calibration of load()
-  StatedCalibration stated_;  ///< calibration that the caller stated
-  StampOrder stamp_order_;
-  StampOrder::State stamp_order_state_;
-  GyroOffset gyro_offset_;
-  GyroOffset::State gyro_offset_state_;
-  OutlierFilter outlier_filter_;
-  OutlierFilter::State outlier_filter_state_;
-  SampleClock sample_clock_;
-  SampleClock::State sample_clock_state_;  ///< state of the clock from accepted samples
-  ImuPlausibility plausibility_;
-  ImuPlausibility::State plausibility_state_;
-  OdometryPass pass_;
-  SecondPass second_pass_;
-  std::optional<TimeNs> newest_ns_;  ///< time of the newest accepted sample
-  std::optional<TimeNs>
-      last_registered_ns_;  ///< end of the last registered sweep; before the first, time of the first sample
-  std::size_t restart_count_ = 0, dropped_sweeps_ = 0, early_sweeps_ = 0;
-  std::deque<WaitingSweep> waiting_;
-  FurtherLidars further_lidars_;
-  WaitingReadings readings_;
-  PositionAlignment positions_;
-  std::deque<Sweep> results_;
-  std::optional<TimeNs> sweep_end_ns_;              ///< end of the last accepted sweep
-  std::vector<ImuSample> recorded_;                 ///< samples of a whole recording; the sweeps are in `waiting_`
-  std::shared_ptr<const RecordingEstimate> whole_;  ///< set by finish() with kWholeRecording
-  bool finished_ = false;
+ private:
+  Indirect<Impl> impl_;
 };
+
+/// Saves a map: position, normal and standard deviation of each point, in the order of `points`. The saved bytes are
+/// equal on every machine. The bytes contain the version of the format, the number of points and a checksum. A point
+/// needs 28 bytes. Cost: O(points).
+std::vector<std::byte> save_map(std::span<const MapPoint> points);
+
+/// Loads a map that save_map() saved, for LidarInertialOdometry::use_map(). On error, `points` is unchanged, and the
+/// returned status names the field, the value and the bound. The error `too_few` means truncated bytes. The errors
+/// `non_finite` and `out_of_range` mean another kind of data, another version, damaged bytes, or points that
+/// check_prior_map() rejects.
+Status load_map(std::span<const std::byte> bytes, std::vector<MapPoint>& points);
 
 }  // namespace tumble

@@ -2,54 +2,26 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <cstddef>
 #include <limits>
-#include <span>
 #include <vector>
 
-#include "tumble/attitude/regime_stream.hpp"
+#include "tumble/common/indirect.hpp"
 #include "tumble/common/parameters.hpp"
-#include "tumble/common/sample_clock.hpp"
 #include "tumble/mapping/calibration.hpp"
-#include "tumble/mapping/detail/calibration_fields.hpp"
-#include "tumble/mapping/odometry_params.hpp"
-#include "tumble/odometry/detail/further_lidars.hpp"
-#include "tumble/odometry/detail/second_pass.hpp"
-#include "tumble/odometry/imu_sheet.hpp"
-#include "tumble/odometry/lidar_sheet.hpp"
+#include "tumble/odometry/sensor_sheets.hpp"
 
 namespace tumble {
 
-/// If TumblingParams contains the same parameter, the value in TumblingParams applies. gravity_m_s2 applies to the
-/// estimation of rates and of the map.
-struct TumblingExpertParams {
-  double gravity_m_s2 = 9.80665;
-  /// Maximum number of sweeps that wait for IMU samples, in addition to the sweeps within the lag. At most sweeps_max
-  /// sweeps wait for take(); then the oldest sweep is dropped.
-  std::size_t sweeps_max = 16;
-  /// The default `uncalibrated` = 0.003 assumes the device's data sheet until readings contradict the data sheet. The
-  /// covariance of each rate includes the uncertainty of the calibration.
-  RegimeStream::Params rate = rate_defaults();
-  /// By default, gravity's direction and the saturation deficit (true rate minus clipped reading) are unknowns of the
-  /// registration.
-  OdometryParams mapping = mapping_defaults();
-  SampleClock::Params stamps;
-  SecondPass::Params second_pass;
-  static OdometryParams mapping_defaults();
-  static RegimeStream::Params rate_defaults();
-  /// Names of parameters that are computed from other parameters; a name that ends in '*' stands for all names with
-  /// that prefix. User values of computed parameters are ignored.
-  static std::span<const char* const> derived_fields();
+struct TumblingExpertParams;
+extern template class Indirect<TumblingExpertParams>;
 
-  template <class Self, class Visitor>
-  static void fields(Self& p, Visitor& visit) {
-    visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 0.0, 100.0, "strength of gravity", FieldRank::basic});
-    visit(p.sweeps_max, {"sweeps_max", "1", 1, 1e6, "maximum number of sweeps that wait for IMU data"});
-    visit.group("rate_", p.rate);
-    visit.group("mapping_", p.mapping);
-    visit.group("stamps_", p.stamps);
-    visit.group("second_pass_", p.second_pass);
-  }
+/// FurtherLidar is a lidar in addition to the lidar of TumblingParams. The mounting relative to the first lidar and the
+/// clock offset must be exact, because TumblingOdometry estimates only the mounting of the first lidar.
+struct FurtherLidar {
+  Eigen::Isometry3d T_IL = Eigen::Isometry3d::Identity();  ///< pose of the lidar in IMU axes
+  LidarSheet sheet;
+  Eigen::AlignedBox3d own_body_L;  ///< see TumblingParams::own_body_L, in axes of this lidar
+  double time_offset_s = 0.0;      ///< clock of the first lidar minus clock of this lidar
 };
 
 struct TumblingParams {
@@ -75,7 +47,7 @@ struct TumblingParams {
   double lag_s = 0.2;
 
   using Expert = TumblingExpertParams;
-  Expert expert;  ///< rarely changed parameters
+  Indirect<Expert> expert;  ///< rarely changed parameters, odometry/tumbling_expert_params.hpp
 
   StatedCalibration stated_calibration() const {
     StatedCalibration out{{}, mount_sigma_rad, mount_sigma_m, time_offset_sigma_s};
@@ -83,6 +55,8 @@ struct TumblingParams {
     return out;
   }
 
+  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning. A caller needs
+  /// odometry/tumbling_expert_params.hpp.
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit.group("imu_", p.imu);
@@ -98,7 +72,7 @@ struct TumblingParams {
                     "maximum time for which a sweep waits for later data, at most 10 s; a longer time adds delay and "
                     "makes poses more accurate; 1e9: the whole recording",
                     FieldRank::basic});
-    visit.group("", p.expert);
+    visit.group("", *p.expert);
   }
 };
 

@@ -8,8 +8,8 @@
 #include "tumble/common/detail/imu_average.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/common/status.hpp"
-#include "tumble/rolling/rolling_model.hpp"
-#include "tumble/rolling/rolling_params.hpp"
+#include "tumble/rolling/detail/rolling_model.hpp"
+#include "tumble/rolling/detail/rolling_params.hpp"
 
 namespace tumble {
 

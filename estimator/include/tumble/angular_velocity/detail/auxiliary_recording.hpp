@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "tumble/angular_velocity/rail_detector.hpp"
-#include "tumble/angular_velocity/rate_model_params.hpp"
+#include "tumble/angular_velocity/detail/rail_detector.hpp"
+#include "tumble/angular_velocity/detail/rate_model_params.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/common/status.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-#include "tumble/angular_velocity/sensor_errors.hpp"
+#include "tumble/angular_velocity/detail/sensor_errors.hpp"
 
 namespace tumble {
 

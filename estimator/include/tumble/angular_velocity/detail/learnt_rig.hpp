@@ -4,7 +4,7 @@
 #include <array>
 #include <optional>
 
-#include "tumble/angular_velocity/rate_smoother.hpp"
+#include "tumble/angular_velocity/detail/rate_smoother.hpp"
 #include "tumble/angular_velocity/rate_stream.hpp"
 
 namespace tumble {

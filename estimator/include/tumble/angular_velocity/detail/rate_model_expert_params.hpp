@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "tumble/angular_velocity/sensor_errors.hpp"
+#include "tumble/angular_velocity/detail/sensor_errors.hpp"
 #include "tumble/common/parameters.hpp"
 
 namespace tumble {

@@ -5,12 +5,12 @@
 #include <array>
 #include <cstdint>
 
-#include "tumble/angular_velocity/auxiliary_imu.hpp"
+#include "tumble/angular_velocity/detail/auxiliary_imu.hpp"
+#include "tumble/angular_velocity/detail/rail_detector.hpp"
+#include "tumble/angular_velocity/detail/rail_plane.hpp"
 #include "tumble/angular_velocity/detail/rate_factors.hpp"
+#include "tumble/angular_velocity/detail/rate_model_params.hpp"
 #include "tumble/angular_velocity/detail/subsample_saturation.hpp"
-#include "tumble/angular_velocity/rail_detector.hpp"
-#include "tumble/angular_velocity/rail_plane.hpp"
-#include "tumble/angular_velocity/rate_model_params.hpp"
 #include "tumble/common/imu.hpp"
 
 namespace tumble {

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <memory>
 
+#include "tumble/angular_velocity/detail/rail_detector.hpp"
+#include "tumble/angular_velocity/detail/rate_model_params.hpp"
 #include "tumble/angular_velocity/detail/rate_stream_expert_params.hpp"
-#include "tumble/angular_velocity/rail_detector.hpp"
-#include "tumble/angular_velocity/rate_model_params.hpp"
-#include "tumble/angular_velocity/sensor_errors.hpp"
+#include "tumble/angular_velocity/detail/sensor_errors.hpp"
 #include "tumble/common/parameters.hpp"
 
 namespace tumble {

@@ -13,14 +13,14 @@
 #include "tumble/angular_velocity/detail/frozen_axes.hpp"
 #include "tumble/angular_velocity/detail/impact_sums.hpp"
 #include "tumble/angular_velocity/detail/min_saturation_levels.hpp"
+#include "tumble/angular_velocity/detail/rail_detector.hpp"
 #include "tumble/angular_velocity/detail/rate_observation.hpp"
 #include "tumble/angular_velocity/detail/repeat_detector.hpp"
+#include "tumble/angular_velocity/detail/rest_detector.hpp"
+#include "tumble/angular_velocity/detail/sensor_errors.hpp"
 #include "tumble/angular_velocity/detail/streaming_clipping_finder.hpp"
-#include "tumble/angular_velocity/rail_detector.hpp"
 #include "tumble/angular_velocity/rate_state.hpp"
-#include "tumble/angular_velocity/rest_detector.hpp"
 #include "tumble/angular_velocity/rig_constants.hpp"
-#include "tumble/angular_velocity/sensor_errors.hpp"
 #include "tumble/common/time.hpp"
 
 namespace tumble {

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "tumble/angular_velocity/clipping_finder.hpp"
+#include "tumble/angular_velocity/detail/clipping_finder.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/common/parameters.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "tumble/angular_velocity/rail_detector.hpp"
+#include "tumble/angular_velocity/detail/rail_detector.hpp"
 
 namespace tumble {
 

@@ -7,7 +7,7 @@
 
 #include "tumble/angular_velocity/detail/repeat_detector.hpp"
 #include "tumble/angular_velocity/detail/streaming_clipping_finder.hpp"
-#include "tumble/attitude/hand_held_stream.hpp"
+#include "tumble/attitude/detail/hand_held_stream.hpp"
 #include "tumble/common/parameters.hpp"
 
 namespace tumble {

@@ -8,7 +8,6 @@ namespace tumble {
 /// Maximum differences of one IMU from the others, beyond which ImuMerge excludes the IMU.
 struct ImuOutlierParams {
   double rate_rad_s = 0.15;  ///< maximum difference from the median
-  double rate_share = 0.03;  ///< additional difference, as a fraction of the rate
   double force_m_s2 = 3.0;   ///< maximum difference from the median
   /// A reading above this fraction of the range may be saturated during a part of its averaging window.
   double subsample_saturation_ratio = 0.15;
@@ -18,9 +17,6 @@ struct ImuOutlierParams {
   static void fields(Self& p, Visitor& visit) {
     visit(p.rate_rad_s, {"rate_tolerance_rad_s", "rad/s", 1e-12, 1e3,
                          "maximum accepted difference between an IMU's rate and the median of all IMUs"});
-    visit(p.rate_share,
-          {"rate_tolerance_ratio", "1", 0.0, 1.0,
-           "additional accepted difference between an IMU's rate and the median, as a share of the rate"});
     visit(p.force_m_s2, {"force_tolerance_m_s2", "m/s^2", 1e-12, 1e4,
                          "maximum accepted difference between an IMU's force and the median of all IMUs"});
     visit(p.subsample_saturation_ratio,

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <span>
 
-#include "tumble/angular_velocity/rail_plane.hpp"
+#include "tumble/angular_velocity/detail/rail_plane.hpp"
 #include "tumble/common/imu.hpp"
 
 namespace tumble {

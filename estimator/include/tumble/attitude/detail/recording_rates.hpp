@@ -7,9 +7,9 @@
 #include <span>
 #include <vector>
 
-#include "tumble/angular_velocity/clipping_finder.hpp"
 #include "tumble/angular_velocity/detail/auxiliary_recording.hpp"
-#include "tumble/attitude/regime_smoother.hpp"
+#include "tumble/angular_velocity/detail/clipping_finder.hpp"
+#include "tumble/attitude/detail/regime_smoother.hpp"
 
 namespace tumble {
 

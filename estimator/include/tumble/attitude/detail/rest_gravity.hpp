@@ -4,8 +4,8 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 
+#include "tumble/angular_velocity/detail/rest_detector.hpp"
 #include "tumble/angular_velocity/rate_state.hpp"
-#include "tumble/angular_velocity/rest_detector.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/common/parameters.hpp"
 #include "tumble/common/status.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "tumble/angular_velocity/rest_detector.hpp"
+#include "tumble/angular_velocity/detail/rest_detector.hpp"
 #include "tumble/common/parameters.hpp"
 
 namespace tumble {
@@ -25,29 +25,17 @@ struct AttitudeRestParams {
 
 struct AttitudeRollingParams {
   double velocity_sigma_m_s = 0.03;  ///< standard deviation of the velocity when rolling without slip, per node
-  double slip_velocity_m_s = 0.12;   ///< velocity residual above which slip starts; slip ends below half of this value
-  double slip_quiet_s = 0.2;         ///< duration of small velocity residuals after which slip ends
-  double slip_timeout_s = 3.0;       ///< maximum duration of a slip
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.velocity_sigma_m_s,
-          {"rolling_velocity_sigma_m_s", "m/s", 1e-12, 10.0,
-           "standard deviation of the velocity while rolling without slip, per filter correction"});
-    visit(p.slip_velocity_m_s,
-          {"slip_velocity_m_s", "m/s", 1e-12, 10.0,
-           "velocity residual of the rolling constraint above which slip starts; slip ends below half of this value"});
-    visit(p.slip_quiet_s, {"slip_quiet_s", "s", 0.0, 10.0,
-                           "duration of small velocity residuals of the rolling constraint after which slip ends"});
-    visit(p.slip_timeout_s, {"slip_timeout_s", "s", 1e-12, 1e3,
-                             "maximum duration of a slip; the rolling velocity is used again after this time"});
+    visit(p.velocity_sigma_m_s, {"rolling_velocity_sigma_m_s", "m/s", 1e-12, 10.0,
+                                 "standard deviation of the rolling velocity while gripping, per filter correction"});
   }
 };
 
 struct AttitudeGapParams {
-  double duration_min_s = 0.05;  ///< a longer time between two samples is a gap
-  /// Random walks of the rate and velocity of tumbling bodies during a gap. In simulated falls on hills, stairs and
-  /// cliffs, the true random walks are 3.0 to 11.4 rad/s and 2.4 to 4.1 m/s per sqrt(s) (docs/figures.md).
+  /// Random walks of the rate and velocity of tumbling bodies during a gap. On hills, stairs and cliffs, the true
+  /// random walks over 0.05 to 0.5 s are 3.0 to 11.4 rad/s and 2.4 to 4.1 m/s per sqrt(s) (docs/figures.md).
   double rate_walk_rad_s_sqrts = 7.0, velocity_walk_m_s_sqrts = 3.3;
   /// Standard deviations of the tilt, per axis. Coarse alignment starts above `lost_tilt_rad`, where the linearised
   /// filter is invalid, and ends below `aligned_tilt_rad`.
@@ -55,8 +43,6 @@ struct AttitudeGapParams {
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.duration_min_s, {"gap_min_s", "s", 1e-6, 1e4,
-                             "maximum time between two samples; a longer time counts as a gap of the IMU data"});
     visit(p.rate_walk_rad_s_sqrts,
           {"gap_rate_walk_rad_s_sqrts", "rad/s/sqrt(s)", 0.0, 1e4, "random walk of the rate during a gap"});
     visit(p.velocity_walk_m_s_sqrts,
@@ -70,11 +56,11 @@ struct AttitudeGapParams {
 };
 
 struct TumbleAttitudeExpertParams {
-  double bias_walk_rad_s_sqrts = 2e-6;         ///< random walk of the bias per sqrt(s)
-  double acceleration_noise_m_s_sqrts = 0.01;  ///< velocity random walk
-  double recovered_tau_s = 0.05;               ///< correlation time of the error of a recovered rate
-  double node_s = 0.04;                        ///< time between two corrections
-  /// averaging time of the readings; 0: no averaging
+  double bias_walk_rad_s_sqrts = 2e-6;  ///< random walk of the bias per sqrt(s)
+  double recovered_tau_s = 0.05;        ///< correlation time of the error of a recovered rate
+  double node_s = 0.04;                 ///< time between two corrections
+  /// Averaging time of the readings. The thresholds of TumbleAttitude assume the default averaging time. An averaging
+  /// time of 0 disables averaging.
   double reading_s = 4e-3;
   double gap_max_s = 1.0;
   RestDetector::Params rest = {.rate_max_rad_s = 3.4907e-2,
@@ -91,8 +77,6 @@ struct TumbleAttitudeExpertParams {
   static void fields(Self& p, Visitor& visit) {
     visit(p.bias_walk_rad_s_sqrts,
           {"bias_walk_rad_s_sqrts", "rad/s/sqrt(s)", 0.0, 1.0, "random walk of the gyro bias"});
-    visit(p.acceleration_noise_m_s_sqrts,
-          {"acceleration_noise_m_s_sqrts", "m/s/sqrt(s)", 1e-12, 100.0, "velocity random walk"});
     visit(p.recovered_tau_s, {"recovered_tau_s", "s", 1e-4, 1e4, "correlation time of the error of a recovered rate"});
     visit(p.node_s, {"node_s", "s", 1e-4, 1.0, "time between two filter corrections"});
     visit(p.reading_s, {"reading_s", "s", 0.0, 0.1, "duration over which readings are averaged; 0: no averaging"});

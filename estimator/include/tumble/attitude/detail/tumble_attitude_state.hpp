@@ -3,7 +3,7 @@
 
 #include <Eigen/Geometry>
 
-#include "tumble/angular_velocity/rest_detector.hpp"
+#include "tumble/angular_velocity/detail/rest_detector.hpp"
 #include "tumble/attitude/detail/coarse_alignment.hpp"
 #include "tumble/common/detail/imu_average.hpp"
 #include "tumble/common/time.hpp"

@@ -6,7 +6,7 @@
 
 #include "tumble/common/status.hpp"
 #include "tumble/common/time.hpp"
-#include "tumble/mapping/sweep_trajectory.hpp"
+#include "tumble/mapping/detail/sweep_trajectory.hpp"
 
 namespace tumble {
 

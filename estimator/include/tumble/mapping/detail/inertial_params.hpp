@@ -51,44 +51,29 @@ struct InertialNoiseParams {
   }
 };
 
-/// Accelerometer readings at or above `accel_m_s2`, or flagged by the device, are saturated.
+/// SaturatedImuParams contains the parameters of a saturated IMU. Accelerometer readings are saturated if they are at
+/// or above `accel_m_s2` or if the device flags them.
 ///
 /// If `estimate_deficit` is true, the registration estimates the saturation deficit of the rate on clipped axes, at
-/// SweepTrajectory::kKnots support points per sweep. The prior standard deviation of the saturation deficit is the
-/// reported uncertainty of the rate, but at least deficit_sigma_min_rad_s, correlated over deficit_time_s.
+/// SweepTrajectory::kKnots knots per sweep. The saturation deficit changes only clipped samples, in proportion to the
+/// reported uncertainty of the rate. The prior standard deviation of the saturation deficit is the reported
+/// uncertainty, but at least 1 rad/s, correlated over 0.3 s. If saturation lasts across the boundary of two sweeps, the
+/// saturation deficit is continuous at the boundary.
 struct SaturatedImuParams {
   double accel_m_s2 = 1e5;
-  double force_sigma_m_s2 = 50.0;
   double rate_sigma_rad_s = 3.0;  ///< standard deviation of a clipped rate that was not recovered
   bool estimate_deficit = false;
-  double deficit_sigma_min_rad_s = 1.0;
-  double deficit_time_s = 0.3;
-  double deficit_carry_max = 3.0;  ///< maximum growth factor of the saturation deficit at a sweep boundary
-  /// standard deviation of the deficit's change between adjacent support points, relative to the deficit's own
-  double knot_sigma_ratio = 0.05;
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.accel_m_s2, {"accel_rail_m_s2", "m/s^2", 1e-9, 1e5,
-                         "measuring range of the accelerometer; readings at or above this value count as saturated"});
-    visit(p.force_sigma_m_s2,
-          {"railed_force_m_s2", "m/s^2", 0.0, 1e4, "standard deviation of a saturated accelerometer reading"});
+    visit(p.accel_m_s2,
+          {"accel_rail_m_s2", "m/s^2", 1e-9, 1e5, "accelerometer readings from this value on count as saturated"});
     visit(p.rate_sigma_rad_s,
           {"clipped_sigma_rad_s", "rad/s", 0.0, 100.0,
            "standard deviation of the rate about a clipped axis that the rate estimator did not recover",
            FieldRank::basic});
     visit(p.estimate_deficit, switch_field("estimate_saturation_deficit",
                                            "1: estimate the saturation deficit of clipped axes in the registration"));
-    visit(p.deficit_sigma_min_rad_s,
-          {"deficit_sigma_min_rad_s", "rad/s", 1e-9, 100.0,
-           "minimum prior standard deviation of the saturation deficit of a clipped axis", FieldRank::basic});
-    visit(p.deficit_time_s,
-          {"deficit_time_s", "s", 1e-3, 1e3, "correlation time of the saturation deficit", FieldRank::basic});
-    visit(p.deficit_carry_max, {"deficit_carry_max", "1", 0.0, 1e3,
-                                "maximum growth factor of the saturation deficit from one sweep to the next"});
-    visit(p.knot_sigma_ratio, {"knot_sigma_ratio", "1", 1e-6, 1.0,
-                               "standard deviation of the difference between neighbouring support points of the "
-                               "saturation deficit, as a share of the deficit's standard deviation"});
   }
 };
 

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "tumble/mapping/detail/voxel_map.hpp"
 #include "tumble/mapping/lidar.hpp"
-#include "tumble/mapping/voxel_map.hpp"
 
 namespace tumble::mapping {
 

@@ -10,7 +10,6 @@ struct LocalMapParams {
   double voxel_m = 0.5;                       ///< edge of a cell of the map's hash table
   double spacing_m = 0.1;                     ///< edge of the cubes that contain at most one map point
   double radius_m = 100.0;                    ///< points within this distance of the sensor are kept
-  double sigma_max_m = 0.25;                  ///< points with a larger standard deviation are not inserted
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -23,8 +22,6 @@ struct LocalMapParams {
          FieldRank::basic});
     visit(p.radius_m, {"map_radius_m", "m", 0.0, 1e5,
                        "radius around the sensor within which map points are kept, accurate to 10 %"});
-    visit(p.sigma_max_m, {"map_sigma_max_m", "m", 1e-6, 1e3,
-                          "points with a larger standard deviation of their position are not inserted into the map"});
   }
 };
 

@@ -29,43 +29,30 @@ struct OdometryStartParams {
   /// standard deviation of the initial tilt in the registration; larger than in WorldCovarianceParams, for starts in
   /// motion
   double level_sigma_rad = 0.01;
-  double speed_sigma_m_s = 0.05;  ///< standard deviation of the speed of a robot that seems to be at rest
-  double bias_rest_s = 0.1;       ///< minimum duration of a rest that determines the gyro's bias
+  double bias_rest_s = 0.1;  ///< minimum duration of a rest that determines the gyro's bias
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.level_sigma_rad, {"level_sigma_rad", "rad", 1e-9, 1.0, "standard deviation of the initial tilt"});
-    visit(p.speed_sigma_m_s, {"speed_sigma_m_s", "m/s", 1e-9, 100.0,
-                              "standard deviation of the initial speed of a robot that seems to be at rest"});
+    visit(p.level_sigma_rad,
+          {"level_sigma_rad", "rad", 1e-9, 1.0, "standard deviation of corrections to the levelled tilt"});
     visit(p.bias_rest_s,
           {"bias_rest_s", "s", 0.0, 60.0, "minimum duration of an initial rest that calibrates the gyro bias"});
   }
 };
 
 struct StandstillParams {
-  double start_sigma_m_s = 0.01;  ///< standard deviation of the velocity during the initial rest
-  double sigma_m_s = 0.05;        ///< standard deviation of the velocity while the IMU measures only gravity
-  /// Maximum estimated speed at which a robot still counts as stationary, which prevents slow drift in a world without
-  /// features. Applies while the IMU measures only gravity and no surface constrains the pose.
+  double sigma_m_s = 0.05;  ///< standard deviation of the velocity while the IMU measures only gravity
+  /// Maximum estimated speed of a robot that is treated as stationary while the IMU measures only gravity and no
+  /// surface constrains the pose. The zero velocity prevents slow drift in a world without features.
   double creep_max_m_s = 0.5;
-  int sweeps_min = 3;         ///< minimum number of consecutive sweeps at rest before creep_max_m_s applies
-  double noise_share = 0.02;  ///< ratio of the inertial prediction's noise at rest to its noise in motion
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.start_sigma_m_s,
-          {"start_sigma_m_s", "m/s", 1e-9, 100.0, "standard deviation of the velocity during the initial rest"});
     visit(p.sigma_m_s, {"sigma_m_s", "m/s", 1e-9, 100.0,
                         "standard deviation of the velocity at a later rest, when the IMU measures only gravity"});
-    visit(
-        p.creep_max_m_s,
-        {"creep_max_m_s", "m/s", 0.0, 100.0,
-         "maximum estimated speed of a robot at rest, if no surface constrains the pose and the IMU measures gravity"});
-    visit(p.sweeps_min,
-          {"sweeps_min", "1", 1, 1e6, "minimum number of consecutive sweeps at rest before creep_max_m_s applies"});
-    visit(p.noise_share,
-          {"noise_share", "1", 1e-9, 1.0,
-           "standard deviations of the inertial prediction at rest, as a share of the standard deviations in motion"});
+    visit(p.creep_max_m_s,
+          {"creep_max_m_s", "m/s", 0.0, 100.0,
+           "if no surface constrains the pose, an IMU that measures only gravity is at rest below this speed"});
   }
 };
 

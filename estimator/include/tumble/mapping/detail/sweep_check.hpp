@@ -5,7 +5,7 @@
 
 #include "tumble/common/status.hpp"
 #include "tumble/common/time.hpp"
-#include "tumble/mapping/deskew.hpp"
+#include "tumble/mapping/detail/deskew.hpp"
 #include "tumble/mapping/lidar.hpp"
 
 namespace tumble::mapping {

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "tumble/mapping/calibration.hpp"
-#include "tumble/mapping/sweep_trajectory.hpp"
+#include "tumble/mapping/detail/sweep_trajectory.hpp"
 
 namespace tumble {
 

@@ -10,9 +10,9 @@
 
 #include "tumble/angular_velocity/detail/frozen_axes.hpp"
 #include "tumble/angular_velocity/rate_state.hpp"
+#include "tumble/attitude/detail/imu_merge.hpp"
 #include "tumble/attitude/detail/imu_plausibility.hpp"
 #include "tumble/attitude/detail/rest_gravity.hpp"
-#include "tumble/attitude/imu_merge.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/common/sensor_health.hpp"
 #include "tumble/odometry/detail/merge_recordings.hpp"

@@ -7,11 +7,11 @@
 #include <span>
 #include <vector>
 
-#include "tumble/angular_velocity/clipping_finder.hpp"
+#include "tumble/angular_velocity/detail/clipping_finder.hpp"
 #include "tumble/common/sensor_health.hpp"
 #include "tumble/mapping/detail/localisation.hpp"
-#include "tumble/mapping/detail/odometer_reading.hpp"
 #include "tumble/mapping/detail/sweep_scale.hpp"
+#include "tumble/mapping/further_readings.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 #include "tumble/odometry/detail/waiting_input.hpp"
 

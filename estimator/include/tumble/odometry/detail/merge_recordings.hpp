@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
+#include "tumble/attitude/detail/imu_merge.hpp"
 #include "tumble/attitude/detail/unit_sign_check.hpp"
-#include "tumble/attitude/imu_merge.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/common/sensor_health.hpp"
 #include "tumble/common/status.hpp"
-#include "tumble/odometry/imu_sheet.hpp"
+#include "tumble/odometry/sensor_sheets.hpp"
 
 namespace tumble {
 

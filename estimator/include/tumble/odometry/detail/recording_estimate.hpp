@@ -5,9 +5,9 @@
 #include <cstddef>
 #include <vector>
 
-#include "tumble/angular_velocity/clipping_finder.hpp"
+#include "tumble/angular_velocity/detail/clipping_finder.hpp"
 #include "tumble/angular_velocity/rate_state.hpp"
-#include "tumble/attitude/regime_smoother.hpp"
+#include "tumble/attitude/detail/regime_smoother.hpp"
 #include "tumble/common/sensor_health.hpp"
 #include "tumble/common/time.hpp"
 #include "tumble/mapping/detail/sweep_scale.hpp"

@@ -6,9 +6,9 @@
 #include <optional>
 #include <vector>
 
-#include "tumble/mapping/detail/odometer_reading.hpp"
+#include "tumble/mapping/detail/sweep_trajectory.hpp"
+#include "tumble/mapping/further_readings.hpp"
 #include "tumble/mapping/lidar.hpp"
-#include "tumble/mapping/sweep_trajectory.hpp"
 
 namespace tumble {
 

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "tumble/angular_velocity/detail/rail_plane.hpp"
+#include "tumble/angular_velocity/detail/triad.hpp"
+#include "tumble/common/imu.hpp"
+#include "tumble/common/parameters.hpp"
+
+namespace tumble {
+
+/// Finds the tilted saturation planes of a gyro or accelerometer in a whole recording, without clip flags and without
+/// the stated range of the sensor.
+///
+/// A saturation plane is nearly axis-aligned, limits the readings, and has many readings just below the plane. The
+/// equations are in docs/maths/rails.md.
+///
+/// RailPlaneFinder assumes constant saturation limits, with one limit per sensing element and sign. RailPlaneFinder
+/// assumes that the three sensing elements of a sensor are of one type, with similar saturation limits. RailPlaneFinder
+/// does not detect readings that overflow and change sign. Sensing elements without a saturation plane count as
+/// unsaturated.
+class RailPlaneFinder {
+ public:
+  struct Params {
+    /// Returns the parameters for an accelerometer. The minimum saturation limit is about 1.5 g, because gravity alone
+    /// can cause constant readings.
+    static Params for_accelerometer() {
+      Params out;
+      out.distance_min_rad_s = 15.0;
+      return out;
+    }
+    /// prior standard deviation of each cross-axis sensitivity of a sensing element, before compensation
+    double slope_sigma = 0.03;
+    double slope_max = 0.12;  ///< largest cross-axis sensitivity
+    /// minimum saturation limit [rad/s]; excludes constant readings at rest and in slow motion
+    double distance_min_rad_s = 1.5;
+    /// Range of the sensor according to its data sheet [rad/s], if known. RailPlaneFinder assumes a saturation limit
+    /// that is not far below the stated range.
+    std::optional<double> stated_rad_s = std::nullopt;
+    /// prior standard deviation of RailPlane::offset_rad_s and of the differences between elements, relative to the
+    /// limit
+    double offset_sigma_ratio = 0.02;
+    int samples_min = 4;            ///< minimum number of samples on the plane of one sign
+    double log_odds_before = -6.0;  ///< prior log odds of saturation for each element and sign
+    double log_odds_min = 1.0;      ///< minimum log odds for accepting a plane
+    double log_odds_keep = -3.0;    ///< minimum log odds for keeping an accepted plane
+    /// Saturation planes found in an earlier run of the same device. RailPlaneFinder uses known planes from the start
+    /// of a run until readings contradict the planes.
+    RailPlanes known = {};
+
+    template <class Self, class Visitor>
+    static void fields(Self& p, Visitor& visit) {
+      visit(p.slope_sigma, {"slope_sigma", "1", 1e-4, 0.2,
+                            "prior standard deviation of each cross-axis sensitivity of a sensing element, before "
+                            "the device's compensation"});
+      visit(p.slope_max, {"slope_max", "1", 0.0, 0.3, "largest cross-axis sensitivity of a sensing element"});
+      visit(p.distance_min_rad_s, {"distance_min_rad_s", "rad/s", 0.01, 1000.0,
+                                   "minimum saturation limit that is detected; in m/s^2 for an accelerometer"});
+      visit(p.offset_sigma_ratio,
+            {"offset_sigma_ratio", "1", 1e-4, 0.2,
+             "prior standard deviation of a saturation limit's offset, and of the difference between the limits of two "
+             "elements, as a share of the limit"});
+      visit(p.samples_min,
+            {"samples_min", "1", 2, 1000, "minimum number of samples at a saturation limit, for each sign"});
+      visit(p.log_odds_before, {"log_odds_before", "1", -100.0, 100.0,
+                                "prior log odds of a tilted saturation limit, per element and sign"});
+      visit(p.log_odds_min,
+            {"log_odds_min", "1", -100.0, 100.0, "minimum log odds with which a tilted saturation limit is accepted"});
+      visit(p.log_odds_keep, {"log_odds_keep", "1", -100.0, 100.0,
+                              "minimum log odds with which an accepted tilted saturation limit is kept"});
+    }
+  };
+
+  /// Buffers for find(); after reserve() for all readings, find() allocates no memory.
+  struct Workspace {
+    std::vector<Eigen::Vector3d> rates;
+    std::vector<double> values;
+    std::vector<std::size_t> near, inliers;
+    void reserve(std::size_t readings);
+  };
+
+  /// Throws InvalidParams if a parameter is out of bounds.
+  explicit RailPlaneFinder(const Params& params);
+
+  /// Finds the saturation planes in the gyro or accelerometer readings of a recording. The samples must be finite and
+  /// in time order. Cost: O(N), plus some hundred tilted planes that are compared with the largest readings.
+  RailPlanes find(std::span<const ImuSample> samples, Triad triad = Triad::gyro) const;
+  /// Finds the saturation planes in readings without time stamps [rad/s]. `before` contains the saturation planes that
+  /// were found in a subset of the readings.
+  RailPlanes find(std::span<const Eigen::Vector3d> readings_rad_s, const RailPlanes& before,
+                  Workspace& workspace) const;
+
+  const Params& params() const { return params_; }
+
+ private:
+  RailPlanes merge_with_known_planes(const RailPlanes& found, std::span<const Eigen::Vector3d> readings_rad_s) const;
+  Params params_;
+};
+
+/// Cost: O(1).
+ElementClipping classify(const ImuSample& sample, const RailPlanes& planes);
+/// `out` must have the size of `samples`.
+void classify(std::span<const ImuSample> samples, const RailPlanes& planes, std::span<ElementClipping> out);
+
+}  // namespace tumble

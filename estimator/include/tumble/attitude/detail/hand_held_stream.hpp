@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "tumble/angular_velocity/detail/repeat_detector.hpp"
+#include "tumble/attitude/detail/hand_held_smoother.hpp"
+#include "tumble/common/parameters.hpp"
+
+namespace tumble {
+
+/// Estimates attitude and angular velocity of hand-held motion sample by sample, with a fixed lag. HandHeldStream
+/// applies the model of HandHeldSmoother to a sliding window of time steps (nodes).
+///
+/// HandHeldStream allocates memory only in start(). A run that continues from a copy of the State gives bit-identical
+/// results.
+///
+/// Unlike HandHeldSmoother, HandHeldStream does not test other numbers of full revolutions during saturation. The rate
+/// covariance includes the error of one additional revolution: carried.md (C42), (C43). After the detection of a
+/// saturation limit, HandHeldStream classifies only the readings in the window again.
+///
+/// Cost: O(window) per node while a sample in the window is clipped, and a fifth of this cost otherwise.
+class HandHeldStream {
+ public:
+  struct Params {
+    HandHeldSmoother::Params body;  ///< `iterations_max` is ignored
+    double period_s = 0.01;         ///< nominal time between samples
+    double lag_s = 0.2;
+    double window_s = 0.6;
+
+    template <class Self, class Visitor>
+    static void fields(Self& p, Visitor& visit) {
+      visit.group("", p.body);
+      visit(p.period_s, {"period_s", "s", 1e-5, 1.0, "nominal time between samples"});
+      visit(p.lag_s, {"lag_s", "s", 2e-5, 10.0,
+                      "age of a sample when its estimate is reported; a larger value adds delay and makes the estimate "
+                      "more accurate"});
+      visit(p.window_s,
+            {"window_s", "s", 1e-3, 20.0, "length of the sliding window; a longer window costs more computing time"});
+    }
+  };
+
+  struct Reading {
+    ImuSample sample;
+    ClipSigns signs;
+    /// times after the centre of the first sample's averaging window
+    double centre_s = 0.0, end_s = 0.0;
+    std::int64_t node = 0;  ///< node closest to the centre of the averaging window
+    bool rest = false;
+    RepeatedReading gyro, accel;        ///< detection state of repeated readings
+    std::optional<RateState> smoothed;  ///< unreported rate of a sample whose node has left the window
+  };
+  struct Knot {
+    hand_held::Node node;
+    hand_held::NodeReadings readings;
+  };
+  struct State {
+    std::vector<Reading> readings;  ///< readings of the nodes in the window, oldest first
+    std::vector<Knot> window;       ///< nodes in the window, oldest first
+    std::int64_t first_node = 0;    ///< number of the oldest node in the window
+    Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();
+    hand_held::Constants constants;
+    hand_held::System::BorderMatrix constants_covariance = hand_held::System::BorderMatrix::Zero();
+    // Gaussian prior on the oldest node and on the constants (biases, lever arm), from all data that have left the
+    // window.
+    hand_held::System::Block prior;
+    hand_held::System::Corner prior_corner;
+    hand_held::Node prior_node;
+    hand_held::Constants prior_constants;
+    double acceleration_power_ratio =
+        1.0;  ///< ratio of measured to assumed acceleration power of the hand, over marginalised nodes
+    RestDetector::State rests;
+    std::int64_t reported_node = -1;  ///< node of the last reported estimate
+    Eigen::Matrix3d reported_covariance_rad2_s2 = Eigen::Matrix3d::Zero();
+    std::int64_t start_ns = 0;
+    std::size_t samples = 0;
+    std::size_t failures = 0;  ///< number of steps skipped because the normal equations were not positive definite
+    /// duration of the current saturation of each gyro element, and time integral of the rate's standard deviation
+    Eigen::Vector3d clipped_duration_s = Eigen::Vector3d::Zero(), clipped_angle_sigma_rad = Eigen::Vector3d::Zero();
+    std::size_t revolutions_ambiguous = 0;       ///< saturated intervals that may contain an additional revolution
+    std::vector<hand_held::System::Block> work;  ///< buffer, not part of the state
+  };
+
+  /// Throws InvalidParams if a parameter is out of bounds.
+  explicit HandHeldStream(const Params& params);
+
+  /// The returned state has all memory that push() needs.
+  State start() const;
+  /// Resets `state`, except its counters, without allocating memory.
+  void restart(State& state) const;
+
+  /// Computes the rate `out` of the sample that is `lag_s` old; `out` is empty while the window fills or if `wanted` is
+  /// false. `known` contains the current clip signs of the newest samples, up to `sample`. `repeated` states which
+  /// readings of the log repeat an earlier reading (sample and hold); a repeated reading counts once.
+  ///
+  /// Returns `ok`, `non_finite`, `time_order`, `gap`, `out_of_range` (no clip signs) or `degenerate` (linearly
+  /// dependent sensing directions). On error, `state` is unchanged and `out` is empty.
+  Status push(const ImuSample& sample, const ClippedElements& known, State& state, std::optional<RateState>& out,
+              bool wanted = true, const RepeatDetector::State& repeated = {}) const;
+
+  /// Appends the rates of the samples in the window that were not yet reported, oldest first.
+  void flush(const State& state, std::vector<RateState>& out) const;
+
+ private:
+  void append(const ImuSample& sample, const RepeatDetector::State& repeated, State& state) const;
+  void add(const Reading& reading, State& state) const;
+  bool reclassify(const ClippedElements& known, State& state) const;
+  void rebuild(State& state) const;
+  hand_held::Node begin(const State& state) const;
+  void predict(const hand_held::Node& before, const Eigen::Matrix3d& rows, Knot& knot) const;
+  void predict_newest(State& state) const;
+  hand_held::ReadingNoise adapted_noise(const State& state) const;
+  std::size_t first_unreported(const State& state) const;
+  void store_oldest_rates(State& state) const;
+  void prune_output_samples(State& state) const;
+  void marginalise_oldest(State& state) const;
+  double hand(const State& state) const;
+  void add_prior(const State& state, hand_held::System::Block& block, hand_held::System::Corner& corner) const;
+  bool factorise(const hand_held::Motion& motion, const hand_held::ReadingNoise& noise, State& state,
+                 hand_held::System::BorderVector& step) const;
+  bool step(State& state) const;
+  void extend(State& state) const;
+  RateState compute_report(std::size_t at, bool due, bool factorised, State& state) const;
+  void report_rates(std::size_t first, std::size_t last, bool factorised, State& state, std::span<RateState> out) const;
+  void count_revolutions(std::size_t at, const RateState& rate, State& state) const;
+  RateState to_rate(const Reading& reading, const State& state, const Eigen::Matrix3d& covariance_rad2_s2) const;
+
+  Params params_;
+  RestDetector rest_detector_;
+  hand_held::Motion motion_, inflated_;
+  hand_held::ReadingNoise noise_;
+  Eigen::Vector3d g_W_m_s2_;
+  std::size_t nodes_max_, readings_max_, delay_;
+};
+
+}  // namespace tumble

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "tumble/angular_velocity/detail/rail_plane.hpp"
+#include "tumble/attitude/detail/force_errors.hpp"
+#include "tumble/attitude/detail/imu_merge_expert_params.hpp"
+#include "tumble/attitude/detail/imu_merge_state.hpp"
+#include "tumble/attitude/detail/rate_recovery.hpp"
+#include "tumble/attitude/detail/unit_sign_check.hpp"
+#include "tumble/common/imu.hpp"
+#include "tumble/common/parameters.hpp"
+#include "tumble/common/sensor_health.hpp"
+#include "tumble/common/status.hpp"
+
+namespace tumble {
+
+struct ImuMergeParams {
+  static constexpr int kImus = ImuMergeState::kImus;
+  /// pose of each IMU in the common axes C of the rigid body; the first `count` entries are used
+  std::array<Eigen::Isometry3d, kImus> T_CI{};
+  int count = 1;
+  double rate_noise_rad_s = 0.01;  ///< standard deviation of the mean rate over a window
+  double window_s = 4e-3;          ///< averaging time of the readings
+  double offset_sigma_s = 3e-3;    ///< prior standard deviation of each IMU's time offset; 0: synchronous clocks
+  double gyro_range_rad_s = 1e3;   ///< readings at or above this rate are saturated
+  double accel_range_m_s2 = 1e5;
+  double gap_max_s = 1.0;
+  /// sensing directions of each IMU, as found by RailPlaneFinder
+  std::array<SensingDirections, kImus> gyro_elements{}, accel_elements{};
+
+  using Expert = ImuMergeExpertParams;
+  Expert expert = {};  ///< rarely changed parameters
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.count, {"count", "1", 1, kImus, "number of IMUs in use"});
+    visit(p.rate_noise_rad_s,
+          {"rate_noise_rad_s", "rad/s", 1e-12, 10.0, "standard deviation of the mean rate over a window"});
+    visit(p.window_s, {"window_s", "s", 0.0, 0.1, "duration over which readings are averaged before merging"});
+    visit(p.offset_sigma_s,
+          {"offset_sigma_s", "s", 0.0, 0.1, "prior standard deviation of an IMU's time offset; 0: no offset"});
+    visit(p.gyro_range_rad_s, {"gyro_range_rad_s", "rad/s", 1e-12, 1e3,
+                               "measuring range of the gyros; readings at or above this value count as saturated"});
+    visit(p.accel_range_m_s2,
+          {"accel_range_m_s2", "m/s^2", 1e-12, 1e5,
+           "measuring range of the accelerometers; readings at or above this value count as saturated"});
+    visit(p.gap_max_s,
+          {"gap_max_s", "s", 1e-9, 1e4, "maximum time between two samples; a longer gap ends the run with an error"});
+    visit.group("", p.expert);
+  }
+};
+
+/// Merges several IMUs on one rigid body into one IMU, in common axes C, at the mean position of the IMUs.
+///
+/// The merged force is the mean force of the IMUs, corrected for excluded IMUs. While the body rotates, ImuMerge
+/// estimates bias, scale, misalignment and time offset of each gyro relative to the mean of all gyros. ImuMerge
+/// corrects significant time offsets and accelerometer errors. If all gyros are saturated, the force differences
+/// between three or more IMUs determine the rate. The equations are in docs/maths/imu_merge.md.
+///
+/// The merged sample has clip flags if saturation prevents a correct rate or force. A reading is saturated if the
+/// device flags the reading, or if the reading exceeds the stated range. The caller must flag readings at lower or
+/// tilted saturation limits beforehand (ClippingFinder).
+///
+/// ImuMerge excludes an IMU with a saturated accelerometer or with a reading that is not finite. ImuMerge also excludes
+/// an IMU that disagrees with three or more agreeing IMUs, permanently if the disagreement lasts. A frozen IMU, which
+/// repeats one reading during motion, is excluded until its readings have changed for 0.5 s.
+///
+/// The readings are averaged over `window_s`, unless the sample period is at least `window_s`. ImuMerge assumes that
+/// all clocks have the same rate, and does not detect an error that all IMUs share.
+class ImuMerge {
+ public:
+  static constexpr int kImus = ImuMergeState::kImus;
+  static constexpr int kAccelerationWindows = ImuMergeState::kAccelerationWindows;
+  static constexpr int kErrorCount = ImuMergeUnit::kErrorCount;
+
+  using Params = ImuMergeParams;
+
+  using Repetition = ImuRepeat;
+  using Unit = ImuMergeUnit;
+  using State = ImuMergeState;
+
+  explicit ImuMerge(const Params& params);
+
+  /// Returns the ratio of measured to expected force differences between IMUs. The expected force differences follow
+  /// from the rotation and the positions of the IMUs. The force ratio is 1 for correct IMUs, -1 for accelerometers with
+  /// inverted sign, and empty before enough rotation.
+  static std::optional<double> lever_arm_agreement(const State& state);
+
+  /// Returns `out_of_range` with the duration [s] if all IMUs are frozen. While all IMUs are frozen, step() merges
+  /// their readings unchanged.
+  static Status verdict(const State& state);
+  static void add_finding(const Unit& unit, const std::string& name, SensorHealth& health);
+  /// Adds warnings about exchanged or inverted axes of all IMUs (UnitSignCheck), and about a wrong scale
+  /// (lever_arm_agreement()). `gyro_confirmed` states whether another check confirms the scale of the gyros.
+  static void add_findings(const std::optional<UnitSignCheck::Detected>& mislabelled_axes,
+                           const std::optional<double>& lever_arm_agreement, bool gyro_confirmed, SensorHealth& health);
+
+  Eigen::Vector3d p_C_m() const { return p_C_m_; }
+
+  /// The samples must be simultaneous; the merged sample has the time stamp of the first IMU. `merged` is the mean over
+  /// `window_s` in axes C, or empty between two averages. Returns `too_few` if `samples` does not contain `count`
+  /// samples, or if none of the samples is finite. On error, the state is unchanged and `merged` is empty. Cost:
+  /// O(count), no allocation.
+  Status step(std::span<const ImuSample> samples, State& state, std::optional<ImuSample>& merged) const;
+
+ private:
+  using Vectors = std::array<Eigen::Vector3d, kImus>;
+
+  using UnitMask = std::array<bool, kImus>;
+
+  /// mean readings over a window; the clip flags cover the whole window
+  using Readings = std::array<ImuSample, kImus>;
+
+  void accumulate_window(std::span<const ImuSample> samples, double dt_s, State& state) const;
+  ImuSample merge(State& state) const;
+  UnitMask select_units(const Readings& readings, const UnitMask& present, const Vectors& rates, const Vectors& forces,
+                        double h, State& state) const;
+  ImuSample mean_of_used(const Vectors& rates, const Vectors& forces, const UnitMask& used, double h,
+                         const State& state) const;
+  std::uint8_t combined_flags(const Readings& readings, const UnitMask& which) const;
+  void close_windows(const UnitMask& present, const Vectors& rates, const Vectors& forces, bool all_used,
+                     const ImuSample& merged, State& state) const;
+  void calibrate(const Vectors& rates, State& state) const;
+  void detect_frozen_units(const UnitMask& present, const Vectors& rates, const Vectors& forces, double dt_s,
+                           TimeNs time_ns, State& state) const;
+  void detect_disagreeing_units(const UnitMask& present, const Vectors& rates, const Vectors& forces, TimeNs time_ns,
+                                State& state) const;
+  static Eigen::Vector3d median(const Vectors& values, const UnitMask& which);
+  void exclude_subsample_saturated(const Readings& samples, const UnitMask& present, const Vectors& forces,
+                                   const Eigen::Vector3d& rate, double h, State& state, UnitMask& used) const;
+  void recover(const Readings& readings, const UnitMask& present, double h, State& state, ImuSample& merged) const;
+  static ForceErrors::Params force_params(const Params& params);
+  static RateRecovery::Params recovery_params(const Params& params);
+
+  Params params_;
+  Eigen::Vector3d p_C_m_ = Eigen::Vector3d::Zero();
+  ForceErrors forces_;
+  RateRecovery recovery_;
+};
+
+}  // namespace tumble

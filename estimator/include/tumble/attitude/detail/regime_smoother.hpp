@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "tumble/angular_velocity/detail/rate_smoother.hpp"
+#include "tumble/attitude/detail/clipped_readings.hpp"
+#include "tumble/attitude/detail/hand_held_smoother.hpp"
+#include "tumble/attitude/detail/regimes.hpp"
+#include "tumble/common/parameters.hpp"
+
+namespace tumble {
+
+/// Estimates the angular velocity of a body in flight, in contact or hand-held, over a whole recording. RateSmoother
+/// estimates the rates for flight and contact. Where the body was probably hand-held while the gyro clipped,
+/// HandHeldSmoother estimates the rates for hand-held motion. RegimeSmoother combines the rates of both smoothers by
+/// the probability of hand-held motion (RegimeEvidence), which is constant during each saturated interval.
+class RegimeSmoother {
+ public:
+  struct Params {
+    RateSmoother::Params rate;
+    RegimeEvidence::Params evidence;
+    HandHeldSmoother::Params hand_held;
+    double hand_held_probability_min =
+        0.02;                        ///< minimum probability of hand-held motion for which HandHeldSmoother runs
+    double segment_gap_max_s = 0.1;  ///< clipped samples closer together than this form one segment
+
+    template <class Self, class Visitor>
+    static void fields(Self& p, Visitor& visit) {
+      visit.group("", p.rate);
+      visit.group("evidence_", p.evidence);
+      visit.group("carried_", p.hand_held);
+      visit(p.hand_held_probability_min, {"hand_held_probability_min", "1", 0.0, 1.0,
+                                          "minimum probability of hand-held motion for which HandHeldSmoother runs"});
+      visit(p.segment_gap_max_s,
+            {"segment_gap_max_s", "s", 0.0, 10.0,
+             "clipped samples that are less than this time apart belong to one saturated interval"});
+    }
+  };
+  struct Report {
+    RateReport rate;
+    bool judged = false;                     ///< RegimeSmoother estimated the probabilities below
+    RegimeProbabilities probabilities{};     ///< mean probabilities over all samples
+    double hand_held_probability_max = 0.0;  ///< largest probability of hand-held motion in a clipped segment
+    bool hand_held_smoother_ran = false;     ///< HandHeldSmoother succeeded; `hand_held` contains its report
+    HandHeldSmoother::Report hand_held;
+  };
+
+  /// Throws InvalidParams if a parameter is out of bounds.
+  explicit RegimeSmoother(const Params& params);
+
+  /// Returns the status of RateSmoother; on error, `rates` is empty. If HandHeldSmoother fails, `rates` contains the
+  /// result of RateSmoother.
+  Status estimate(std::span<const ImuSample> samples, std::vector<RateState>& rates, Report& report) const {
+    return estimate(samples, {}, rates, report);
+  }
+  /// Estimates the rates with additional IMUs on the body, like RateSmoother::estimate(). With additional IMUs, the
+  /// rates are those of RateSmoother and `report.judged` is false.
+  Status estimate(std::span<const ImuSample> samples, std::span<const std::vector<AuxiliaryReading>> auxiliary_imus,
+                  std::vector<RateState>& rates, Report& report) const;
+
+  /// Combines the rates of RateSmoother, given in `rates`, with the rates of HandHeldSmoother. The caller must set
+  /// `report.rate` to the report of RateSmoother before calling join().
+  void join(std::span<const ImuSample> samples, std::vector<RateState>& rates, Report& report) const;
+
+ private:
+  bool estimate_hand_held(std::span<const ImuSample> samples, const ClippedReadings& known,
+                          std::vector<RateState>& rates, HandHeldSmoother::Report& report) const;
+  std::vector<double> segment_hand_held_probability(std::span<const RegimeProbabilities> probabilities,
+                                                    const RateReport& report, std::span<const RateState> rates) const;
+
+  Params params_;
+  RateSmoother rate_;
+  RegimeEvidence evidence_;
+  HandHeldSmoother hand_held_;
+};
+
+}  // namespace tumble

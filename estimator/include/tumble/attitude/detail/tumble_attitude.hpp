@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include "tumble/angular_velocity/detail/rest_detector.hpp"
+#include "tumble/attitude/detail/tumble_attitude_expert_params.hpp"
+#include "tumble/attitude/detail/tumble_attitude_state.hpp"
+#include "tumble/common/imu.hpp"
+#include "tumble/common/parameters.hpp"
+#include "tumble/common/status.hpp"
+
+namespace tumble {
+
+struct TumbleAttitudeParams {
+  double gravity_m_s2 = 9.80665;
+  double gyro_noise_rad_sqrts = 1e-3;         ///< angle random walk, including unmodelled errors
+  double rate_error_sqrts = 4e-3;             ///< angle random walk per rad/s of rate, from scale and timing errors
+  double bias_sigma_start_rad_s = 8.7266e-3;  ///< prior standard deviation of the gyro bias: 0.5 deg/s
+  double velocity_m_sqrts = 1.0;              ///< standard deviation of the mean velocity over 1 s of motion
+  double displacement_m_sqrts = 0.3;          ///< standard deviation of the mean displacement over 1 s
+  double displacement_tau_s = 10.0;           ///< time constant with which the displacement decays to zero
+  double motion_tau_s = 3.0;                  ///< time constant of the body's velocity and displacement
+  double radius_m = 0.0;                      ///< radius of a sphere that rolls on a level floor; 0: not a sphere
+  Eigen::Vector3d lever_arm_m =
+      Eigen::Vector3d::Zero();  ///< lever arm from the body's centre to the IMU, in sensor axes
+
+  using Expert = TumbleAttitudeExpertParams;
+  Expert expert = {};  ///< rarely changed parameters
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-12, 100.0, "strength of gravity"});
+    visit(p.gyro_noise_rad_sqrts,
+          {"gyro_noise_rad_sqrts", "rad/sqrt(s)", 1e-12, 1.0,
+           "angle random walk of the gyro, including unmodelled errors; a larger value gives gyro readings less weight",
+           FieldRank::basic});
+    visit(p.rate_error_sqrts,
+          {"rate_error_sqrts", "sqrt(s)", 0.0, 1.0,
+           "angle random walk per rad/s of rate, caused by scale and timing errors", FieldRank::basic});
+    visit(p.bias_sigma_start_rad_s,
+          {"bias_sigma_start_rad_s", "rad/s", 0.0, 1.0, "prior standard deviation of the gyro bias", FieldRank::basic});
+    visit(p.velocity_m_sqrts, {"velocity_m_sqrts", "m/sqrt(s)", 1e-12, 1e3,
+                               "standard deviation of the mean velocity over 1 s of motion", FieldRank::basic});
+    visit(p.displacement_m_sqrts, {"displacement_m_sqrts", "m sqrt(s)", 1e-12, 1e3,
+                                   "standard deviation of the mean displacement over 1 s", FieldRank::basic});
+    visit(p.displacement_tau_s,
+          {"displacement_tau_s", "s", 0.1, 1e4,
+           "time constant with which the modelled displacement of the body decays to zero", FieldRank::basic});
+    visit(p.motion_tau_s,
+          {"motion_tau_s", "s", 1e-3, 1e4,
+           "correlation time of the body's velocity and displacement; also the averaging time of their magnitudes",
+           FieldRank::basic});
+    visit(p.radius_m, {"radius_m", "m", 0.0, 10.0, "radius of the sphere"});
+    visit(p.lever_arm_m, {"lever_arm_m", "m", -10.0, 10.0, "lever arm from the centre to the IMU, sensor axes"});
+    visit.group("", p.expert);
+  }
+};
+
+/// Estimates attitude from gyro and accelerometer, assuming that the velocity of the body is bounded, and zero at rest.
+///
+/// TumbleAttitude integrates the gyro. Weak pseudo-measurements of zero velocity and zero displacement correct tilt and
+/// gyro bias every `node_s`. At rest, TumbleAttitude measures the gyro bias and keeps the attitude constant. The
+/// equations are in docs/maths/attitude.md.
+///
+/// The extent of the motion is not known in advance, and ranges from a few centimetres to a whole hillside.
+/// TumbleAttitude accepts a large velocity or displacement as real motion if the tilt variance cannot explain the
+/// value. After accepting a large motion, TumbleAttitude increases the assumed standard deviation of velocity or
+/// displacement for `motion_tau_s`.
+///
+/// The centre of a rolling sphere of radius r has the velocity r w x n, with the rate w and the floor's normal n. The
+/// IMU's velocity differs from the centre's velocity by w x (R rho), with the attitude R and the lever arm rho. The
+/// rolling constraint predicts the integral of the specific force. The integral determines tilt and bias, and does not
+/// need the derivative of the rate. A velocity that does not fit the rolling constraint indicates slip. During slip,
+/// TumbleAttitude pauses its corrections for at most 3 s.
+///
+/// TumbleAttitude averages the readings of a fast IMU over `reading_s`, and extrapolates the attitude between averages.
+/// In a gap longer than 0.05 s, TumbleAttitude interpolates the rate and keeps the velocity, with increased
+/// variances. A body that is at rest before and after a gap is assumed to be at rest during the gap. If a gap increases
+/// the tilt's standard deviation to `gap_lost_tilt_rad`, the linearisation of the Kalman filter is invalid. A coarse
+/// alignment then estimates the tilt in parallel to the Kalman filter. Until the coarse alignment ends, the reported
+/// tilt variance is at least the variance after the gap. If Kalman filter and coarse alignment disagree, the filter
+/// restarts from the alignment.
+///
+/// The attitude is wrong if the body accelerates in one direction for many seconds. The heading drifts, because
+/// TumbleAttitude has no heading reference. Bias and scale errors of the accelerometer cause a tilt error.
+class TumbleAttitude {
+ public:
+  using Params = TumbleAttitudeParams;
+  using State = TumbleAttitudeState;
+
+  explicit TumbleAttitude(const Params& params);
+
+  /// The first sample sets the attitude from its specific force, with yaw 0. On error, the state is unchanged. Cost:
+  /// O(1), no allocation.
+  Status step(const ImuSample& sample, State& state) const { return step(sample, Eigen::Matrix3d::Zero(), state); }
+  /// Processes a sample whose rate was recovered from saturation. `rate_covariance_rad2_s2` is the covariance of the
+  /// rate in sensor axes, or zero for a measured rate. The error of a recovered rate has the correlation time
+  /// `recovered_tau_s`. Returns `out_of_range` if the covariance is not finite or has a negative variance.
+  Status step(const ImuSample& sample, const Eigen::Matrix3d& rate_covariance_rad2_s2, State& state) const;
+
+  /// Returns the covariance of the attitude error at the last correction, with the error as defined in AttitudeState.
+  static Eigen::Matrix3d attitude_covariance_rad2(const State& state);
+
+ private:
+  void start(State& state) const;
+  void process_average(State& state) const;
+  bool rotates_within_bias(const State& state) const;
+  void integrate(const ImuSample& sample, double dt_s, State& state) const;
+  void bridge_gap(const ImuSample& after, const Eigen::Matrix3d& rate_covariance_rad2_s2, double gap_s,
+                  State& state) const;
+  void add_recovered(double dt_s, State& state) const;
+  void end_node(State& state) const;
+  void predict_node(State& state) const;
+  void correct_node(State& state) const;
+  void align(const Eigen::Quaterniond& corrected, State& state) const;
+  void restart(const Eigen::Quaterniond& levelling, double tilt_rad2, double velocity_m2_s2, State& state) const;
+  double body_velocity_variance_m2_s2(double power_m2_s2, const State& state) const;
+  Eigen::Vector2d velocity_from_rotation(const State& state) const;
+  void correct_body(const Eigen::Vector2d& turned_m_s, State& state) const;
+  double motion_variance(const Eigen::Vector2d& misfit, int index, double sigma_sqrts, double power,
+                         const State& state) const;
+  bool detect_slip(const Eigen::Vector2d& misfit_m_s, State& state) const;
+
+  Params params_;
+  RestDetector rest_detector_;
+};
+
+}  // namespace tumble

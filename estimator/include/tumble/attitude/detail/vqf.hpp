@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include "tumble/attitude/detail/low_pass.hpp"
+#include "tumble/common/imu.hpp"
+#include "tumble/common/parameters.hpp"
+#include "tumble/common/status.hpp"
+
+namespace tumble {
+
+/// VqfParams contains the parameters of Vqf, named as in the publication. The parameters for which the authors use one
+/// value for all devices are constants in the source.
+struct VqfParams {
+  double tau_s = 3.0;  ///< time constant of the low-pass filter on the specific force
+  bool rest_bias_estimation = true;
+  bool motion_bias_estimation = true;         ///< if both bias estimations are off, Vqf is the authors' basic filter
+  double bias_sigma_start_rad_s = 8.7266e-3;  ///< prior standard deviation of the gyro bias: 0.5 deg/s
+  double gap_max_s = 1.0;
+
+  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.tau_s,
+          {"tau_s", "s", 1e-3, 1e4, "time constant of the low-pass filter on the specific force in the inertial frame",
+           FieldRank::basic});
+    visit(p.rest_bias_estimation,
+          switch_field("rest_bias_estimation", "1: estimate the gyro bias at rest", FieldRank::basic));
+    visit(p.motion_bias_estimation,
+          switch_field("motion_bias_estimation", "1: also estimate the gyro bias in motion", FieldRank::basic));
+    visit(p.bias_sigma_start_rad_s, {"bias_sigma_start_rad_s", "rad/s", 1e-9, 1.0,
+                                     "prior standard deviation of the gyro bias", FieldRank::basic});
+    visit(p.gap_max_s,
+          {"gap_max_s", "s", 1e-9, 1e4, "maximum time between two samples; a longer gap ends the run with an error"});
+  }
+};
+
+/// Estimates attitude from gyro and accelerometer with the versatile quaternion filter (VQF). Source: Laidig and Seel,
+/// "VQF", Information Fusion 91, 2023.
+///
+/// Vqf integrates the gyro to a nearly inertial frame N, and low-pass filters the specific force in frame N to obtain
+/// the vertical. A Kalman filter estimates the gyro bias, at rest and in motion. Vqf estimates neither the heading nor,
+/// in motion, the bias about the vertical.
+class Vqf {
+ public:
+  using Params = VqfParams;
+  struct State {
+    Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();  ///< estimated attitude, q_WN * q_NI
+    Eigen::Quaterniond q_NI =
+        Eigen::Quaterniond::Identity();  ///< attitude from the gyro only, with the bias subtracted
+    Eigen::Quaterniond q_WN = Eigen::Quaterniond::Identity();
+    Eigen::Vector3d bias_rad_s = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d bias_covariance_rad2_s2 = Eigen::Matrix3d::Zero();
+    LowPass<3> f_N_m_s2;
+    LowPass<9> R_WI;          ///< rotation matrix by columns, low-passed like the force
+    LowPass<2> bias_W_rad_s;  ///< horizontal bias in W, low-passed like the force
+    LowPass<3> rest_rate_rad_s;
+    LowPass<3> rest_force_m_s2;
+    double rest_s = 0.0;
+    bool at_rest = false;
+    TimeNs last_time_ns = 0;
+    bool started = false;
+    bool operator==(const State&) const = default;
+  };
+
+  explicit Vqf(const Params& params);
+
+  /// The first sample sets the attitude from its specific force, with yaw 0. If the force is below 1e-6 m/s^2, step()
+  /// integrates the gyro without a correction. On error, the state is unchanged. Cost: O(1), no allocation.
+  Status step(const ImuSample& sample, State& state) const;
+
+ private:
+  void detect_rest(const ImuSample& sample, double dt_s, State& state) const;
+  Eigen::Vector3d level_inertial_frame(const Eigen::Vector3d& f_I_m_s2, double dt_s, State& state) const;
+  void estimate_bias(const Eigen::Vector3d& up_W, double dt_s, State& state) const;
+
+  Params params_;
+};
+
+}  // namespace tumble

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+
+#include "tumble/common/parameters.hpp"
+#include "tumble/mapping/detail/voxel_map.hpp"
+
+namespace tumble {
+
+enum class PlaneVerdict { plane, too_few, collinear, one_scan_line, too_thick };
+
+/// plane through neighbouring map points: normal . x = normal . centre
+struct PlaneFit {
+  PlaneVerdict verdict = PlaneVerdict::too_few;
+  Eigen::Vector3f normal_W = Eigen::Vector3f::Zero();  ///< unit length, arbitrary sign
+  Eigen::Vector3f centre_W_m = Eigen::Vector3f::Zero();
+  float thickness_variance_m2 = 0.0f;  ///< smallest eigenvalue of the neighbours' covariance
+  /// Standard deviation of the normal's error along the two axes of the plane, as columns.
+  Eigen::Matrix<float, 3, 2> normal_sigma_W = Eigen::Matrix<float, 3, 2>::Zero();
+};
+
+/// limits of the eigenvalues l0 <= l1 <= l2 of the covariance of neighbouring map points
+struct PlaneBounds {
+  int neighbours_min = 5;
+  /// neighbours are collinear if l1 < collinear_ratio_max * l2, for example on one ring of a lidar at rest
+  double collinear_ratio_max = 0.03;
+  double rough_share = 0.1;  ///< neighbours are not a plane if l0 > rough_share * l1
+  /// minimum number of neighbours off the most frequent scan line; excludes planes of a single lidar ring
+  int off_line_neighbours_min = 2;
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.neighbours_min, {"neighbours_min", "1", 3, 32, "minimum number of map points for a plane"});
+    visit(p.collinear_ratio_max,
+          {"collinear_ratio_max", "1", 0.0, 1.0,
+           "minimum ratio of the middle to the largest eigenvalue of the neighbours' covariance; excludes lines"});
+    visit(p.rough_share, {"rough_share", "1", 0.0, 1.0,
+                          "maximum ratio of the smallest to the middle eigenvalue of the neighbours' covariance; "
+                          "excludes rough surfaces"});
+    visit(p.off_line_neighbours_min,
+          {"off_line_neighbours_min", "1", 0, 32,
+           "minimum number of neighbours that are not on the most frequent scan line of the lidar"});
+  }
+};
+
+/// Fits a least-squares plane to neighbouring map points. No memory is allocated.
+PlaneFit fit_plane(const VoxelMap& map, const Neighbours& neighbours, const PlaneBounds& bounds);
+
+}  // namespace tumble

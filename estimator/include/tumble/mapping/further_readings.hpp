@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <variant>
+
+#include "tumble/common/pose.hpp"
+#include "tumble/common/status.hpp"
+#include "tumble/common/time.hpp"
+
+namespace tumble {
+
+/// Odometer readings describe the motion of the robot within a sweep, measured by wheels, legs, a camera or a radar.
+/// Times of odometer readings are in the IMU's clock. The errors of an odometer reading are assumed independent of all
+/// other errors. Wheel slip beyond the stated uncertainty corrupts the estimate.
+
+struct VelocityReading {
+  TimeNs time_ns = 0;
+  Eigen::Vector3d v_WI_I_m_s = Eigen::Vector3d::Zero();  ///< velocity in IMU axes at the reading's time
+  double sigma_m_s = 0.0;                                ///< standard deviation of each axis
+};
+
+/// Motion of the IMU between two times. For poses in a drifting frame O, the motion is T_OI(from)^-1 T_OI(to).
+struct MotionReading {
+  TimeNs from_ns = 0;
+  TimeNs to_ns = 0;
+  Eigen::Isometry3d T_from_to = Eigen::Isometry3d::Identity();
+  /// Covariance of the position error [m] and the attitude error phi [rad], both in IMU axes at `from_ns`, with R_true
+  /// = Exp(phi) R. Set a large variance for components that the odometer does not measure.
+  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
+};
+
+using OdometerReading = std::variant<VelocityReading, MotionReading>;
+
+/// Returns `non_finite` if a number is not finite. Returns `out_of_range` if a standard deviation is not above 0, a
+/// covariance is not positive definite, or a rotation is invalid. Returns `time_order` if a motion does not end after
+/// its start.
+Status check_reading(const OdometerReading& reading);
+TimeNs reading_start_ns(const OdometerReading& reading);
+TimeNs reading_end_ns(const OdometerReading& reading);
+
+/// PositionReading is the position of an antenna or tag A on the robot in a frame P with z up, for example from GPS (as
+/// local east, north, up) or from beacons. PositionAlignment assumes that the errors of the readings are independent.
+/// If the errors are correlated over time, state a larger covariance.
+struct PositionReading {
+  TimeNs time_ns = 0;  ///< in the IMU's clock
+  Eigen::Vector3d p_PA_m = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();  ///< in P; the mean variance of the axes is used
+  Eigen::Vector3d p_IA_m = Eigen::Vector3d::Zero();         ///< lever arm: position of A in IMU axes
+};
+
+/// PositionFrame is the estimated transform from the world W of the poses to the frame P of the position readings. The
+/// drift of W relative to P is part of the transform, so poses in P do not drift.
+struct PositionFrame {
+  Eigen::Isometry3d T_PW = Eigen::Isometry3d::Identity();  ///< the rotation is about the vertical
+  Eigen::Vector3d reference_W_m = Eigen::Vector3d::Zero();
+  /// Covariance in P of two errors: the displacement of the reference point [m], and the rotation about the vertical
+  /// through the reference point [rad].
+  Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
+
+  /// Converts a pose from W to P, with the covariance of the position in P and the tilt errors of `in_W`.
+  PoseState transform(const PoseState& in_W) const;
+};
+
+}  // namespace tumble

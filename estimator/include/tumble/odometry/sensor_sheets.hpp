@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <span>
+#include <utility>
+
+#include "tumble/common/parameters.hpp"
+
+namespace tumble {
+
+/// A range of 0 means that the range is unknown. The estimators detect saturation limits from the readings, with or
+/// without a stated range. Data sheets state the range of a gyro in degrees per second, between 250 and 4000. A gyro
+/// range above 100 rad/s (5730 deg/s) is rejected, because the range is probably in degrees per second.
+struct ImuSheet {
+  double rate_hz = 100.0;
+  double gyro_range_rad_s = 0.0;
+  double accel_range_m_s2 = 0.0;
+  double gyro_noise_rad_s_sqrt_hz = 5.236e-4;
+  double accel_noise_m_s2_sqrt_hz = 5.9e-4;
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.rate_hz, {"rate_hz", "Hz", 1.0, 1e5, "samples per second", FieldRank::basic});
+    visit(p.gyro_range_rad_s,
+          {"gyro_range_rad_s", "rad/s", 0.0, 100.0, "stated range of the gyro; 0: not stated", FieldRank::basic});
+    visit(p.accel_range_m_s2, {"accel_range_m_s2", "m/s^2", 0.0, 1e5,
+                               "stated range of the accelerometer; 0: not stated", FieldRank::basic});
+    visit(p.gyro_noise_rad_s_sqrt_hz,
+          {"gyro_noise_rad_s_sqrt_hz", "rad/s/sqrt(Hz)", 1e-9, 1.0, "noise density of the gyro", FieldRank::basic});
+    visit(p.accel_noise_m_s2_sqrt_hz, {"accel_noise_m_s2_sqrt_hz", "m/s^2/sqrt(Hz)", 1e-9, 100.0,
+                                       "noise density of the accelerometer", FieldRank::basic});
+  }
+};
+
+/// Returns the largest reading that is certainly unsaturated, for a range from a data sheet. If the range is unknown
+/// (0), the result is infinity. The margin of 2 % covers the scale correction that a device's calibration applies to
+/// its saturation limit.
+double unsaturated_range(double stated_range);
+
+/// LidarSheet contains the data sheet of a lidar. The estimators drop lidar returns outside of the stated range.
+struct LidarSheet {
+  double range_min_m = 0.3;
+  double range_max_m = 100.0;
+
+  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.range_min_m,
+          {"range_min_m", "m", 0.0, 10.0, "minimum range; nearer returns are dropped", FieldRank::basic});
+    visit(p.range_max_m,
+          {"range_max_m", "m", 0.0, 1e4, "maximum range; farther returns are dropped", FieldRank::basic});
+  }
+};
+
+/// Data sheets of the simulated sensors. The file models/sensors/NAME.yaml states the source of each number.
+namespace sheets {
+
+/// Xsens MTi-30, fifth generation (20 g); stated gyro range 450 deg/s.
+ImuSheet mti30();
+/// VectorNav VN-100.
+ImuSheet vn100();
+/// PhidgetSpatial Precision 3/3/3 1044_0.
+ImuSheet phidget1044();
+/// InvenSense MPU-6050 at 500 deg/s and 16 g.
+ImuSheet mpu6050();
+/// Bosch BMI088 at 2000 deg/s and 24 g.
+ImuSheet bmi088();
+/// InvenSense ICM-20948 at 2000 deg/s and 16 g.
+ImuSheet icm20948();
+/// InvenSense ICM-42688-P at 2000 deg/s and 16 g.
+ImuSheet icm42688();
+/// Xsens MTi-3.
+ImuSheet mti3();
+/// STMicroelectronics LSM6DSO at 2000 deg/s and 16 g.
+ImuSheet lsm6dso();
+/// IMU inside an Ouster OS0 or OS1, in the default setting of 250 deg/s and 2 g.
+ImuSheet ouster_imu();
+/// IMU inside a Livox Mid-360; its ranges are assumed.
+ImuSheet mid360_imu();
+
+/// For programs that select a data sheet by name.
+std::span<const std::pair<const char*, ImuSheet (*)()>> imus();
+
+/// RoboSense RS-16.
+LidarSheet rs16();
+/// Livox Mid-40.
+LidarSheet mid40();
+/// Livox Mid-100.
+LidarSheet mid100();
+/// Velodyne VLP-16.
+LidarSheet vlp16();
+/// Hesai XT16.
+LidarSheet xt16();
+/// Hesai XT32.
+LidarSheet xt32();
+/// RoboSense Helios with 32 beams.
+LidarSheet helios32();
+/// Ouster OS0 with 64 rings.
+LidarSheet os0_64();
+/// Ouster OS0 with 128 rings.
+LidarSheet os0_128();
+/// Ouster OS1 with 64 rings.
+LidarSheet os1_64();
+/// Ouster OS1 with 128 rings.
+LidarSheet os1_128();
+/// Livox Mid-360.
+LidarSheet mid360();
+
+/// Returns the data sheets of all lidars with their names, for programs that select a data sheet by name.
+std::span<const std::pair<const char*, LidarSheet (*)()>> lidars();
+
+}  // namespace sheets
+
+}  // namespace tumble

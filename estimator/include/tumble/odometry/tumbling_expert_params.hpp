@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "tumble/attitude/detail/regime_stream.hpp"
+#include "tumble/common/parameters.hpp"
+#include "tumble/common/sample_clock.hpp"
+#include "tumble/mapping/detail/odometry_params.hpp"
+#include "tumble/odometry/tumbling_params.hpp"
+
+namespace tumble {
+
+/// SecondPassParams contains the parameters of the second pass over the first seconds of motion; see TumblingOdometry.
+struct SecondPassParams {
+  double after_s = 3.0;    ///< duration of motion before the second pass starts; 0: none
+  double lost_s = 0.4;     ///< duration of tracking failure that starts a second pass; 0: never
+  double lag_s = 0.5;      ///< lag of the rates of the second pass
+  std::size_t sweeps = 3;  ///< number of buffered sweeps per new sweep, at least two
+  /// Factor on the calibration's variance, because the second pass uses the readings again.
+  double inflation = 4.0;
+  double rest_s = 1.0;  ///< duration of the initial rest that is buffered
+
+  /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.after_s, {"after_s", "s", 0.0, 100.0,
+                      "after this time in motion, a second pass processes all data again with the estimated "
+                      "calibration; 0: no second pass"});
+    visit(p.lost_s,
+          {"lost_s", "s", 0.0, 100.0,
+           "time without a registered sweep after which the second pass starts early, once; 0: no early start"});
+    visit(p.lag_s, {"lag_s", "s", 0.0, 10.0, "second pass: age of a sample when its rate is reported"});
+    visit(p.sweeps, {"sweeps", "1", 2, 1000,
+                     "number of sweeps that the second pass processes per new sweep; a larger value finishes earlier "
+                     "with more load"});
+    visit(p.inflation,
+          {"inflation", "1", 1.0, 1e6, "factor on the variance of the calibration at the start of the second pass"});
+    visit(p.rest_s, {"rest_s", "s", 0.1, 100.0, "maximum duration of the initial rest that is stored"});
+  }
+};
+
+/// TumblingExpertParams contains the rarely changed parameters of TumblingOdometry. If TumblingParams contains the same
+/// parameter, TumblingOdometry uses the value in TumblingParams. The parameter gravity_m_s2 applies to the estimation
+/// of rates and of the map.
+struct TumblingExpertParams {
+  double gravity_m_s2 = 9.80665;
+  /// Maximum number of sweeps that wait for IMU samples, in addition to the sweeps within the lag. TumblingOdometry
+  /// also stores at most sweeps_max sweeps that wait for take(), and then drops the oldest sweep.
+  std::size_t sweeps_max = 16;
+  /// Parameters of the rate estimation. The default `uncalibrated` = 0.003 assumes the device's data sheet until
+  /// readings contradict the data sheet. The covariance of each rate includes the uncertainty of the calibration.
+  RegimeStream::Params rate = rate_defaults();
+  /// Parameters of the mapping. By default, gravity's direction and the saturation deficit (true rate minus clipped
+  /// reading) are unknowns of the registration.
+  OdometryParams mapping = mapping_defaults();
+  /// Parameters of SampleClock, which corrects IMU time stamps that a host computer assigned.
+  SampleClock::Params stamps;
+  SecondPassParams second_pass;
+  static OdometryParams mapping_defaults();
+  static RegimeStream::Params rate_defaults();
+  /// Returns the names of parameters that TumblingOdometry computes from other parameters. A name that ends in '*'
+  /// stands for all names with that prefix. TumblingOdometry ignores user values of computed parameters.
+  static std::span<const char* const> derived_fields();
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 0.0, 100.0, "strength of gravity", FieldRank::basic});
+    visit(p.sweeps_max, {"sweeps_max", "1", 1, 1e6, "maximum number of sweeps that wait for IMU data"});
+    visit.group("rate_", p.rate);
+    visit.group("mapping_", p.mapping);
+    visit.group("stamps_", p.stamps);
+    visit.group("second_pass_", p.second_pass);
+  }
+};
+
+}  // namespace tumble

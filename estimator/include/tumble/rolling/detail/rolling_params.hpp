@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <memory>
+#include <optional>
+
+#include "tumble/angular_velocity/detail/rest_detector.hpp"
+#include "tumble/common/parameters.hpp"
+#include "tumble/rolling/detail/rolling_floor_params.hpp"
+#include "tumble/rolling/detail/rolling_imu_params.hpp"
+#include "tumble/rolling/detail/rolling_model.hpp"
+
+namespace tumble {
+
+struct RollingExpertParams {
+  double node_s = 0.02;  ///< time between two measurement updates
+  /// averaging time of the readings; 0: no averaging
+  double reading_s = 4e-3;
+  /// The rest detector processes the mean reading of each node. With a rate limit of 0.02 instead of 0.0115 rad/s per
+  /// axis, the drift of a sphere that comes to rest would be 1.5 times as large.
+  RestDetector::Params rest = {
+      .rate_max_rad_s = 0.0115, .rate_spread_rad_s = 0.016, .force_spread_m_s2 = 0.15, .rest_s = 0.4, .memory_s = 0.1};
+  RollingPriorParams prior = {};
+  RollingImuNoiseParams noise = {};
+  RollingContactParams contact = {};
+  RollingRailParams rails = {};
+  RollingModeParams modes = {};
+  RollingGapParams gap = {};
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.node_s, {"node_s", "s", 1e-3, 0.1, "time between two measurement updates"});
+    visit(p.reading_s, {"reading_s", "s", 0.0, 0.1, "duration over which readings are averaged; 0: no averaging"});
+    visit.group("rest_", p.rest);
+    visit.group("", p.prior);
+    visit.group("", p.noise);
+    visit.group("", p.contact);
+    visit.group("", p.rails);
+    visit.group("", p.modes);
+    visit.group("", p.gap);
+  }
+};
+
+struct RollingParams {
+  double radius_m = 0.0;        ///< required; has no default
+  double radius_sigma_m = 0.0;  ///< 0: the radius is exact
+  Eigen::Vector3d lever_arm_m =
+      Eigen::Vector3d::Zero();  ///< lever arm from the sphere's centre to the IMU, in sensor axes
+  double lever_arm_sigma_m = 2e-3;
+  std::optional<Eigen::Quaterniond> q_WI_start = {};  ///< attitude at the first sample; empty: tilt from gravity
+  double gravity_m_s2 = 9.80665;
+  /// readings at or above the range are clipped, in addition to flagged readings
+  double gyro_range_rad_s = 1e3;
+  double accel_range_m_s2 = 1e5;
+  /// Calibration from an earlier run, which replaces the prior of the sensor errors, the lever arm and the radius. The
+  /// prior variances of the biases are added to the calibrated variances, because biases change at every switch-on.
+  std::shared_ptr<const RollingCalibration> calibration = {};
+  double speed_max_m_s = 2.5;  ///< maximum speed of the sphere; grip at a higher speed is rejected
+
+  using Expert = RollingExpertParams;
+  Expert expert = {};  ///< rarely changed parameters
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit(p.radius_m, {"radius_m", "m", 1e-12, 10.0, "radius of the sphere"});
+    visit(p.radius_sigma_m,
+          {"radius_sigma_m", "m", 0.0, 1e3, "prior standard deviation of the radius; 0: exact", FieldRank::basic});
+    visit(p.lever_arm_m, {"lever_arm_m", "m", -10.0, 10.0, "lever arm from the centre to the IMU, sensor axes"});
+    visit(p.lever_arm_sigma_m,
+          {"lever_arm_sigma_m", "m", 0.0, 1e3, "prior standard deviation of the lever arm", FieldRank::basic});
+    visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-12, 100.0, "strength of gravity"});
+    visit(p.gyro_range_rad_s, {"gyro_range_rad_s", "rad/s", 1e-12, 1e3,
+                               "measuring range of the gyro; readings at or above this value count as saturated"});
+    visit(p.accel_range_m_s2,
+          {"accel_range_m_s2", "m/s^2", 1e-12, 1e5,
+           "measuring range of the accelerometer; readings at or above this value count as saturated"});
+    visit(p.speed_max_m_s, {"speed_max_m_s", "m/s", 1e-12, 1e3,
+                            "maximum rolling speed; the filter rejects the hypothesis of grip above this speed"});
+    visit.group("", p.expert);
+  }
+};
+
+/// Throws InvalidParams if a parameter is out of bounds.
+void require_valid(const RollingParams& params);
+
+}  // namespace tumble

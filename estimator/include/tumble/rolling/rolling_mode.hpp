@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+
+namespace tumble {
+
+/// RollingMode is the mode of contact between the rolling sphere and the floor.
+enum class RollingMode : std::uint8_t {
+  grip,     ///< the contact point is at rest; the floor is level
+  slip,     ///< the contact point moves along the floor: the sphere spins too fast or slides
+  bump,     ///< the contact point also rises or falls: an obstacle, or flight
+  incline,  ///< the contact point is at rest; the floor has an estimated slope
+  rough,    ///< the contact point is at rest; the floor rises and falls about the level
+};
+inline constexpr int kRollingModes = 5;
+
+/// Returns true if the contact point may move along the floor in the contact mode `mode`.
+inline bool may_slip(RollingMode mode) {
+  return mode == RollingMode::slip || mode == RollingMode::bump;
+}
+
+}  // namespace tumble

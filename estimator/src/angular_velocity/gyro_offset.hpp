@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <span>
+
+#include "tumble/angular_velocity/detail/rest_detector.hpp"
+#include "tumble/common/imu.hpp"
+
+namespace tumble {
+
+/// Estimates a large zero offset of a gyro from the rest at the start of a run. Consumer gyros may have offsets above
+/// the mean rate that RestDetector accepts at rest by default (0.05 rad/s). GyroOffset mistakes a steady rotation about
+/// the vertical for an offset.
+class GyroOffset {
+ public:
+  static constexpr double kOffsetMin_rad_s = 0.05, kOffsetMax_rad_s = 0.15;
+  static constexpr double kRestEndMax_s = 2.0;  ///< latest end of the initial rest, after the first sample
+
+  struct State {
+    RestDetector::State rest;
+    std::optional<TimeNs> first_ns;  ///< time of the first sample
+    bool decided = false;
+  };
+
+  GyroOffset();
+
+  /// Returns the zero offset of the gyro once, when known. The sample must be finite. Cost: O(1), no allocation.
+  std::optional<Eigen::Vector3d> observe(const ImuSample& sample, State& state) const;
+  /// Returns the gyro's zero offset in a recording, or zero if the offset is small.
+  Eigen::Vector3d find(std::span<const ImuSample> samples) const;
+
+ private:
+  RestDetector rest_detector_;
+};
+
+}  // namespace tumble

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/mapping/further_readings.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "../common/dense.hpp"
+
+namespace tumble {
+
+namespace {
+
+constexpr double kRotation = 1e-5;  // tolerance of a rotation matrix that was converted to text or floats
+
+constexpr Status not_finite(const char* field) {
+  return {ErrorCode::non_finite, field, std::numeric_limits<double>::quiet_NaN(), 0.0};
+}
+
+Status check(const VelocityReading& reading) {
+  if (!reading.v_WI_I_m_s.allFinite()) return not_finite("v_WI_I_m_s");
+  if (!std::isfinite(reading.sigma_m_s)) return not_finite("sigma_m_s");
+  if (!(reading.sigma_m_s > 0.0)) return {ErrorCode::out_of_range, "sigma_m_s", reading.sigma_m_s, 0.0};
+  return {};
+}
+
+Status check(const MotionReading& reading) {
+  if (!reading.T_from_to.matrix().allFinite()) return not_finite("T_from_to");
+  if (!reading.covariance.allFinite()) return not_finite("covariance");
+  if (reading.to_ns <= reading.from_ns)
+    return {ErrorCode::time_order, "to_ns", double(reading.to_ns), double(reading.from_ns)};
+  const Eigen::Matrix3d R = reading.T_from_to.linear();
+  const double off = (R * R.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+  if (!(off <= kRotation) || !(R.determinant() > 0.0)) return {ErrorCode::out_of_range, "T_from_to", off, kRotation};
+  const double least = reading.covariance.diagonal().minCoeff();
+  if (!(least > 0.0) || !dense::Cholesky(reading.covariance).ok())
+    return {ErrorCode::out_of_range, "covariance", least, 0.0};
+  return {};
+}
+
+}  // namespace
+
+Status check_reading(const OdometerReading& reading) {
+  return std::visit([](const auto& kind) { return check(kind); }, reading);
+}
+
+TimeNs reading_start_ns(const OdometerReading& reading) {
+  const auto* const motion = std::get_if<MotionReading>(&reading);
+  return motion != nullptr ? motion->from_ns : std::get_if<VelocityReading>(&reading)->time_ns;
+}
+
+TimeNs reading_end_ns(const OdometerReading& reading) {
+  const auto* const motion = std::get_if<MotionReading>(&reading);
+  return motion != nullptr ? motion->to_ns : std::get_if<VelocityReading>(&reading)->time_ns;
+}
+
+PoseState PositionFrame::transform(const PoseState& in_W) const {
+  PoseState out = in_W;
+  const Eigen::Matrix3d R = T_PW.linear();
+  const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+  out.p_WA_m = T_PW * in_W.p_WA_m;
+  out.q_WA = (Eigen::Quaterniond(R) * in_W.q_WA).normalized();
+  out.v_WA_m_s = R * in_W.v_WA_m_s;
+  Eigen::Matrix<double, 6, 4> J = Eigen::Matrix<double, 6, 4>::Zero();
+  J.topLeftCorner<3, 3>().setIdentity();
+  J.col(3) << up.cross(R * (in_W.p_WA_m - reference_W_m)), up;
+  out.covariance = J * covariance * J.transpose();
+  const Eigen::Matrix3d attitude = R * in_W.covariance.bottomRightCorner<3, 3>() * R.transpose();
+  out.covariance.block<2, 2>(3, 3) += attitude.topLeftCorner<2, 2>();
+  return out;
+}
+
+}  // namespace tumble

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <deque>
+#include <span>
+#include <vector>
+
+#include "tumble/common/status.hpp"
+#include "tumble/odometry/detail/waiting_input.hpp"
+#include "tumble/odometry/tumbling_params.hpp"
+
+namespace tumble {
+
+/// Adds the points of further lidars to the sweeps of the first lidar. The class transforms each point to axes of the
+/// first lidar, and adds it to the sweep that contains the point's time. A copy of a FurtherLidars contains the
+/// complete state.
+class FurtherLidars {
+ public:
+  FurtherLidars() = default;
+  /// Throws InvalidParams for a pose, range or offset that is not finite, for swapped corners of a box, or for an
+  /// offset beyond a second. `T_IL_first` is the pose of the first lidar.
+  FurtherLidars(std::span<const FurtherLidar> lidars, const Eigen::Isometry3d& T_IL_first);
+
+  /// Lidars are counted from 1. See TumblingOdometry::add_sweep(). If more than `most` sweeps wait, the oldest sweep is
+  /// dropped.
+  Status add(std::size_t lidar, TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points, TimeNs latest_ns,
+             std::size_t most);
+  /// Adds the stored points whose times are within a sweep to the sweep, and drops earlier points. Cost: O(stored
+  /// points).
+  void merge_into(WaitingSweep& sweep);
+  /// Returns the number of unused points: the points arrived late, or the first lidar had no sweep at their time.
+  std::size_t unused_points() const { return unused_points_; }
+
+ private:
+  std::vector<FurtherLidar> lidars_;
+  Eigen::Isometry3d T_LI_first_ = Eigen::Isometry3d::Identity();
+  std::deque<WaitingSweep> waiting_;  ///< points in axes of the first lidar
+  std::size_t unused_points_ = 0;
+};
+
+}  // namespace tumble

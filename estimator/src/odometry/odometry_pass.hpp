@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "tumble/attitude/detail/regime_stream.hpp"
+#include "tumble/attitude/detail/rest_gravity.hpp"
+#include "tumble/mapping/detail/localisation.hpp"
+#include "tumble/mapping/detail/sweep_scale.hpp"
+#include "tumble/mapping/lidar_inertial_odometry.hpp"
+
+namespace tumble {
+
+/// Processes IMU samples and lidar sweeps once, in time order. RegimeStream estimates the rates. LidarInertialOdometry
+/// processes the samples and sweeps for which rates are available. TumblingOdometry runs one OdometryPass live, and
+/// SecondPass runs a second OdometryPass with the estimated calibration. A copy of an OdometryPass contains the
+/// complete state.
+class OdometryPass {
+ public:
+  /// first-in, first-out queue of samples that reuses its memory
+  struct Queue {
+    std::vector<ImuSample> samples;
+    std::size_t head = 0;
+    void push(const ImuSample& sample);
+    void drop_until(TimeNs time_ns);
+    std::span<const ImuSample> all() const { return std::span(samples).subspan(head); }
+  };
+
+  /// Throws InvalidParams if a parameter is out of bounds.
+  OdometryPass(const RegimeStream::Params& rate, const LidarInertialOdometry::Params& mapping);
+
+  /// The rate that becomes available is passed to the mapper.
+  Status add_imu(const ImuSample& sample);
+  /// See LidarInertialOdometry::set_start_pose().
+  void set_start_pose(const Eigen::Isometry3d& T_WI) { mapper_.set_start_pose(T_WI); }
+  /// See LidarInertialOdometry::use_map().
+  Status use_map(PriorMap map) { return mapper_.use_map(std::move(map)); }
+  void use_map_of(const OdometryPass& other) { mapper_.use_map_of(other.mapper_); }
+  /// Returns true if rates are available up to the time `end_ns` of the lidar's clock.
+  bool covers(TimeNs end_ns) const;
+  /// Returns the time, in the lidar's clock, up to which rates are available; empty before the first rate.
+  std::optional<TimeNs> covered_ns() const;
+  /// Returns the time stamp of the first sample at or after the lidar time `end_ns` whose rate is not yet available.
+  std::optional<TimeNs> covering_ns(TimeNs end_ns) const;
+  /// `reading` is the odometer reading within the sweep, if any.
+  Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points,
+                   const std::optional<OdometerReading>& reading, LidarInertialOdometry::SweepReport& report);
+  /// See TumblingOdometry::newest().
+  Status newest(PoseState& pose, Eigen::Matrix3d* velocity_covariance_I_m2_s2) const;
+
+  /// Converts a time from the lidar's clock to the IMU's clock.
+  TimeNs oldest_needed_ns(TimeNs lidar_ns) const;
+  /// Passes all rates up to the first sample at or after `time_ns` to the mapper, even if the lag is not full.
+  void flush_until(TimeNs time_ns);
+  /// Restarts the rate estimation with other parameters; the mapper continues.
+  void start_rate_estimation(const RegimeStream::Params& rate);
+  /// Replaces the map, the state that depends on the map, and the sample buffers by those of `other`. The rate
+  /// estimation continues after the last sample of `other`, which must not be used afterwards.
+  void adopt_map(OdometryPass&& other);
+
+  const RegimeStream& rates() const { return rates_; }
+  const RegimeStream::State& rate_state() const { return rate_state_; }
+  const LidarInertialOdometry& mapper() const { return mapper_; }
+  /// Returns `out_of_range` if the magnitude of the force at rest contradicts gravity.
+  Status check_force_at_rest() const { return rest_gravity_.magnitude_verdict(rest_gravity_state_); }
+  const SweepScale& sweep_scale() const { return scale_.scale(); }
+  const Localisation& localisation() const { return localisation_; }
+  const std::optional<RateState>& smoothed_rate() const { return smoothed_; }
+  std::size_t rejected_samples() const { return rejected_samples_; }
+
+ private:
+  void process_rate(const RateState& rate);
+
+  RegimeStream rates_;
+  RegimeStream::State rate_state_;
+  LidarInertialOdometry mapper_;
+  SweepScaleEstimator scale_;
+  Localisation localisation_;
+  double rate_sigma_max_rad_s_, time_offset_s_;
+  Queue pending_;  ///< samples whose rates are not yet available
+  std::optional<RateState> smoothed_;
+  std::optional<TimeNs> last_mapped_ns_;  ///< time of the last sample passed to the mapper
+  std::size_t rejected_samples_ = 0;
+  RestGravity rest_gravity_;
+  RestGravity::MagnitudeState rest_gravity_state_;
+};
+
+}  // namespace tumble

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <deque>
+#include <optional>
+
+#include "tumble/common/pose.hpp"
+#include "tumble/common/status.hpp"
+#include "tumble/mapping/further_readings.hpp"
+#include "tumble/mapping/sweep_report.hpp"
+
+namespace tumble {
+
+/// Estimates PositionFrame from position readings, causally, by a weighted least-squares fit of heading and translation
+/// to the last 64 distinct positions. Readings whose positions are within half a standard deviation of each other are
+/// averaged. The weight of earlier positions decreases with the drift of the poses. A chi-square test (99.9 %) rejects
+/// up to a fifth of the positions as outliers. The poses and the map in W do not change.
+class PositionAlignment {
+ public:
+  static constexpr std::size_t kReadingsMax = 1024, kPairsMax = 64;
+  struct Pair {
+    Eigen::Vector3d p_WA_m = Eigen::Vector3d::Zero(), p_PA_m = Eigen::Vector3d::Zero();
+    double variance_m2 = 0.0, path_m = 0.0, pose_variance_m2 = 0.0;
+  };
+
+  /// A reading waits until the sweep at its time is registered. Readings may arrive in any order. See
+  /// TumblingOdometry::add_position().
+  Status add(const PositionReading& reading, TimeNs done_ns, TimeNs latest_ns, std::size_t most);
+  /// Processes a registered sweep and the readings up to its end. Cost: O(64^2) per sweep with readings.
+  void observe(const SweepReport& report);
+  /// Discards the processed readings, because the world of the poses has changed.
+  void restart_fit();
+  /// Returns the frame at the end of the last sweep. The result is empty until the readings determine the heading
+  /// within 0.1 rad, and while the readings contradict each other.
+  const std::optional<PositionFrame>& frame() const { return frame_; }
+
+ private:
+  void add_pair(const PositionReading& reading, const PoseState& pose);
+  void fit();
+
+  std::deque<PositionReading> waiting_;  ///< in the order of their times
+  std::deque<Pair> pairs_;
+  std::optional<PositionFrame> frame_;
+  Eigen::Vector3d last_W_m_ = Eigen::Vector3d::Zero();  ///< position of the IMU at the end of the last sweep
+  double path_m_ = 0.0, pose_variance_m2_ = 0.0;        ///< length of the path; variance of the last pose, all axes
+  bool in_prior_map_ = false;
+};
+
+}  // namespace tumble

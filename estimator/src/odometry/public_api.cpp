@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// public_api.cpp forwards the functions of TumblingOdometry and RollingOdometry to their private implementations.
+#include <memory>
+#include <utility>
+
+#include "rolling_odometry_impl.hpp"
+#include "tumbling_odometry_impl.hpp"
+
+namespace tumble {
+
+template class Indirect<TumblingExpertParams>;
+template class Indirect<RollingOdometryExpertParams>;
+
+TumblingOdometry::TumblingOdometry(const Params& params) : impl_(std::make_unique<Impl>(params)) {}
+TumblingOdometry::TumblingOdometry(const TumblingOdometry&) = default;
+TumblingOdometry& TumblingOdometry::operator=(const TumblingOdometry&) = default;
+TumblingOdometry::TumblingOdometry(TumblingOdometry&&) noexcept = default;
+TumblingOdometry& TumblingOdometry::operator=(TumblingOdometry&&) noexcept = default;
+TumblingOdometry::~TumblingOdometry() = default;
+
+Status TumblingOdometry::use_map(PriorMap map) {
+  return impl_->pass_.use_map(std::move(map));
+}
+Status TumblingOdometry::add_imu(const ImuSample& sample) {
+  return impl_->add_imu(sample);
+}
+Status TumblingOdometry::add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points) {
+  return impl_->add_sweep(start_ns, end_ns, points);
+}
+Status TumblingOdometry::add_sweep(std::size_t lidar, TimeNs start_ns, TimeNs end_ns,
+                                   std::span<const LidarPoint> points) {
+  return impl_->add_sweep(lidar, start_ns, end_ns, points);
+}
+Status TumblingOdometry::add_velocity(const VelocityReading& velocity) {
+  return impl_->add_reading(velocity);
+}
+Status TumblingOdometry::add_motion(const MotionReading& motion) {
+  return impl_->add_reading(motion);
+}
+Status TumblingOdometry::add_position(const PositionReading& position) {
+  return impl_->add_position(position);
+}
+std::optional<TumblingOdometry::Sweep> TumblingOdometry::take() {
+  return impl_->take();
+}
+Status TumblingOdometry::finish(const SweepProgress& on_sweep) {
+  return impl_->finish(on_sweep);
+}
+void TumblingOdometry::reset() {
+  impl_->reset();
+}
+void TumblingOdometry::reset(const Eigen::Isometry3d& T_WI) {
+  impl_->reset(T_WI);
+}
+Status TumblingOdometry::newest(PoseState& pose, Eigen::Matrix3d* velocity_covariance_I_m2_s2) const {
+  return impl_->newest(pose, velocity_covariance_I_m2_s2);
+}
+SensorHealth TumblingOdometry::health() const {
+  return impl_->health();
+}
+const SweepScale& TumblingOdometry::sweep_scale() const {
+  return impl_->sweep_scale();
+}
+const std::optional<PositionFrame>& TumblingOdometry::position_frame() const {
+  return impl_->positions_.frame();
+}
+std::optional<TimeNs> TumblingOdometry::newest_ns() const {
+  return impl_->newest_ns_;
+}
+std::optional<RateState> TumblingOdometry::newest_rate() const {
+  return impl_->newest_rate();
+}
+const std::optional<RateState>& TumblingOdometry::smoothed_rate() const {
+  return impl_->pass_.smoothed_rate();
+}
+RigCalibration TumblingOdometry::rig() const {
+  return impl_->rig();
+}
+const SaturationLevels& TumblingOdometry::rails() const {
+  return impl_->rails();
+}
+std::size_t TumblingOdometry::restart_count() const {
+  return impl_->restart_count_;
+}
+std::size_t TumblingOdometry::rejected_readings() const {
+  return impl_->outlier_filter_state_.rejected;
+}
+bool TumblingOdometry::second_pass_applied() const {
+  return impl_->second_pass_.applied();
+}
+std::size_t TumblingOdometry::rejected_samples() const {
+  return impl_->pass_.rejected_samples();
+}
+std::size_t TumblingOdometry::dropped_sweeps() const {
+  return impl_->dropped_sweeps_;
+}
+std::size_t TumblingOdometry::early_sweeps() const {
+  return impl_->early_sweeps_;
+}
+std::size_t TumblingOdometry::unused_odometer_readings() const {
+  return impl_->readings_.spanning_two_sweeps();
+}
+std::size_t TumblingOdometry::unused_points() const {
+  return impl_->further_lidars_.unused_points();
+}
+std::optional<double> TumblingOdometry::estimated_jitter_s() const {
+  return impl_->estimated_jitter_s();
+}
+const LidarInertialOdometry& TumblingOdometry::mapper() const {
+  return impl_->mapper();
+}
+const RecordingEstimate* TumblingOdometry::recording() const {
+  return impl_->whole_.get();
+}
+std::vector<std::byte> TumblingOdometry::save() const {
+  return impl_->save();
+}
+Status TumblingOdometry::load(std::span<const std::byte> bytes, std::optional<PoseState>* last_pose) {
+  return impl_->load(bytes, last_pose);
+}
+
+RollingOdometry::RollingOdometry(const Params& params) : impl_(std::make_unique<Impl>(params)) {}
+RollingOdometry::RollingOdometry(const RollingOdometry&) = default;
+RollingOdometry& RollingOdometry::operator=(const RollingOdometry&) = default;
+RollingOdometry::RollingOdometry(RollingOdometry&&) noexcept = default;
+RollingOdometry& RollingOdometry::operator=(RollingOdometry&&) noexcept = default;
+RollingOdometry::~RollingOdometry() = default;
+
+Status RollingOdometry::add_imus(std::span<const ImuSample> samples) {
+  return impl_->add_imus(samples);
+}
+Status RollingOdometry::add_imu(std::size_t unit, const ImuSample& sample) {
+  return impl_->add_imu(unit, sample);
+}
+std::optional<RollingOdometry::Pose> RollingOdometry::newest() const {
+  return impl_->newest();
+}
+std::optional<RollingOdometry::Pose> RollingOdometry::take() {
+  return impl_->take();
+}
+Status RollingOdometry::finish() {
+  return impl_->finish();
+}
+void RollingOdometry::reset() {
+  impl_->reset();
+}
+void RollingOdometry::reset(const Eigen::Isometry3d& T_WG) {
+  impl_->reset(T_WG);
+}
+SensorHealth RollingOdometry::health() const {
+  return impl_->health();
+}
+const MergedFindings* RollingOdometry::recording() const {
+  return impl_->whole_.get();
+}
+RollingOdometry::Calibration RollingOdometry::calibration() const {
+  return impl_->calibration();
+}
+std::int64_t RollingOdometry::bridged_gaps() const {
+  return impl_->state_->live.gaps;
+}
+double RollingOdometry::longest_gap_s() const {
+  return impl_->state_->live.gap_longest_s;
+}
+bool RollingOdometry::started_in_motion() const {
+  return impl_->state_->live.started_in_motion;
+}
+const ImuMergeState& RollingOdometry::units() const {
+  return *impl_->imu_merge_state_;
+}
+std::size_t RollingOdometry::rejected_readings() const {
+  return impl_->rejected_readings();
+}
+std::size_t RollingOdometry::restart_count() const {
+  return impl_->restart_count_;
+}
+std::optional<double> RollingOdometry::estimated_jitter_s() const {
+  return impl_->estimated_jitter_s();
+}
+std::vector<std::byte> RollingOdometry::save() const {
+  return impl_->save();
+}
+Status RollingOdometry::load(std::span<const std::byte> bytes, std::optional<PoseState>* last_pose) {
+  return impl_->load(bytes, last_pose);
+}
+
+}  // namespace tumble

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "rolling_restart.hpp"
+#include "stamp_order.hpp"
+#include "tumble/angular_velocity/detail/frozen_axes.hpp"
+#include "tumble/attitude/detail/imu_merge.hpp"
+#include "tumble/common/detail/outlier_filter.hpp"
+#include "tumble/common/sample_clock.hpp"
+#include "tumble/odometry/detail/imu_findings.hpp"
+#include "tumble/odometry/rolling_expert_params.hpp"
+#include "tumble/odometry/rolling_odometry.hpp"
+#include "tumble/rolling/detail/rolling_smoother.hpp"
+#include "unit_alignment.hpp"
+#include "unit_rails.hpp"
+
+namespace tumble {
+
+/// Impl contains the state of RollingOdometry. The functions with names of the public API are documented there.
+struct RollingOdometry::Impl {
+  using Frozen = std::array<FrozenAxes::State, ImuMerge::kImus>;
+  using Outliers = std::array<OutlierFilter::State, ImuMerge::kImus>;
+
+  explicit Impl(const Params& params);
+  Impl(const Params& params, const ImuMerge::Params& merged);
+
+  Status add_imus(std::span<const ImuSample> samples);
+  Status add_imu(std::size_t unit, const ImuSample& sample);
+  std::optional<Pose> newest() const;
+  std::optional<Pose> take();
+  Status finish();
+  void reset();
+  void reset(const Eigen::Isometry3d& T_WG);
+  SensorHealth health() const;
+  Calibration calibration() const;
+  std::size_t rejected_readings() const;
+  std::optional<double> estimated_jitter_s() const;
+  std::vector<std::byte> save() const;
+  Status load(std::span<const std::byte> bytes, std::optional<PoseState>* last_pose);
+
+  std::vector<std::byte> save_at(const std::optional<PoseState>& pose) const;
+  void restart_at_newest(double gap_s);
+  void end_run();
+  void start_run();
+  void initialise_pose();
+  RollingEstimate transform_to_world(RollingEstimate estimate) const;
+  Status add_delayed_samples(std::span<const ImuSample> next);
+  Status add_inliers(std::span<const ImuSample> samples);
+  Status process_accepted_sample(const ImuSample& merged);
+  Status add_aligned(bool ended);
+  Status record(std::size_t unit, ImuSample sample);
+  Status finish_whole_recording();
+  bool is_whole() const { return params_.lag_s >= kWholeRecording; }
+  Status exclude_frozen(const Frozen& frozen, std::span<ImuSample> samples) const;
+  void add_frozen(const Frozen& frozen, SensorHealth& health) const;
+
+  Params params_;
+  StampOrder stamp_order_;
+  StampOrder::State stamp_order_state_;
+  SampleClock sample_clock_;
+  SampleClock::State sample_clock_state_;  ///< clock state after the last accepted sample
+  ImuMerge imu_merge_;
+  RollingSmoother smoother_;
+  UnitRails rails_;
+  UnitAlignment unit_alignment_;
+  UnitAlignment::State unit_alignment_state_;
+  std::array<std::vector<ImuSample>, ImuMerge::kImus> recorded_;  ///< readings of each IMU, with kWholeRecording
+  /// State of ImuMerge, and buffer for its next state.
+  Indirect<ImuMerge::State> imu_merge_state_, merge_state_buffer_;
+  Indirect<RollingSmoother::State> state_;
+  UnitRails::State rails_state_;
+  std::vector<OutlierFilter> outlier_filters_;  ///< one filter per IMU
+  Outliers outlier_filter_state_{};
+  std::optional<UnitRails::Samples> delayed_samples_;  ///< samples of all IMUs while OutlierFilter delays one IMU
+  std::vector<FrozenAxes> frozen_axis_detectors_;      ///< one detector per IMU
+  Frozen frozen_{};
+  MergedChecks checks_;                          ///< checks of the merged IMUs, with their states
+  std::shared_ptr<const MergedFindings> whole_;  ///< set by finish() with kWholeRecording
+  std::vector<RollingEstimate> results_;
+  std::size_t returned_count_ = 0;
+  std::optional<Eigen::Isometry3d> start_;    ///< pose passed to reset(), until the first sample
+  std::optional<Eigen::Isometry3d> T_W_run_;  ///< pose of the run's origin; empty: the world's origin
+  std::size_t restart_count_ = 0;
+  std::optional<RollingRestart> restart_;  ///< last restart; poses after a restart are uncertain
+  bool live_ = true, finished_ = false;
+};
+
+}  // namespace tumble

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "../angular_velocity/gyro_offset.hpp"
+#include "further_lidars.hpp"
+#include "odometry_pass.hpp"
+#include "position_alignment.hpp"
+#include "second_pass.hpp"
+#include "stamp_order.hpp"
+#include "tumble/attitude/detail/imu_plausibility.hpp"
+#include "tumble/common/detail/outlier_filter.hpp"
+#include "tumble/common/sample_clock.hpp"
+#include "tumble/odometry/detail/recording_estimate.hpp"
+#include "tumble/odometry/detail/waiting_input.hpp"
+#include "tumble/odometry/tumbling_expert_params.hpp"
+#include "tumble/odometry/tumbling_odometry.hpp"
+
+namespace tumble {
+
+/// Impl contains the state of TumblingOdometry. The functions with names of the public API are documented there.
+struct TumblingOdometry::Impl {
+  explicit Impl(const Params& params);
+
+  Status add_imu(const ImuSample& sample);
+  Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points);
+  Status add_sweep(std::size_t lidar, TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points);
+  Status add_reading(const OdometerReading& reading);
+  Status add_position(const PositionReading& position);
+  std::optional<Sweep> take();
+  Status finish(const SweepProgress& on_sweep);
+  void reset();
+  void reset(const Eigen::Isometry3d& T_WI);
+  Status newest(PoseState& pose, Eigen::Matrix3d* velocity_covariance_I_m2_s2 = nullptr) const;
+  SensorHealth health() const;
+  const SweepScale& sweep_scale() const;
+  std::optional<RateState> newest_rate() const { return pass_.rates().rate().newest(pass_.rate_state().rate); }
+  RigCalibration rig() const;
+  const SaturationLevels& rails() const;
+  std::optional<double> estimated_jitter_s() const;
+  const LidarInertialOdometry& mapper() const;
+  std::vector<std::byte> save() const;
+  Status load(std::span<const std::byte> bytes, std::optional<PoseState>* last_pose);
+
+  std::vector<std::byte> save_at(const std::optional<PoseState>& pose) const;
+  Status process_accepted_sample(const ImuSample& sample);
+  void register_sweep(TimeNs start_ns, TimeNs end_ns, std::vector<LidarPoint> points);
+  bool is_due(TimeNs end_ns) const;
+  std::size_t most_waiting() const;
+  void register_covered_sweeps();
+  void flush_all();
+  void restart_rates();
+  void restart_at_newest();
+  void restart_without_first_sample();
+  void restart_with_offset(const Eigen::Vector3d& offset_rad_s);
+  void set_gyro_offset(const Eigen::Vector3d& offset_rad_s);
+  const Eigen::Vector3d& gyro_offset_rad_s() const { return pass_.rates().params().rate.model.nominal.gyro_bias_rad_s; }
+  void start_rate_estimation();
+  bool is_whole() const { return params_.lag_s >= kWholeRecording; }
+  Status record(const ImuSample& sample);
+  Status finish_whole_recording(const SweepProgress& on_sweep);
+
+  Params params_;             ///< with the calibration of load()
+  StatedCalibration stated_;  ///< calibration that the caller stated
+  StampOrder stamp_order_;
+  StampOrder::State stamp_order_state_;
+  GyroOffset gyro_offset_;
+  GyroOffset::State gyro_offset_state_;
+  OutlierFilter outlier_filter_;
+  OutlierFilter::State outlier_filter_state_;
+  SampleClock sample_clock_;
+  SampleClock::State sample_clock_state_;  ///< state of the clock from accepted samples
+  ImuPlausibility plausibility_;
+  ImuPlausibility::State plausibility_state_;
+  OdometryPass pass_;
+  SecondPass second_pass_;
+  std::optional<TimeNs> newest_ns_;  ///< time of the newest accepted sample
+  std::optional<TimeNs>
+      last_registered_ns_;  ///< end of the last registered sweep; before the first, time of the first sample
+  std::size_t restart_count_ = 0, dropped_sweeps_ = 0, early_sweeps_ = 0;
+  std::deque<WaitingSweep> waiting_;
+  FurtherLidars further_lidars_;
+  WaitingReadings readings_;
+  PositionAlignment positions_;
+  std::deque<Sweep> results_;
+  std::optional<TimeNs> sweep_end_ns_;              ///< end of the last accepted sweep
+  std::vector<ImuSample> recorded_;                 ///< samples of a whole recording; the sweeps are in `waiting_`
+  std::shared_ptr<const RecordingEstimate> whole_;  ///< set by finish() with kWholeRecording
+  bool finished_ = false;
+};
+
+}  // namespace tumble

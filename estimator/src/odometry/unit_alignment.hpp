@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "tumble/attitude/detail/imu_merge.hpp"
+#include "tumble/common/imu.hpp"
+#include "tumble/common/status.hpp"
+
+namespace tumble {
+
+/// Resamples the readings of several IMUs, each with its own time stamps, to common times.
+///
+/// The common times are the time stamps of the reference IMU, which is initially the first IMU. If the reference IMU
+/// has no reading for kSilentMax_s while another IMU has, the next IMU with readings becomes the reference. The
+/// readings of the other IMUs are interpolated linearly (ImuInterpolation). An IMU without a reading within
+/// kSilentMax_s before and after a common time is absent at that time. The alignment is causal, and its output is at
+/// most kSilentMax_s late. A common time is complete when each IMU has a later reading or is silent for kSilentMax_s.
+///
+/// Cost: O(1) per reading. The stored readings cover kSilentMax_s.
+class UnitAlignment {
+ public:
+  static constexpr double kSilentMax_s = 0.05;
+  using Readings = std::array<ImuSample, ImuMerge::kImus>;
+
+  struct State {
+    /// readings of each IMU, starting with the last reading before the newest common time
+    std::array<std::vector<ImuSample>, ImuMerge::kImus> readings;
+    std::size_t reference = 0;
+    std::optional<TimeNs> first_ns;   ///< first reading of any IMU
+    std::optional<TimeNs> common_ns;  ///< newest common time
+  };
+
+  /// `units` is the number of IMUs, at most ImuMerge::kImus.
+  explicit UnitAlignment(std::size_t units) : units_(units) {}
+
+  /// Readings that are not finite are ignored. If the time stamp is not later than the IMU's last time stamp, push()
+  /// returns `time_order` and the state is unchanged.
+  Status push(std::size_t unit, const ImuSample& sample, State& state) const;
+
+  /// `out` receives the readings of all IMUs at the next common time; the rates of an absent IMU are NaN. Returns false
+  /// if the next common time is not yet complete. `ended` states that no more readings follow.
+  bool next(State& state, Readings& out, bool ended = false) const;
+
+ private:
+  void choose_reference(State& state) const;
+  bool is_complete(std::size_t unit, TimeNs time_ns, const State& state) const;
+
+  std::size_t units_;
+};
+
+}  // namespace tumble

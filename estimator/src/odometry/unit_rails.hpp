@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "tumble/angular_velocity/detail/streaming_clipping_finder.hpp"
+#include "tumble/attitude/detail/imu_merge.hpp"
+#include "tumble/common/imu.hpp"
+#include "tumble/common/status.hpp"
+#include "tumble/odometry/sensor_sheets.hpp"
+
+namespace tumble {
+
+/// Detects the saturation limits of several IMUs on one body from their readings, causally. Only confirmed saturation
+/// limits count, as defined by ConfirmedSaturation.
+///
+/// Earlier samples reveal the saturation limits, so the first two to ten samples at a limit are not flagged.
+class UnitRails {
+ public:
+  struct Unit {
+    StreamingClippingFinder::State rails;
+    std::optional<ImuSample> before;  ///< last finite sample
+  };
+  using State = std::array<Unit, ImuMerge::kImus>;
+  using Samples = std::array<ImuSample, ImuMerge::kImus>;
+
+  /// At most ImuMerge::kImus data sheets. Throws InvalidParams if a stated range is out of bounds.
+  explicit UnitRails(std::span<const ImuSheet> sheets);
+
+  /// Sets the saturation limits and planes of an IMU as known from an earlier run.
+  void start_from(std::size_t unit, const SaturationLevels& rails);
+
+  /// Returns the state before the first samples, with all memory that observe() needs: 110 KiB per IMU.
+  State start() const;
+
+  /// Copies `samples` (one per IMU) to `out` and flags saturated axes, without allocating memory. Samples that are not
+  /// finite are copied unchanged.
+  void flag_clipped(std::span<const ImuSample> samples, const State& state, Samples& out) const;
+
+  /// The samples must be unflagged. Cost: O(1), sometimes a search; no allocation.
+  void observe(std::span<const ImuSample> samples, State& state) const;
+
+ private:
+  struct UnitDetector {
+    StreamingClippingFinder watch;
+    ImuSheet sheet;
+  };
+  std::vector<UnitDetector> units_;
+};
+
+}  // namespace tumble

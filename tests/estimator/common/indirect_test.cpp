@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tumble/common/indirect.hpp"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <type_traits>
+#include <utility>
+
+namespace tumble {
+namespace {
+
+struct Later;
+/// Holder is a public struct, which is complete although `Later` is not.
+struct Holder {
+  Indirect<Later> value;
+};
+struct Later {
+  int number = 3;
+};
+
+TEST(Indirect, CopiesTheValue) {
+  Holder first;
+  EXPECT_EQ(first.value->number, 3);
+  Holder copy = first;
+  copy.value->number = 4;
+  EXPECT_EQ(first.value->number, 3);
+  first = copy;
+  copy.value->number = 5;
+  EXPECT_EQ(first.value->number, 4);
+  const Holder moved = std::move(first);
+  EXPECT_EQ(moved.value->number, 4);
+  first = moved;
+  EXPECT_EQ(first.value->number, 4) << "assignment to a moved-from object";
+  EXPECT_EQ(Indirect<Later>(std::make_unique<Later>(Later{6}))->number, 6);
+  static_assert(std::is_same_v<decltype(*moved.value), const Later&>, "a constant Indirect has a constant value");
+}
+
+}  // namespace
+}  // namespace tumble
