@@ -2,6 +2,7 @@
 // The test checks that RollingAdapter publishes the library's poses bit for bit.
 #include "tumble_ros/rolling_adapter.hpp"
 
+#include <Eigen/Cholesky>
 #include <gtest/gtest.h>
 
 #include "estimator/tests/live_readings.hpp"

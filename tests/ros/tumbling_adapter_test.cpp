@@ -4,6 +4,7 @@
 #include "tumble_ros/tumbling_adapter.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 
+#include <Eigen/Cholesky>
 #include <gtest/gtest.h>
 
 #include <algorithm>

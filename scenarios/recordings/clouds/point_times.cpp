@@ -85,7 +85,7 @@ bool fits(double span, const TimeUnit& unit, double period_ns, double least = kS
 std::string share_of(double span, const TimeUnit& unit, double period_ns) {
   std::string text = fmt::format("in {} this is ", name_of(unit));
   append_number(text, static_cast<float>(100.0 * span * unit.ns / period_ns));
-  return fmt::format("{} % of the period", text);
+  return fmt::format("{} % of the sweep period", text);
 }
 
 void require_no_other_unit(const TimeUnit& stated, double span, double period_ns, const std::string& field,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Compares the difference between map and world with closed forms: docs/maths/mapping.md, heading "Reported covariance".
+// Compares the difference between map and world with closed forms: docs/maths/mapping.md, "Reported covariance".
 #include "estimator/src/mapping/world_covariance.hpp"
 
 #include <gtest/gtest.h>

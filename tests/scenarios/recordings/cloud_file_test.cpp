@@ -92,7 +92,7 @@ TEST_F(CloudFile, SizesOfACompressedPcdAreHeldAgainstTheFile) {
                         kPcd + "binary_compressed\n" + bytes(compressed) + bytes(plain) + std::string(20, 'x'));
   };
   EXPECT_THAT(with(20, 0), HasSubstr("states 0 bytes of uncompressed points, but its header requires 24 bytes"));
-  EXPECT_THAT(with(20, 4000000000u), HasSubstr("must be 24"));
+  EXPECT_THAT(with(20, 4000000000u), HasSubstr("requires 24 bytes"));
   EXPECT_THAT(with(0, 24), HasSubstr("states 0 bytes of compressed points"));
   EXPECT_THAT(with(21, 24), HasSubstr("but only 20 bytes follow"));
 }
@@ -195,7 +195,7 @@ TEST_F(CloudFile, ColumnsOfABinFileMayBeNamed) {
     return fixture::complaint([&] { named(sweep_of<float>(5), columns); });
   };
   EXPECT_THAT(complaint("x,y,z,intensity"), "") << "as stated, whatever it looks like";
-  EXPECT_THAT(complaint("x,y,intensity"), HasSubstr("'x,y,intensity' lacks z"));
+  EXPECT_THAT(complaint("x,y,intensity"), HasSubstr("'x,y,intensity' lacks the column z"));
   EXPECT_THAT(complaint("x,y,z,x"), HasSubstr("name 'x' is empty or occurs twice"));
   EXPECT_THAT(complaint("x,y,z:f2"), HasSubstr("the type 'f2' must be f4, f8"));
   EXPECT_THAT(complaint("x:f8,y:f8,z:f8"), HasSubstr("has 12800 bytes, but the size must be a multiple of 24"));
@@ -217,7 +217,7 @@ TEST_F(CloudFile, WhatAHeaderPromisesIsHeldAgainstTheFile) {
   EXPECT_EQ(complaint_of("a.ply", ply("2") + std::string(24, 'x')), "");
   EXPECT_THAT(complaint_of("a.ply", ply("4000000000")),
               HasSubstr("a.ply:7: the file states 4000000000 points; at most 67108864"));
-  EXPECT_THAT(complaint_of("a.ply", ply("99999999999999999999")), HasSubstr("a.ply:3: count of vertex is"));
+  EXPECT_THAT(complaint_of("a.ply", ply("99999999999999999999")), HasSubstr("a.ply:3: the header states count of vertex as"));
   EXPECT_THAT(complaint_of("a.ply", ply("-1")),
               HasSubstr("a.ply:3: the header states count of vertex as '-1'; it must be a whole number"));
   EXPECT_THAT(complaint_of("a.ply", kAsciiPly + "1 2 3\n"), HasSubstr("the file may be truncated"));

@@ -341,7 +341,7 @@ TEST_P(Frames, ThatMakeNoSenseAreRefused) {
       {{hung("imu", "body", {0, 2000, 0})}, "the translation must be finite and at most 1 km"},
       {{hung("imu", "body", {0, 0, 0}, Eigen::Quaterniond(0, 0, 0, 0))},
        "the rotation quaternion has norm 0.000000; its norm must be 1"},
-      {{hung("imu", "body", {0, 0, 0}, Eigen::Quaterniond(kNan, 0, 0, 0))}, "the quaternion has norm nan"}};
+      {{hung("imu", "body", {0, 0, 0}, Eigen::Quaterniond(kNan, 0, 0, 0))}, "the rotation quaternion has norm nan"}};
   for (const auto& [frames, complaint] : cases) {
     std::filesystem::remove_all(path_);
     write_frames(*GetParam().writer(path_), frames);

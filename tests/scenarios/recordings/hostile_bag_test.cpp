@@ -92,7 +92,7 @@ TEST_F(Lz4Bag, DamageIsOneLine) {
     };
   };
   copy_ros1_bag(folder_ / "plain.bag", folder_ / "more.bag", states(-1));
-  EXPECT_THAT(fixture::complaint([&] { import_ros1_bag(folder_ / "more.bag", {}); }), HasSubstr("the LZ4 frame"));
+  EXPECT_THAT(fixture::complaint([&] { import_ros1_bag(folder_ / "more.bag", {}); }), HasSubstr("the decompressed LZ4 frame is longer"));
   copy_ros1_bag(folder_ / "plain.bag", folder_ / "fewer.bag", states(1));
   EXPECT_THAT(fixture::complaint([&] { import_ros1_bag(folder_ / "fewer.bag", {}); }),
               HasSubstr("bytes, but its stated size is"));
@@ -139,7 +139,7 @@ TEST_F(HostileBag, DamagedRos2BagsAreOneLine) {
     EXPECT_THAT(complaint(), HasSubstr("bag_0.db3: the file cannot be read as a ROS 2 bag")) << size;
   }
   std::filesystem::remove(bag / "bag_0.db3");
-  EXPECT_THAT(complaint(), HasSubstr("bag_0.db3: no such file"));
+  EXPECT_THAT(complaint(), HasSubstr("bag_0.db3: the file does not exist"));
   fixture::put(bag / "bag_0.db3", database);
   fixture::put(bag / "metadata.yaml", metadata.substr(0, metadata.size() / 2));
   EXPECT_THAT(complaint(), HasSubstr("metadata.yaml"));

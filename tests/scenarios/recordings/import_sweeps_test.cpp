@@ -268,7 +268,7 @@ TEST_F(ImportSweeps, AUnitThatCannotBeToldIsAskedFor) {
   EXPECT_THAT(complaint_of(), HasSubstr("the unit of point times is 'minutes'; it must be s, ms, us or ns"));
   source_.reading = {};
   source_.reading.time_field = "tiem";
-  EXPECT_THAT(complaint_of(), HasSubstr("no field 'tiem'; did you mean 'time'?"));
+  EXPECT_THAT(complaint_of(), HasSubstr("no field 'tiem' (did you mean 'time'?)"));
 }
 
 // some drivers count times from each packet of a sweep, such as `time_stamp` in ns

@@ -178,8 +178,8 @@ TEST_F(LoggerTable, LinesOfAnotherWidthAreSaidBeforeTheirTimes) {
 
 TEST_F(LoggerTable, WhatIsMissingOrThereTwiceIsSaid) {
   EXPECT_THAT(complaint_of(table("t,gx,gy,gz,ax,ay,temp", kSeconds, kRow)),
-              HasSubstr("log.csv:1: missing columns: accel_z"));
-  EXPECT_THAT(complaint_of(table("n,gx,gy,gz,ax,ay,az", kSeconds, kRow)), HasSubstr("missing columns: time"));
+              HasSubstr("log.csv:1: the table lacks these columns: accel_z"));
+  EXPECT_THAT(complaint_of(table("n,gx,gy,gz,ax,ay,az", kSeconds, kRow)), HasSubstr("lacks these columns: time"));
   EXPECT_THAT(complaint_of(table("t,gx,gy,gz,ax,ay,az,acc_x", kSeconds, kRow + ",1")),
               HasSubstr("two columns contain the accel's axis x: 'ax' and 'acc_x'"));
   EXPECT_THAT(complaint_of(table("t,time,gx,gy,gz,ax,ay,az", {"1,1", "2,2"}, kRow)),

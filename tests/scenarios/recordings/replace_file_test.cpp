@@ -199,7 +199,7 @@ TEST_F(ReplaceFile, AFolderIsFreshOrRefusedAndGoesWithoutBeingKept) {
     output.keep();
   }
   EXPECT_EQ(bytes_of(made / "whole"), "x");
-  EXPECT_THAT(fixture::complaint([&] { OutputFolder again(made); }), HasSubstr("the folder contains files"));
+  EXPECT_THAT(fixture::complaint([&] { OutputFolder again(made); }), HasSubstr("the output folder contains files"));
   EXPECT_EQ(bytes_of(made / "whole"), "x");
   EXPECT_THAT(fixture::complaint([&] { OutputFolder file(made / "whole"); }), HasSubstr("cannot be written"));
   std::filesystem::create_directory(folder_ / "empty");
