@@ -217,7 +217,8 @@ TEST_F(CloudFile, WhatAHeaderPromisesIsHeldAgainstTheFile) {
   EXPECT_EQ(complaint_of("a.ply", ply("2") + std::string(24, 'x')), "");
   EXPECT_THAT(complaint_of("a.ply", ply("4000000000")),
               HasSubstr("a.ply:7: the file states 4000000000 points; at most 67108864"));
-  EXPECT_THAT(complaint_of("a.ply", ply("99999999999999999999")), HasSubstr("a.ply:3: the header states count of vertex as"));
+  EXPECT_THAT(complaint_of("a.ply", ply("99999999999999999999")),
+              HasSubstr("a.ply:3: the header states count of vertex as"));
   EXPECT_THAT(complaint_of("a.ply", ply("-1")),
               HasSubstr("a.ply:3: the header states count of vertex as '-1'; it must be a whole number"));
   EXPECT_THAT(complaint_of("a.ply", kAsciiPly + "1 2 3\n"), HasSubstr("the file may be truncated"));

@@ -106,7 +106,8 @@ TEST_F(Mcap, AFolderOfRos2MayHoldIt) {
       "rosbag2_bagfile_information:\n  storage_identifier: mcap\n  relative_file_paths: [b_0.mcap, b_1.mcap]\n");
   EXPECT_EQ(import_ros2_bag(folder_ / "bag", {}).sensors.imus.at(0).time_ns.size(), 50u);
   std::filesystem::remove(folder_ / "bag" / "b_1.mcap");
-  EXPECT_THAT(fixture::complaint([&] { import_ros2_bag(folder_ / "bag", {}); }), HasSubstr("b_1.mcap: the file does not exist"));
+  EXPECT_THAT(fixture::complaint([&] { import_ros2_bag(folder_ / "bag", {}); }),
+              HasSubstr("b_1.mcap: the file does not exist"));
 }
 
 /// A Lie contains a false value and the expected message.
