@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 
 #include "tumble/angular_velocity/detail/interpolated_rates.hpp"
 #include "tumble/attitude/clipped_readings.hpp"
@@ -29,7 +30,11 @@ std::vector<ImuSample> interpolate_forces(std::span<const ImuSample> samples) {
 }  // namespace
 
 RegimeSmoother::RegimeSmoother(const Params& params)
-    : params_(params), rate_(params.rate), evidence_(params.evidence), hand_held_(params.hand_held) {
+    : params_(params),
+      rate_(params.rate),
+      evidence_(params.evidence),
+      hand_held_(params.hand_held),
+      spin_(params.spin) {
   require_valid_fields(params);
 }
 
@@ -45,6 +50,24 @@ Status RegimeSmoother::estimate(std::span<const ImuSample> samples,
 }
 
 void RegimeSmoother::join(std::span<const ImuSample> samples, std::vector<RateState>& rates, Report& report) const {
+  join_hand_held(samples, rates, report);
+  join_spin(samples, rates, report);
+}
+
+void RegimeSmoother::join_spin(std::span<const ImuSample> samples, std::vector<RateState>& rates,
+                               Report& report) const {
+  std::vector<std::uint8_t> saturated_axes(samples.size());
+  for (std::size_t k = 0; k < samples.size(); ++k)
+    saturated_axes[k] = static_cast<std::uint8_t>(rates[k].clipped_axes | report.rate.suspect_axes[k]);
+  const std::vector<SpinRate> spins = spin_.smooth(samples, saturated_axes);
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    rates[k] = spin_.combine(rates[k], spins[k]);
+    if (spins[k].saturated && spins[k].probability > 0.5) ++report.spin_samples;
+  }
+}
+
+void RegimeSmoother::join_hand_held(std::span<const ImuSample> samples, std::vector<RateState>& rates,
+                                    Report& report) const {
   const RigCalibration& rig = report.rate.calibration;
   const Eigen::Matrix3d lever_covariance = rig.covariance.topLeftCorner<3, 3>();
   std::vector<RegimeProbabilities> probabilities;

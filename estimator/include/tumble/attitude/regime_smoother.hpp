@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -8,14 +9,16 @@
 #include "tumble/attitude/clipped_readings.hpp"
 #include "tumble/attitude/hand_held_smoother.hpp"
 #include "tumble/attitude/regimes.hpp"
+#include "tumble/attitude/spin_tracker.hpp"
 #include "tumble/common/parameters.hpp"
 
 namespace tumble {
 
-/// Estimates the angular velocity of a body in flight, in contact or hand-held, over a whole recording. RateSmoother
-/// estimates the rates under the assumption of flight and contact. HandHeldSmoother estimates the rates again where the
-/// body was probably hand-held while the gyro clipped. RegimeSmoother combines the two rate estimates by the
-/// probability of hand-held motion (RegimeEvidence). RegimeStream is the causal form of RegimeSmoother.
+/// Estimates the angular velocity of a body in flight, in contact, hand-held or in a steady spin, over a whole
+/// recording. RateSmoother estimates the rates under the assumption of flight and contact. HandHeldSmoother estimates
+/// the rates again where the body was probably hand-held while the gyro clipped. RegimeSmoother combines the two rate
+/// estimates by the probability of hand-held motion (RegimeEvidence). SpinTracker then replaces the rate of a saturated
+/// axis during a steady spin. RegimeStream is the causal form of RegimeSmoother.
 ///
 /// All samples of a clipped segment use the smallest probability of hand-held motion within and near the segment.
 /// RegimeSmoother uses the smallest probability because a hand may release the body during the segment. Additional IMUs
@@ -26,6 +29,7 @@ class RegimeSmoother {
     RateSmoother::Params rate;
     RegimeEvidence::Params evidence;
     HandHeldSmoother::Params hand_held;
+    SpinTracker::Params spin;
     double hand_held_probability_min =
         0.02;                        ///< minimum probability of hand-held motion for which HandHeldSmoother runs
     double segment_gap_max_s = 0.1;  ///< clipped samples closer together than this form one segment
@@ -36,6 +40,7 @@ class RegimeSmoother {
       visit.group("", p.rate);
       visit.group("evidence_", p.evidence);
       visit.group("carried_", p.hand_held);
+      visit.group("spin_", p.spin);
       visit(p.hand_held_probability_min,
             {"hand_held_probability_min", "1", 0.0, 1.0,
              "the smoother for hand-held motion runs if the probability of hand-held motion exceeds this value"});
@@ -50,6 +55,7 @@ class RegimeSmoother {
     double hand_held_probability_max = 0.0;  ///< largest probability of hand-held motion in a clipped segment
     bool hand_held_smoother_ran = false;     ///< HandHeldSmoother succeeded; `hand_held` contains its report
     HandHeldSmoother::Report hand_held;
+    std::size_t spin_samples = 0;  ///< number of saturated samples that are probably in a steady spin
   };
 
   /// Throws InvalidParams if a parameter is out of bounds.
@@ -65,11 +71,13 @@ class RegimeSmoother {
   Status estimate(std::span<const ImuSample> samples, std::span<const std::vector<AuxiliaryReading>> auxiliary_imus,
                   std::vector<RateState>& rates, Report& report) const;
 
-  /// Combines `rates`, the result of RateSmoother, with the rates of HandHeldSmoother, in place. The argument
-  /// `report.rate` must contain the report of RateSmoother.
+  /// Combines `rates`, the result of RateSmoother, with the rates of HandHeldSmoother and SpinTracker, in place. The
+  /// argument `report.rate` must contain the report of RateSmoother.
   void join(std::span<const ImuSample> samples, std::vector<RateState>& rates, Report& report) const;
 
  private:
+  void join_hand_held(std::span<const ImuSample> samples, std::vector<RateState>& rates, Report& report) const;
+  void join_spin(std::span<const ImuSample> samples, std::vector<RateState>& rates, Report& report) const;
   bool estimate_hand_held(std::span<const ImuSample> samples, const ClippedReadings& known,
                           std::vector<RateState>& rates, HandHeldSmoother::Report& report) const;
   std::vector<double> segment_hand_held_probability(std::span<const RegimeProbabilities> probabilities,
@@ -79,6 +87,7 @@ class RegimeSmoother {
   RateSmoother rate_;
   RegimeEvidence evidence_;
   HandHeldSmoother hand_held_;
+  SpinTracker spin_;
 };
 
 }  // namespace tumble

@@ -8,14 +8,16 @@
 #include "tumble/angular_velocity/rate_stream.hpp"
 #include "tumble/attitude/hand_held_stream.hpp"
 #include "tumble/attitude/regimes.hpp"
+#include "tumble/attitude/spin_tracker.hpp"
 #include "tumble/common/parameters.hpp"
 
 namespace tumble {
 
-/// Estimates the angular velocity of a body in flight, in contact or hand-held, sample by sample. RateStream estimates
-/// the rates under the assumption of flight and contact, and detects the saturation limits. HandHeldStream estimates
-/// the rates again where the body is probably hand-held while the gyro clips. RegimeStream combines the two rate
-/// estimates by the probability of hand-held motion.
+/// Estimates the angular velocity of a body in flight, in contact, hand-held or in a steady spin, sample by sample.
+/// RateStream estimates the rates under the assumption of flight and contact, and detects the saturation limits.
+/// HandHeldStream estimates the rates again where the body is probably hand-held while the gyro clips. RegimeStream
+/// combines the two rate estimates by the probability of hand-held motion. SpinTracker then replaces the rate of a
+/// saturated axis during a steady spin, from the samples up to the reported sample.
 ///
 /// A filter over the reported samples estimates the probabilities of flight, contact and hand-held motion. The
 /// probabilities depend on earlier samples and, through the smoothed rate, on later samples within the lag. The weight
@@ -33,7 +35,8 @@ class RegimeStream {
   struct Params {
     RateStream::Params rate;
     RegimeEvidence::Params evidence;
-    HandHeldStream::Params hand_held;         ///< `rate` overrides `period_s` and `lag_s`
+    HandHeldStream::Params hand_held;  ///< `rate` overrides `period_s` and `lag_s`
+    SpinTracker::Params spin;
     double hand_held_probability_min = 0.02;  ///< minimum probability of hand-held motion for which HandHeldStream runs
     double segment_gap_max_s = 0.1;           ///< clipped samples closer together than this form one segment
 
@@ -43,6 +46,7 @@ class RegimeStream {
       visit.group("", p.rate);
       visit.group("evidence_", p.evidence);
       visit.group("carried_", p.hand_held);
+      visit.group("spin_", p.spin);
       visit(p.hand_held_probability_min,
             {"hand_held_probability_min", "1", 0.0, 1.0,
              "the smoother for hand-held motion runs if the probability of hand-held motion exceeds this value"});
@@ -58,6 +62,8 @@ class RegimeStream {
   struct State {
     RateStream::State rate;
     HandHeldStream::State hand_held;
+    SpinTracker::State spin;
+    std::size_t spin_samples = 0;  ///< number of reported saturated samples that are probably in a steady spin
     std::vector<ClipSigns> signs;  ///< clip signs of RateStream's window; buffer
     RegimeProbabilities probabilities{1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0};
     RegimeProbabilities sum{};         ///< sum over all reported samples
@@ -101,11 +107,14 @@ class RegimeStream {
                            std::size_t k, const RigCalibration& rig, bool unstable) const;
   void update_probabilities(const RateState& rate, State& state) const;
   double hand_held_weight(const RateState& rate, State& state) const;
+  void flush_hand_held(std::span<RateState> out, State& last) const;
+  SpinRate track_spin(const RateState& rate, State& state) const;
 
   Params params_;
   RateStream rate_;
   RegimeEvidence evidence_;
   HandHeldStream hand_held_;
+  SpinTracker spin_;
 };
 
 }  // namespace tumble
