@@ -26,10 +26,12 @@ struct Imported {
 enum class AccelUnit { m_s2, g };
 enum class GyroUnit { rad_s, deg_s };
 
-/// Reads the samples of one IMU from a text table. The separator is the comma, semicolon or tab, whichever is most
-/// frequent in the first line that is no comment. If this line has no comma, semicolon or tab, blanks are the
-/// separator. The table may have comments, a row of units below the names, and a separator at the end of each line
-/// (tables/logged_table.hpp). Numbers may be in scientific notation.
+/// Reads the IMU samples of a text table. If the rows of several IMUs alternate, the column with the numbers of the
+/// IMUs separates them (tables/logger_columns.hpp); the first IMU is the primary IMU. The positions of the others are
+/// estimated from the readings (tables/imu_position.hpp); an IMU of unknown position is left out, with a note. The
+/// separator is the comma, semicolon or tab, whichever is most frequent in the first line that is no comment. If this
+/// line has no comma, semicolon or tab, blanks are the separator. The table may have comments, a row of units below the
+/// names, and a separator at the end of each line (tables/logged_table.hpp). Numbers may be in scientific notation.
 ///
 /// The names in the header line identify the columns:
 /// - names that export_csv writes (each once, without other names),
@@ -45,10 +47,10 @@ enum class GyroUnit { rad_s, deg_s };
 /// 0): 0 stamp s, 1 stamp ns, 8-10 rate, 12-14 specific force. A non-empty `columns` names the columns:
 /// "time=t,gyro=gx,gy,gz,accel=ax,ay,az". Instead of a name, it may contain a position, from 0.
 ///
-/// `device` supplies properties that the file lacks: name, device, ranges, noise, T_BI. The period and the readings of
-/// `device` are replaced. Times count from the first stamp; the period is the median step. Stamps that are rounded to
-/// milliseconds are moved to the true period of the IMU, with a note (rounded_stamps.hpp). The size and the rotation of
-/// gravity confirm the units, with a note, if the motion is sufficient.
+/// `device` supplies properties that the file lacks: name, device, ranges, noise, T_BI of the primary IMU. The period
+/// and the readings of `device` are replaced. Times count from the first stamp; the period is the median step. Stamps
+/// that are rounded to milliseconds are moved to the true period of the IMU, with a note (rounded_stamps.hpp). The size
+/// and the rotation of gravity confirm the units, with a note, if the motion is sufficient.
 ///
 /// A line is skipped, with a note, if it has an invalid or non-finite number, or a wrong number of columns
 /// (left_out.hpp). A line is also skipped if its readings are all 0 or its stamp does not increase.
