@@ -45,23 +45,27 @@ Status RegimeSmoother::estimate(std::span<const ImuSample> samples,
   report = {};
   const Status status = rate_.estimate(samples, auxiliary_imus, rates, report.rate);
   if (!status.ok()) return status;
-  if (auxiliary_imus.empty()) join(samples, rates, report);
+  if (auxiliary_imus.empty()) {
+    join(samples, rates, report);
+  } else {
+    join_spin(samples, true, rates, report);
+  }
   return {};
 }
 
 void RegimeSmoother::join(std::span<const ImuSample> samples, std::vector<RateState>& rates, Report& report) const {
   join_hand_held(samples, rates, report);
-  join_spin(samples, rates, report);
+  join_spin(samples, false, rates, report);
 }
 
-void RegimeSmoother::join_spin(std::span<const ImuSample> samples, std::vector<RateState>& rates,
+void RegimeSmoother::join_spin(std::span<const ImuSample> samples, bool further_imus, std::vector<RateState>& rates,
                                Report& report) const {
   std::vector<std::uint8_t> saturated_axes(samples.size());
   for (std::size_t k = 0; k < samples.size(); ++k)
     saturated_axes[k] = static_cast<std::uint8_t>(rates[k].clipped_axes | report.rate.suspect_axes[k]);
   const std::vector<SpinRate> spins = spin_.smooth(samples, saturated_axes);
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    rates[k] = spin_.combine(rates[k], spins[k]);
+    rates[k] = spin_.combine(rates[k], spins[k], further_imus);
     if (spins[k].saturated && spins[k].probability > 0.5) ++report.spin_samples;
   }
 }

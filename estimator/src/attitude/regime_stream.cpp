@@ -110,9 +110,9 @@ Status RegimeStream::push(const ImuSample& sample, std::span<const AuxiliaryRead
     *out = mixed_rate(*out, *hand_held, share);
     ++state.combined_samples;
   }
-  if (out && auxiliary_imus.empty()) {
+  if (out) {
     const SpinRate spin = track_spin(*out, state);
-    *out = spin_.combine(*out, spin);
+    *out = spin_.combine(*out, spin, !params_.rate.model.auxiliary_imus.empty());
     if (spin.saturated && spin.probability > 0.5) ++state.spin_samples;
   }
   return {};
@@ -218,7 +218,10 @@ void RegimeStream::flush(const State& state, std::vector<RateState>& out) const 
   rate_.flush(state.rate, out);
   State last = state;
   flush_hand_held(std::span(out).subspan(first), last);
-  for (RateState& rate : std::span(out).subspan(first)) rate = spin_.combine(rate, track_spin(rate, last));
+  for (RateState& rate : std::span(out).subspan(first)) {
+    const SpinRate spin = track_spin(rate, last);
+    rate = spin_.combine(rate, spin, !params_.rate.model.auxiliary_imus.empty());
+  }
 }
 
 // Combines the last rates with the rates of HandHeldStream.

@@ -238,8 +238,9 @@ void SpinTracker::smooth(std::span<const Recorded> run, std::span<SpinRate> out)
   }
 }
 
-RateState SpinTracker::combine(const RateState& rate, const SpinRate& spin) const {
+RateState SpinTracker::combine(const RateState& rate, const SpinRate& spin, bool further_imus) const {
   if (spin.axis < 0 || !spin.saturated || spin.probability < params_.probability_min) return rate;
+  if (further_imus && rate.covariance_rad2_s2(spin.axis, spin.axis) < spin.variance_rad2_s2) return rate;
   RateState spinning = rate;
   spinning.w_WI_I_rad_s[spin.axis] = spin.rate_rad_s;
   spinning.covariance_rad2_s2.row(spin.axis).setZero();

@@ -152,6 +152,9 @@ TEST(SpinTracker, ChangesOnlySaturatedRates) {
   SpinRate improbable = spins.back();
   improbable.probability = 0.05;
   EXPECT_EQ(tracker.combine(rate, improbable).w_WI_I_rad_s, rate.w_WI_I_rad_s);
+  EXPECT_EQ(tracker.combine(rate, spins.back(), true).w_WI_I_rad_s.x(), spins.back().rate_rad_s);
+  rate.covariance_rad2_s2(0, 0) = 0.5 * spins.back().variance_rad2_s2;
+  EXPECT_EQ(tracker.combine(rate, spins.back(), true).w_WI_I_rad_s, rate.w_WI_I_rad_s);
 }
 
 TEST(SpinTracker, ContinuesFromACopyOfTheState) {

@@ -77,7 +77,8 @@ class RegimeSmoother {
 
  private:
   void join_hand_held(std::span<const ImuSample> samples, std::vector<RateState>& rates, Report& report) const;
-  void join_spin(std::span<const ImuSample> samples, std::vector<RateState>& rates, Report& report) const;
+  void join_spin(std::span<const ImuSample> samples, bool further_imus, std::vector<RateState>& rates,
+                 Report& report) const;
   bool estimate_hand_held(std::span<const ImuSample> samples, const ClippedReadings& known,
                           std::vector<RateState>& rates, HandHeldSmoother::Report& report) const;
   std::vector<double> segment_hand_held_probability(std::span<const RegimeProbabilities> probabilities,

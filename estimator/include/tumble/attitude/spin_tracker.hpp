@@ -94,8 +94,9 @@ class SpinTracker {
   std::vector<SpinRate> smooth(std::span<const ImuSample> samples, std::span<const std::uint8_t> saturated_axes) const;
 
   /// Combines a rate with the rate of the spin by the probability of a steady spin. The result equals `rate` if the
-  /// spin axis is unsaturated, or if the probability is below `probability_min`.
-  RateState combine(const RateState& rate, const SpinRate& spin) const;
+  /// spin axis is unsaturated, or if the probability is below `probability_min`. The result also equals `rate` if
+  /// further IMUs measured `rate` (`further_imus`) with a smaller variance.
+  RateState combine(const RateState& rate, const SpinRate& spin, bool further_imus = false) const;
 
  private:
   struct Prediction;
