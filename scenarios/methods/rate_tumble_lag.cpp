@@ -116,6 +116,7 @@ Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& paramet
   }
   estimate.health["regime_carried_joined"] = static_cast<double>(all.combined_samples);
   estimate.health["regime_carried_starts"] = static_cast<double>(all.starts);
+  if (all.spin_samples > 0) estimate.health["regime_spin_samples"] = static_cast<double>(all.spin_samples);
   estimate.health["carried_steps_skipped"] = static_cast<double>(all.hand_held.failures);
   estimate.health["carried_revolutions_open"] = static_cast<double>(all.hand_held.revolutions_ambiguous);
   if (estimate.status.ok() && found != nullptr) {

@@ -58,6 +58,7 @@ void report_rates(const RegimeSmoother::Report& report, Estimate& result) {
   health["regime_carried_share"] = report.probabilities.hand_held;
   health["regime_carried_clipped_max"] = report.hand_held_probability_max;
   health["regime_carried_asked"] = report.hand_held_smoother_ran ? 1.0 : 0.0;
+  if (report.spin_samples > 0) health["regime_spin_samples"] = static_cast<double>(report.spin_samples);
   if (!report.hand_held_smoother_ran) return;
   health["carried_iterations"] = report.hand_held.iterations;
   health["carried_converged"] = report.hand_held.converged ? 1.0 : 0.0;

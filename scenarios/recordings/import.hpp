@@ -25,6 +25,9 @@ enum class AccelUnit { m_s2, g };
 enum class GyroUnit { rad_s, deg_s };
 
 /// Reads the samples of one IMU from a text table with commas, semicolons, tabs or blanks (tables/logged_table.hpp).
+/// If the rows of several IMUs alternate, a column with the numbers of the IMUs separates the IMUs. The first IMU is
+/// the primary IMU. The positions of the further IMUs are estimated from the readings (tables/imu_position.hpp); an IMU
+/// of unknown position is left out, with a note.
 ///
 /// The header line identifies the columns by one of these naming schemes:
 /// - names that export_csv writes, or their short forms (sec nsec wx.. fx.. or ax..),
@@ -37,7 +40,7 @@ enum class GyroUnit { rad_s, deg_s };
 /// header, the columns have fixed positions from 0: 0 stamp s, 1 stamp ns, 8-10 rate, 12-14 specific force.
 ///
 /// @param columns   Names or positions (from 0) of the columns: "time=t,gyro=gx,gy,gz,accel=ax,ay,az"; may be empty.
-/// @param device    Properties that the file lacks: name, device, ranges, noise, T_BI.
+/// @param device    Properties that the file lacks: name, device, ranges, noise, T_BI of the primary IMU.
 /// @return          Times count from the first stamp; the period is the median step. Stamps rounded to milliseconds are
 /// moved to the true period of the IMU, with a note (rounded_stamps.hpp).
 ///

@@ -16,7 +16,7 @@ import numpy as np
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, sys.argv.pop(1))
-from reproducing import figures, page, rig, runs, sphere  # noqa: E402
+from reproducing import figures, page, rig, runs, saturation, sphere  # noqa: E402
 
 SCHEMA = """
 CREATE TABLE scores (scenario TEXT, seed INTEGER, kind TEXT, method TEXT, status TEXT, metric TEXT, value REAL);
@@ -52,6 +52,35 @@ class ReadingScores(Case):
         scores = self.scores((1, "slam", "published", "ok", "ate_m", 2.0))
         self.assertEqual(scores.of("slam/published", "ate_m"), {1: 2.0})
         self.assertEqual(scores.of(rig.MAPS[rig.TUNED], "ate_m"), {1: 0.5})
+
+
+class SaturatedSpin(unittest.TestCase):
+    PLACES = np.array([[0.001, -0.006, 0.0], [-0.001, -0.012, 0.0005]])
+
+    def imus(self, bend: float = 0.0) -> tuple[dict, np.ndarray]:
+        """Returns the readings of three IMUs on a body that spins about x beyond the saturation limit, and the true rate. `bend` moves the second IMU, m."""
+        rng = np.random.default_rng(3)
+        time = np.arange(48.0, 68.0, 0.01)
+        spin = 10.0 + 42.0 * np.clip((time - 48.0) / 18.0, 0.0, 1.0) + np.sin(time)
+        rate = np.stack([spin, 2.0 * np.cos(3.0 * time), 1.5 * np.sin(2.0 * time)], axis=1)
+        w = saturation.cross_matrices(rate)
+        rows = saturation.cross_matrices(np.gradient(rate, time, axis=0)) + w @ w
+        saturated = rate.copy()
+        saturated[:, 0] = np.minimum(spin, 34.87)
+        forces = [np.array([1.0, 2.0, 9.0])] + [np.array([1.1, 2.0, 8.8]) + rows @ place for place in self.PLACES]
+        late = (time > 60.0)[:, None]
+        forces[1] = forces[1] + bend * late * (rows @ np.array([0.0, 1.0, 0.0]))
+        return {name: saturation.Imu(time, saturated, force + rng.normal(0.0, 0.05, rate.shape)) for name, force in zip("ABC", forces)}, spin
+
+    def test_the_accelerometers_measure_the_rate(self):
+        imus, spin = self.imus()
+        truth = saturation.reference(imus)
+        self.assertLess(np.abs(np.array(truth.positions) - self.PLACES).max(), 1e-4)
+        self.assertGreater(truth.used.sum(), 600)
+        error = (truth.rate - spin)[truth.used]
+        self.assertGreater(np.mean(np.abs(error) < 3.0 * truth.sigma), 0.97)
+        # a body that bends gives two different rates
+        self.assertGreater(saturation.reference(self.imus(bend=0.0005)[0]).sigma, 3.0 * truth.sigma)
 
 
 class Numbers(unittest.TestCase):

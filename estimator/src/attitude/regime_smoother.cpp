@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 
 #include "tumble/angular_velocity/detail/interpolated_rates.hpp"
 #include "tumble/attitude/detail/clipped_readings.hpp"
@@ -27,7 +28,11 @@ std::vector<ImuSample> interpolate_forces(std::span<const ImuSample> samples) {
 }  // namespace
 
 RegimeSmoother::RegimeSmoother(const Params& params)
-    : params_(params), rate_(params.rate), evidence_(params.evidence), hand_held_(params.hand_held) {
+    : params_(params),
+      rate_(params.rate),
+      evidence_(params.evidence),
+      hand_held_(params.hand_held),
+      spin_(params.spin) {
   require_valid_fields(params);
 }
 
@@ -38,11 +43,33 @@ Status RegimeSmoother::estimate(std::span<const ImuSample> samples,
   report = {};
   const Status status = rate_.estimate(samples, auxiliary_imus, rates, report.rate);
   if (!status.ok()) return status;
-  if (auxiliary_imus.empty()) join(samples, rates, report);
+  if (auxiliary_imus.empty()) {
+    join(samples, rates, report);
+  } else {
+    join_spin(samples, true, rates, report);
+  }
   return {};
 }
 
 void RegimeSmoother::join(std::span<const ImuSample> samples, std::vector<RateState>& rates, Report& report) const {
+  join_hand_held(samples, rates, report);
+  join_spin(samples, false, rates, report);
+}
+
+void RegimeSmoother::join_spin(std::span<const ImuSample> samples, bool further_imus, std::vector<RateState>& rates,
+                               Report& report) const {
+  std::vector<std::uint8_t> saturated_axes(samples.size());
+  for (std::size_t k = 0; k < samples.size(); ++k)
+    saturated_axes[k] = static_cast<std::uint8_t>(rates[k].clipped_axes | report.rate.suspect_axes[k]);
+  const std::vector<SpinRate> spins = spin_.smooth(samples, saturated_axes);
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    rates[k] = spin_.combine(rates[k], spins[k], further_imus);
+    if (spins[k].saturated && spins[k].probability > 0.5) ++report.spin_samples;
+  }
+}
+
+void RegimeSmoother::join_hand_held(std::span<const ImuSample> samples, std::vector<RateState>& rates,
+                                    Report& report) const {
   const RigCalibration& rig = report.rate.calibration;
   const Eigen::Matrix3d lever_covariance = rig.covariance.topLeftCorner<3, 3>();
   std::vector<RegimeProbabilities> probabilities;

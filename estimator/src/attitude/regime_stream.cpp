@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 namespace tumble {
 
@@ -58,7 +59,7 @@ Eigen::Vector3d angular_acceleration(std::span<const RateStream::Knot> window, s
 }  // namespace
 
 RegimeStream::RegimeStream(const Params& params)
-    : params_(params), rate_(params.rate), evidence_(params.evidence), hand_held_(joined(params)) {
+    : params_(params), rate_(params.rate), evidence_(params.evidence), hand_held_(joined(params)), spin_(params.spin) {
   require_valid_fields(params);
 }
 
@@ -102,7 +103,19 @@ Status RegimeStream::push(const ImuSample& sample, std::span<const AuxiliaryRead
     *out = mixed_rate(*out, *hand_held, share);
     ++state.combined_samples;
   }
+  if (out) {
+    const SpinRate spin = track_spin(*out, state);
+    *out = spin_.combine(*out, spin, !params_.rate.model.auxiliary_imus.empty());
+    if (spin.saturated && spin.probability > 0.5) ++state.spin_samples;
+  }
   return {};
+}
+
+// Continues the estimate of the spin up to a reported sample.
+SpinRate RegimeStream::track_spin(const RateState& rate, State& state) const {
+  const RateObservation& observation = state.rate.window[index_of(rate, state)].observation;
+  const auto saturated = static_cast<std::uint8_t>(observation.unmeasured_axes() | observation.partly_saturated_axes());
+  return spin_.step(observation.sample, saturated, state.spin);
 }
 
 ClippedElements RegimeStream::update_clip_signs(State& state) const {
@@ -194,11 +207,20 @@ double RegimeStream::hand_held_weight(const RateState& rate, State& state) const
 void RegimeStream::flush(const State& state, std::vector<RateState>& out) const {
   const std::size_t first = out.size();
   rate_.flush(state.rate, out);
-  if (!state.hand_held_running || !(state.probabilities.hand_held > params_.hand_held_probability_min)) return;
-  std::vector<RateState> hand_held;
-  hand_held_.flush(state.hand_held, hand_held);
-  const std::size_t count = std::min(out.size() - first, hand_held.size());
   State last = state;
+  flush_hand_held(std::span(out).subspan(first), last);
+  for (RateState& rate : std::span(out).subspan(first)) {
+    const SpinRate spin = track_spin(rate, last);
+    rate = spin_.combine(rate, spin, !params_.rate.model.auxiliary_imus.empty());
+  }
+}
+
+// Combines the last rates with the rates of HandHeldStream.
+void RegimeStream::flush_hand_held(std::span<RateState> out, State& last) const {
+  if (!last.hand_held_running || !(last.probabilities.hand_held > params_.hand_held_probability_min)) return;
+  std::vector<RateState> hand_held;
+  hand_held_.flush(last.hand_held, hand_held);
+  const std::size_t count = std::min(out.size(), hand_held.size());
   for (std::size_t k = 0; k < count; ++k) {
     RateState& rate = out[out.size() - count + k];
     const RateState& other = hand_held[hand_held.size() - count + k];

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The test checks IMU tables as loggers and data sets write them: the names, units and times differ, and the readings
 // are the same.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+#include <cmath>
 #include <cstdint>
 #include <sstream>
+#include <tuple>
 
 #include "scenarios/recordings/fixture_recording.hpp"
 #include "scenarios/recordings/import.hpp"
@@ -241,20 +245,61 @@ TEST_F(LoggerTable, NumbersMayBeInAnyNotation) {
                                      "time=0,gyro=1,2,3,accel=4,5,6"));
 }
 
-TEST_F(LoggerTable, RowsOfSeveralImusAreOfTheFirst) {
+TEST_F(LoggerTable, AFurtherImuWithoutAKnownPositionIsLeftOut) {
   std::string text = "TimeUS,I,GyrX,GyrY,GyrZ,AccX,AccY,AccZ\n";
   for (const char* time : {"5000", "10000", "15000"})
     for (const char* id : {"0", "1"})
       text += std::string(time) + "," + id + (*id == '0' ? kRow : ",1,1,1,0,0,9.8") + "\n";
   const Imported imported = import(text);
   expect_the_readings(imported);
-  EXPECT_THAT(imported.notes,
-              Contains("column 'I' contains the numbers of several IMUs; the import reads the rows of IMU 0 and leaves "
-                       "out: 1 (3 rows)"));
+  EXPECT_EQ(imported.sensors.imus.size(), 1u);
+  EXPECT_THAT(imported.notes, Contains(HasSubstr("IMU 1 is left out: only 0 samples have a rate above 2.5 rad/s")));
   // a row counter is no number of an IMU
   std::string counted = "id,time,gx,gy,gz,ax,ay,az\n";
   for (int k = 0; k < 12; ++k) counted += std::to_string(k) + "," + std::to_string(0.005 * k) + kRow + "\n";
   EXPECT_EQ(import(counted).sensors.imus[0].time_ns.size(), 12u);
+}
+
+/// Returns a table of two IMUs on one body that turns about changing axes. The second IMU is at `arm` from the first
+/// one, its rates are multiplied by `scale`, and the times start at `from_s`.
+std::string two_imus(const Eigen::Vector3d& arm, double scale, double from_s) {
+  std::string text = "time,id,gx,gy,gz,ax,ay,az\n";
+  for (int k = 0; k < 1000; ++k) {
+    const double t = 0.01 * k;
+    const Eigen::Vector3d w(6.0 * std::sin(0.7 * t), 5.0 * std::cos(1.1 * t), 4.0 * std::sin(1.3 * t + 0.4));
+    const Eigen::Vector3d a(4.2 * std::cos(0.7 * t), -5.5 * std::sin(1.1 * t), 5.2 * std::cos(1.3 * t + 0.4));
+    const Eigen::Vector3d first(9.0 * std::cos(0.2 * t), 9.0 * std::sin(0.2 * t), 3.0);
+    const Eigen::Vector3d second = first + a.cross(arm) + w.cross(w.cross(arm)) + Eigen::Vector3d(0.1, -0.2, 0.05);
+    for (const auto& [id, rate, force] :
+         {std::tuple{"A", w, first}, std::tuple{"B", Eigen::Vector3d(scale * w), second}})
+      text += fmt::format("{:.6f},{},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f},{:.9f}\n", from_s + t, id, rate.x(), rate.y(),
+                          rate.z(), force.x(), force.y(), force.z());
+  }
+  return text;
+}
+
+TEST_F(LoggerTable, AFurtherImuIsPlacedByTheRotation) {
+  const Eigen::Vector3d arm(0.03, -0.02, 0.05);
+  const Imported imported = import(two_imus(arm, 1.0, 2.0));
+  ASSERT_EQ(imported.sensors.imus.size(), 2u);
+  EXPECT_EQ(imported.sensors.imus[0].time_ns, imported.sensors.imus[1].time_ns);
+  // the central difference of the rate has an error of 1e-4 rad/s^2
+  EXPECT_LT((imported.sensors.imus[1].T_BI.translation() - imported.sensors.imus[0].T_BI.translation() - arm).norm(),
+            1e-4);
+  EXPECT_THAT(imported.notes, Contains(HasSubstr("IMU B is at 0.03 -0.02 0.05 m from IMU A")));
+  // negative control: a gyro that disagrees belongs to other axes
+  const Imported other = import(two_imus(arm, -1.0, 2.0));
+  EXPECT_EQ(other.sensors.imus.size(), 1u);
+  EXPECT_THAT(other.notes, Contains(HasSubstr("IMU B is left out: the rates of both gyros differ by 200 % (median)")));
+}
+
+// loggers of rockets count the time from lift-off
+TEST_F(LoggerTable, TimesMayBeNegative) {
+  const Imported imported = import(two_imus({0.03, -0.02, 0.05}, 1.0, -0.35));
+  EXPECT_EQ(imported.info.origin_ns, -350'000'000);
+  EXPECT_EQ(imported.sensors.imus[0].time_ns.front(), 0);
+  EXPECT_EQ(imported.sensors.imus[0].time_ns.back(), 9'990'000'000);
+  EXPECT_THAT(imported.notes, Not(Contains(HasSubstr("wrong time stamp"))));
 }
 
 TEST_F(LoggerTable, TheUserNamesColumns) {

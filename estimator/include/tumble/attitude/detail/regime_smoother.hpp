@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "tumble/attitude/detail/clipped_readings.hpp"
 #include "tumble/attitude/detail/hand_held_smoother.hpp"
 #include "tumble/attitude/detail/regimes.hpp"
+#include "tumble/attitude/detail/spin_tracker.hpp"
 #include "tumble/common/parameters.hpp"
 
 namespace tumble {
@@ -16,12 +18,14 @@ namespace tumble {
 /// estimates the rates for flight and contact. Where the body was probably hand-held while the gyro clipped,
 /// HandHeldSmoother estimates the rates for hand-held motion. RegimeSmoother combines the rates of both smoothers by
 /// the probability of hand-held motion (RegimeEvidence), which is constant during each saturated interval.
+/// SpinTracker replaces the rate of a saturated axis during a steady spin.
 class RegimeSmoother {
  public:
   struct Params {
     RateSmoother::Params rate;
     RegimeEvidence::Params evidence;
     HandHeldSmoother::Params hand_held;
+    SpinTracker::Params spin;
     double hand_held_probability_min =
         0.02;                        ///< minimum probability of hand-held motion for which HandHeldSmoother runs
     double segment_gap_max_s = 0.1;  ///< clipped samples closer together than this form one segment
@@ -31,6 +35,7 @@ class RegimeSmoother {
       visit.group("", p.rate);
       visit.group("evidence_", p.evidence);
       visit.group("carried_", p.hand_held);
+      visit.group("spin_", p.spin);
       visit(p.hand_held_probability_min, {"hand_held_probability_min", "1", 0.0, 1.0,
                                           "minimum probability of hand-held motion for which HandHeldSmoother runs"});
       visit(p.segment_gap_max_s,
@@ -45,6 +50,7 @@ class RegimeSmoother {
     double hand_held_probability_max = 0.0;  ///< largest probability of hand-held motion in a clipped segment
     bool hand_held_smoother_ran = false;     ///< HandHeldSmoother succeeded; `hand_held` contains its report
     HandHeldSmoother::Report hand_held;
+    std::size_t spin_samples = 0;  ///< number of saturated samples that are probably in a steady spin
   };
 
   /// Throws InvalidParams if a parameter is out of bounds.
@@ -60,11 +66,14 @@ class RegimeSmoother {
   Status estimate(std::span<const ImuSample> samples, std::span<const std::vector<AuxiliaryReading>> auxiliary_imus,
                   std::vector<RateState>& rates, Report& report) const;
 
-  /// Combines the rates of RateSmoother, given in `rates`, with the rates of HandHeldSmoother. The caller must set
-  /// `report.rate` to the report of RateSmoother before calling join().
+  /// Combines the rates of RateSmoother, given in `rates`, with the rates of HandHeldSmoother and SpinTracker. The
+  /// caller must set `report.rate` to the report of RateSmoother before calling join().
   void join(std::span<const ImuSample> samples, std::vector<RateState>& rates, Report& report) const;
 
  private:
+  void join_hand_held(std::span<const ImuSample> samples, std::vector<RateState>& rates, Report& report) const;
+  void join_spin(std::span<const ImuSample> samples, bool further_imus, std::vector<RateState>& rates,
+                 Report& report) const;
   bool estimate_hand_held(std::span<const ImuSample> samples, const ClippedReadings& known,
                           std::vector<RateState>& rates, HandHeldSmoother::Report& report) const;
   std::vector<double> segment_hand_held_probability(std::span<const RegimeProbabilities> probabilities,
@@ -74,6 +83,7 @@ class RegimeSmoother {
   RateSmoother rate_;
   RegimeEvidence evidence_;
   HandHeldSmoother hand_held_;
+  SpinTracker spin_;
 };
 
 }  // namespace tumble

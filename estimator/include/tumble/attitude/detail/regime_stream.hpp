@@ -8,6 +8,7 @@
 #include "tumble/angular_velocity/rate_stream.hpp"
 #include "tumble/attitude/detail/hand_held_stream.hpp"
 #include "tumble/attitude/detail/regimes.hpp"
+#include "tumble/attitude/detail/spin_tracker.hpp"
 #include "tumble/common/parameters.hpp"
 
 namespace tumble {
@@ -17,6 +18,7 @@ namespace tumble {
 /// hand-held while the gyro clips, HandHeldStream estimates the rates for hand-held motion. RegimeStream combines the
 /// rates of RateStream and HandHeldStream by the probability of hand-held motion. An unclipped sample always has the
 /// rate of RateStream.
+/// SpinTracker replaces the rate of a saturated axis during a steady spin.
 ///
 /// HandHeldStream runs only while the probability of hand-held motion is at least `hand_held_probability_min`.
 class RegimeStream {
@@ -24,7 +26,8 @@ class RegimeStream {
   struct Params {
     RateStream::Params rate;
     RegimeEvidence::Params evidence;
-    HandHeldStream::Params hand_held;         ///< `rate` overrides `period_s` and `lag_s`
+    HandHeldStream::Params hand_held;  ///< `rate` overrides `period_s` and `lag_s`
+    SpinTracker::Params spin;
     double hand_held_probability_min = 0.02;  ///< minimum probability of hand-held motion for which HandHeldStream runs
     double segment_gap_max_s = 0.1;           ///< clipped samples closer together than this form one segment
 
@@ -33,6 +36,7 @@ class RegimeStream {
       visit.group("", p.rate);
       visit.group("evidence_", p.evidence);
       visit.group("carried_", p.hand_held);
+      visit.group("spin_", p.spin);
       visit(p.hand_held_probability_min, {"hand_held_probability_min", "1", 0.0, 1.0,
                                           "minimum probability of hand-held motion for which HandHeldStream runs"});
       visit(p.segment_gap_max_s,
@@ -47,6 +51,8 @@ class RegimeStream {
   struct State {
     RateStream::State rate;
     HandHeldStream::State hand_held;
+    SpinTracker::State spin;
+    std::size_t spin_samples = 0;  ///< number of reported saturated samples that are probably in a steady spin
     std::vector<ClipSigns> signs;  ///< clip signs of RateStream's window; buffer
     RegimeProbabilities probabilities{1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0};
     RegimeProbabilities sum{};         ///< sum over all reported samples
@@ -89,11 +95,14 @@ class RegimeStream {
                            std::size_t k, const RigCalibration& rig, bool unstable) const;
   void update_probabilities(const RateState& rate, State& state) const;
   double hand_held_weight(const RateState& rate, State& state) const;
+  void flush_hand_held(std::span<RateState> out, State& last) const;
+  SpinRate track_spin(const RateState& rate, State& state) const;
 
   Params params_;
   RateStream rate_;
   RegimeEvidence evidence_;
   HandHeldStream hand_held_;
+  SpinTracker spin_;
 };
 
 }  // namespace tumble

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "tumble/angular_velocity/rate_state.hpp"
+#include "tumble/common/imu.hpp"
+#include "tumble/common/parameters.hpp"
+
+namespace tumble {
+
+/// SpinRate is the rate about the spin axis at one sample.
+struct SpinRate {
+  int axis = -1;  ///< gyro axis of the spin; -1: the body does not spin
+  double rate_rad_s = 0.0, variance_rad2_s2 = 0.0;
+  double probability = 0.0;  ///< probability of a steady spin
+  bool saturated = false;    ///< the gyro axis of the spin is saturated or possibly saturated
+};
+
+/// Estimates the rate of a steady spin from the two gyro axes across the spin axis, also while the spin axis is
+/// saturated.
+///
+/// The axis of a spinning body that is long or has a steady load turns slowly in the world. The rate across the spin
+/// axis is then the sum of a part that is constant in the world and a part that is constant in the body. The gyro
+/// measures the first part modulated at the frequency of the spin: carried.md (C45). SpinTracker estimates both parts
+/// and the rate of the spin with an extended Kalman filter. The estimate needs no lever arm and no accelerometer, so
+/// drag, thrust and vibration of the accelerometer do not affect the estimate.
+///
+/// A second filter assumes that the rate across the spin axis changes independently of the spin. The likelihood ratio
+/// of both filters determines the probability of a steady spin. Only samples with an unsaturated spin axis increase the
+/// probability, because any modulation agrees with some rate beyond the saturation limit. SpinTracker assumes that the
+/// spin axis is close to one gyro axis, and that the body turns by less than half a revolution between two samples.
+/// Cost: O(1) per sample.
+class SpinTracker {
+ public:
+  struct Params {
+    double rate_min_rad_s = 6.0;
+    double jerk_rad_s3_sqrts = 50.0;
+    double walk_rad_s_sqrts = 1.0;
+    double vibration_rad_s = 0.3;
+    double memory_s = 0.2;
+    double changes_hz = 0.02;
+    double probability_min = 0.1;
+
+    /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
+    template <class Self, class Visitor>
+    static void fields(Self& p, Visitor& visit) {
+      visit(p.rate_min_rad_s, {"rate_min_rad_s", "rad/s", 0.1, 1e3, "minimum rate of a steady spin"});
+      visit(p.jerk_rad_s3_sqrts, {"jerk_rad_s3_sqrts", "rad/s^3 sqrt(s)", 1e-2, 1e6,
+                                  "root power spectral density of the angular jerk about the spin axis"});
+      visit(p.walk_rad_s_sqrts, {"walk_rad_s_sqrts", "rad/s/sqrt(s)", 1e-6, 1e3,
+                                 "random walk of the rate across the spin axis, in world and body axes; the measured "
+                                 "residuals scale this value"});
+      visit(p.vibration_rad_s, {"vibration_rad_s", "rad/s", 1e-6, 1e3,
+                                "standard deviation of the rate across the spin axis over 10 ms, caused by vibration; "
+                                "the measured residuals scale this value"});
+      visit(p.memory_s,
+            {"memory_s", "s", 1e-3, 10.0, "time within which readings count as one independent observation"});
+      visit(p.changes_hz, {"changes_hz", "Hz", 1e-9, 10.0, "assumed frequency of starts and ends of a steady spin"});
+      visit(p.probability_min, {"probability_min", "1", 0.0, 1.0,
+                                "minimum probability of a steady spin that changes the rate of a saturated axis"});
+    }
+  };
+  using Vector = Eigen::Matrix<double, 6, 1>;
+  using Matrix = Eigen::Matrix<double, 6, 6>;
+
+  /// Filter is the state of one Kalman filter: rate and angular acceleration about the spin axis, and the rate across
+  /// the spin axis that is constant in the world (two components) and in the body (two components), in body axes.
+  struct Filter {
+    Vector x = Vector::Zero();
+    Matrix P = Matrix::Zero();
+    double variance_ratio = 1.0;  ///< ratio of the measured to the assumed variance of the rate across the spin axis
+  };
+  struct State {
+    Filter spin, independent;
+    int axis = -1;
+    double probability = 0.0;
+    double measured_probability = 0.0;  ///< `probability` at the last sample with an unsaturated spin axis
+    TimeNs time_ns = 0;
+  };
+
+  /// Throws InvalidParams if a parameter is out of bounds.
+  explicit SpinTracker(const Params& params);
+
+  /// Processes the next finite sample. Bit j of `saturated_axes` states that the reading of gyro axis j is saturated or
+  /// possibly saturated.
+  SpinRate step(const ImuSample& sample, std::uint8_t saturated_axes, State& state) const;
+
+  /// Returns the rate of the spin at each sample of a recording, from all earlier and later samples of the spin. The
+  /// argument `saturated_axes` contains one value per sample. Memory: about 1 kB per sample of the longest spin.
+  std::vector<SpinRate> smooth(std::span<const ImuSample> samples, std::span<const std::uint8_t> saturated_axes) const;
+
+  /// Combines a rate with the rate of the spin by the probability of a steady spin. The result equals `rate` if the
+  /// spin axis is unsaturated, or if the probability is below `probability_min`. The result also equals `rate` if
+  /// further IMUs measured `rate` (`further_imus`) with a smaller variance.
+  RateState combine(const RateState& rate, const SpinRate& spin, bool further_imus = false) const;
+
+ private:
+  struct Prediction;
+  struct Recorded;
+  bool select_axis(const ImuSample& sample, std::uint8_t saturated_axes, State& state) const;
+  Prediction predict(const Filter& filter, double turning, double dt_s) const;
+  double update(const Prediction& predicted, const ImuSample& sample, std::uint8_t saturated_axes, int axis,
+                double dt_s, Filter& filter) const;
+  SpinRate advance(const ImuSample& sample, std::uint8_t saturated_axes, State& state, Recorded* recorded) const;
+  void smooth(std::span<const Recorded> run, std::span<SpinRate> out) const;
+
+  Params params_;
+};
+
+}  // namespace tumble
