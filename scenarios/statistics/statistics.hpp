@@ -22,6 +22,9 @@ std::optional<double> quantile_of_all(std::span<const double> values, double sha
 /// Writes the quantile of the values to `value`. Returns false, with `value` unchanged, if there are no values.
 bool quantile_of(std::span<const double> values, double share, double& value);
 
+/// Returns the value below which a standard normal random number is with the probability `share`, in (0, 1).
+double normal_quantile(double share);
+
 /// Returns the median of one member over all rows, as `quantile` computes it.
 template <class Row>
 double median_of(const std::vector<Row>& rows, double Row::*member) {
