@@ -26,6 +26,15 @@ struct RegistrationProgress {
 /// Formats the progress, for example "[####------]  40/100 lidar sweeps  87 sweeps/s".
 std::string progress_line(const RegistrationProgress& progress, int bar_width);
 
+/// SearchProgress is the progress of a search for failures on one scenario.
+struct SearchProgress {
+  std::size_t runs = 0, budget = 0, failures = 0;
+  double elapsed_s = 0.0;
+};
+
+/// Formats the progress, for example "[####------]  40/100 runs  3 failures  in 1 min 10 s".
+std::string progress_line(const SearchProgress& progress, int bar_width);
+
 /// ProgressDisplay shows the progress of a sweep (many simulated runs) or of an estimator. A terminal shows one line
 /// that is overwritten; other outputs get a new line every ten seconds.
 class ProgressDisplay {
@@ -37,9 +46,11 @@ class ProgressDisplay {
 
   void show(const scenarios::SweepProgress& progress) { show_line(progress, progress.elapsed_s); }
   void show(const RegistrationProgress& progress) { show_line(progress, progress.elapsed_s); }
+  void show(const SearchProgress& progress) { show_line(progress, progress.elapsed_s); }
   /// Shows the last progress line and ends it.
   void finish(const scenarios::SweepProgress& progress) { finish_line(progress); }
   void finish(const RegistrationProgress& progress) { finish_line(progress); }
+  void finish(const SearchProgress& progress) { finish_line(progress); }
 
  private:
   template <class Progress>

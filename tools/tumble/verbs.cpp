@@ -21,6 +21,7 @@ std::span<const Verb> verbs() {
       {"compare", "compares methods on the same draws: differences, tests, failures and number of draws needed",
        declare_compare},
       {"sensitivity", "shows which random parameters of a scenario influence a method's scores", declare_sensitivity},
+      {"search", "estimates the probability of a rare failure and finds draws on which a method fails", declare_search},
       {"render", "renders pictures of a recording or of a draw", declare_render},
       {"replay", "writes a page that plays a recording with its estimates; the page needs no network", declare_replay},
       {"bench", "compares an external method with stored results on the standard draws of its kind", declare_bench},
