@@ -35,8 +35,8 @@ struct SearchedRun {
 void claim(Results& results, const Scenario& scenario, const Method& method, const FailureGoal& goal,
            const SearchOptions& options) {
   const std::string name = full_name(method.info), key = fmt::format("search {} {}", name, scenario.name);
-  const std::string text =
-      fmt::format("{}, population {}, search seed {}", goal.text(), options.population, options.seed);
+  std::string text = fmt::format("{}, population {}, search seed {}", goal.text(), options.population, options.seed);
+  if (!method.info.version.empty()) text += ", method version " + method.info.version;
   const std::string known = results.note(key);
   if (!known.empty() && known != text)
     throw BadInput(
