@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <boost/math/special_functions/erf.hpp>
 #include <cmath>
 #include <sstream>
 
@@ -20,6 +21,12 @@ constexpr double kLeastKept = 0.01;
 
 double normal_below(double x) {
   return 0.5 * std::erfc(-x / std::sqrt(2.0));
+}
+
+/// Inverse of normal_below, for a probability in [0, 1].
+double normal_score(double probability) {
+  if (probability <= 0.0 || probability >= 1.0) return std::copysign(HUGE_VAL, probability - 0.5);
+  return -std::sqrt(2.0) * boost::math::erfc_inv(2.0 * probability);
 }
 
 std::string count_problem(const Distribution& d) {
@@ -77,6 +84,24 @@ double draw_normal(const std::vector<double>& numbers, sim::Stream& stream) {
       "no sample of the truncated normal distribution was within its limits in 10000 tries; widen [low, high]");
 }
 
+double normal_at(const std::vector<double>& numbers, double score) {
+  const double mean = numbers[0], sigma = numbers[1];
+  if (numbers.size() == 2 || sigma == 0.0) return mean + sigma * score;
+  const double low = normal_below((numbers[2] - mean) / sigma), high = normal_below((numbers[3] - mean) / sigma);
+  const double probability = low + normal_below(score) * (high - low);
+  return std::clamp(mean + sigma * normal_score(probability), numbers[2], numbers[3]);
+}
+
+double choice_at(const std::vector<double>& numbers, double score) {
+  const auto index = static_cast<std::size_t>(normal_below(score) * static_cast<double>(numbers.size()));
+  return numbers[std::min(index, numbers.size() - 1)];
+}
+
+void require_sound(const Distribution& distribution, std::string_view place) {
+  const std::string problem = find_problem(distribution);
+  if (!problem.empty()) throw BadInput(std::string(place) + ": " + problem);
+}
+
 }  // namespace
 
 const char* to_string(Distribution::Shape shape) {
@@ -124,8 +149,7 @@ std::vector<double> support_points(const Distribution& d) {
 }
 
 double draw_number(const Distribution& d, std::uint64_t seed, std::string_view place) {
-  const std::string problem = find_problem(d);
-  if (!problem.empty()) throw BadInput(std::string(place) + ": " + problem);
+  require_sound(d, place);
   if (d.shape == Shape::constant) return d.numbers[0];
   sim::Stream stream(seed, "draw." + std::string(place));
   switch (d.shape) {
@@ -142,6 +166,24 @@ double draw_number(const Distribution& d, std::uint64_t seed, std::string_view p
       const auto index = static_cast<std::size_t>(stream.uniform() * count);
       return d.numbers[std::min(index, d.numbers.size() - 1)];
     }
+    case Shape::constant:
+      break;
+  }
+  return d.numbers[0];
+}
+
+double number_at(const Distribution& d, double score) {
+  require_sound(d, to_string(d.shape));
+  const auto between = [&](double low, double high) { return low + normal_below(score) * (high - low); };
+  switch (d.shape) {
+    case Shape::uniform:
+      return std::clamp(between(d.numbers[0], d.numbers[1]), d.numbers[0], d.numbers[1]);
+    case Shape::log_uniform:
+      return std::clamp(std::exp(between(std::log(d.numbers[0]), std::log(d.numbers[1]))), d.numbers[0], d.numbers[1]);
+    case Shape::normal:
+      return normal_at(d.numbers, score);
+    case Shape::choice:
+      return choice_at(d.numbers, score);
     case Shape::constant:
       break;
   }

@@ -26,4 +26,9 @@ std::vector<double> support_points(const Distribution& distribution);
 
 double draw_number(const Distribution& distribution, std::uint64_t seed, std::string_view place);
 
+/// Returns the value at the probability of a standard normal score: the value is the median for 0 and increases with
+/// `score`. The value has the distribution if `score` is a standard normal random number. Choices have the order of the
+/// list. Throws BadInput if find_problem returns a problem.
+double number_at(const Distribution& distribution, double score);
+
 }  // namespace tumble::scenarios

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/math/distributions/normal.hpp>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -12,6 +11,7 @@
 
 #include "scenarios/errors.hpp"
 #include "scenarios/not_finite.hpp"
+#include "scenarios/statistics/statistics.hpp"
 
 namespace tumble::scenarios {
 
@@ -23,10 +23,6 @@ void require(const Plan& plan) {
       throw BadInput(fmt::format("sample size of a test: the {} is {}; it must be greater than 0 and less than 1", name,
                                  std::to_string(value)));
   }
-}
-
-double normal_quantile(double share) {
-  return quantile(boost::math::normal(), share);
 }
 
 double fewest(double risk) {

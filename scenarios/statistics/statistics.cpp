@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <boost/math/distributions/normal.hpp>
 #include <boost/math/special_functions/beta.hpp>
 #include <cmath>
 #include <limits>
@@ -51,6 +52,10 @@ double quantile(std::span<const double> values, double share) {
   std::nth_element(numbers.begin(), below, numbers.end());
   const double above = place.above == place.below ? *below : *std::min_element(below + 1, numbers.end());
   return place.between(*below, above);
+}
+
+double normal_quantile(double share) {
+  return boost::math::quantile(boost::math::normal(), share);
 }
 
 std::optional<double> quantile_of_all(std::span<const double> values, double share) {

@@ -2,16 +2,13 @@
 #include "scenarios/sweep/suite_triage.hpp"
 
 #include <fmt/format.h>
-#include <poll.h>
 
-#include <algorithm>
-#include <list>
 #include <map>
 #include <new>
-#include <system_error>
+#include <optional>
 
-#include "scenarios/errors.hpp"
 #include "scenarios/processes/process.hpp"
+#include "scenarios/processes/process_pool.hpp"
 #include "scenarios/sweep/draw_process.hpp"
 #include "scenarios/sweep/message.hpp"
 #include "scenarios/text.hpp"
@@ -67,29 +64,11 @@ bool read_rows(const std::string& text, const Failure& failure, DrawTriage& out)
   return false;
 }
 
-struct Worker {
-  std::size_t index;  ///< index of the simulated run
-  double deadline_s;  ///< deadline as a time of now_s()
-  Process process;
-  std::string said;
-};
-
-void conclude(Worker& worker, bool late, const Failure& failure, DrawTriage& draw) {
-  if (late) worker.process.kill();
-  const Process::End end = worker.process.wait();
-  if (read_rows(worker.said, failure, draw)) return;
-  draw.error_code = late ? "the simulated run did not end within its time limit"
-                         : fmt::format("the process that computed the simulated run failed: {}", end.describe());
-}
-
-bool begin(std::list<Worker>& workers, std::size_t index, double deadline_s, const std::function<void(int)>& work) {
-  try {
-    workers.push_back({index, deadline_s, Process(work, true), {}});
-    return true;
-  } catch (const std::system_error& error) {
-    if (workers.empty()) throw BadInput(fmt::format("cannot start a worker process: {}", error.what()));
-    return false;
-  }
+void conclude(const PooledEnd& ended, const Failure& failure, DrawTriage& draw) {
+  if (read_rows(ended.said, failure, draw)) return;
+  draw.error_code = ended.late
+                        ? "the simulated run did not end within its time limit"
+                        : fmt::format("the process that computed the simulated run failed: {}", ended.end.describe());
 }
 
 }  // namespace
@@ -132,36 +111,19 @@ std::vector<DrawTriage> triage_draws(const DataRoot& data, std::span<const DrawN
   }
   const double draw_s =
       options.triage.timeout_s * (static_cast<double>(true_inputs().size()) + 1.0 + kSimulateTimeouts);
-  const auto stopped = [&] { return options.stop != nullptr && options.stop->load(); };
   std::vector<DrawTriage> all(draws.size());
   std::vector<bool> done(draws.size(), false);
-  std::list<Worker> workers;
-  std::size_t next = 0;
-  while (!stopped() && (next < draws.size() || !workers.empty())) {
-    while (next < draws.size() && workers.size() < static_cast<std::size_t>(options.jobs)) {
-      const DrawName& draw = draws[next];
-      const Scenario& scenario = scenarios.at(draw.scenario);
-      const auto work = [&](int fd) { report_rows(data, scenario, draw.seed, method, options, fd); };
-      if (!begin(workers, next, now_s() + draw_s, work)) break;
-      all[next++].draw = draw;
-    }
-    std::vector<pollfd> waiting;
-    for (const Worker& worker : workers) waiting.push_back({worker.process.read_end(), POLLIN, 0});
-    poll(waiting.data(), waiting.size(), kPollMs);
-    for (auto worker = workers.begin(); worker != workers.end();) {
-      const bool open = worker->process.read_available(worker->said);
-      const bool late = open && now_s() > worker->deadline_s;
-      if (open && !late) {
-        ++worker;
-        continue;
-      }
-      DrawTriage& draw = all[worker->index];
-      conclude(*worker, late, options.triage.failure, draw);
-      done[worker->index] = true;
-      if (options.on_draw) options.on_draw(draw);
-      worker = workers.erase(worker);
-    }
-  }
+  const auto work = [&](std::size_t index, int fd) {
+    const DrawName& draw = draws[index];
+    report_rows(data, scenarios.at(draw.scenario), draw.seed, method, options, fd);
+  };
+  run_in_processes(draws.size(), {options.jobs, draw_s, options.stop}, work, [&](const PooledEnd& ended) {
+    DrawTriage& draw = all[ended.index];
+    draw.draw = draws[ended.index];
+    conclude(ended, options.triage.failure, draw);
+    done[ended.index] = true;
+    if (options.on_draw) options.on_draw(draw);
+  });
   std::vector<DrawTriage> out;
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (done[i]) out.push_back(std::move(all[i]));

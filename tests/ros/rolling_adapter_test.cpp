@@ -2,8 +2,8 @@
 // The test checks that RollingAdapter publishes the library's poses bit for bit.
 #include "tumble_ros/rolling_adapter.hpp"
 
-#include <Eigen/Cholesky>
 #include <gtest/gtest.h>
+#include <Eigen/Cholesky>
 
 #include "estimator/tests/live_readings.hpp"
 #include "estimator/tests/rolled_sphere.hpp"

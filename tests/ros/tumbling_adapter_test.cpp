@@ -4,8 +4,8 @@
 #include "tumble_ros/tumbling_adapter.hpp"
 #include "tumble/mapping/lidar_inertial_odometry.hpp"
 
-#include <Eigen/Cholesky>
 #include <gtest/gtest.h>
+#include <Eigen/Cholesky>
 
 #include <algorithm>
 #include <cmath>

@@ -35,8 +35,8 @@ TEST_P(EachVerb, RefusesAnUnknownOptionInOneLine) {
 
 INSTANTIATE_TEST_SUITE_P(Program, EachVerb,
                          testing::Values("list", "run", "record", "estimate", "score", "sweep", "merge", "report",
-                                         "compare", "sensitivity", "render", "replay", "certify", "bench", "gate",
-                                         "triage", "shrink", "export", "import", "odometry", "doctor"));
+                                         "compare", "sensitivity", "search", "render", "replay", "certify", "bench",
+                                         "gate", "triage", "shrink", "export", "import", "odometry", "doctor"));
 
 /// OSMesa depends on LLVM, and PCL's readers depend on VTK: both are loaded only when they are needed.
 TEST(Program, BeginsWithoutTheLibrariesThatFewVerbsNeed) {
@@ -116,6 +116,17 @@ INSTANTIATE_TEST_SUITE_P(
               {"shrink", "hill", "--seed", "1", "--method", "rate/raw", "--worse-than", "1", "-o", "a.yaml"},
               "must be given together"},
         Wrong{"shrink without a seed", {"shrink", "hill", "--method", "rate/raw", "-o", "a.yaml"}, "--seed is missing"},
+        Wrong{"search without a failure",
+              {"search", "roll", "--method", "rate/raw", "--db", "a.db"},
+              "give either --failure 'METRIC > VALUE' or --worst METRIC"},
+        Wrong{
+            "search in the better direction",
+            {"search", "roll", "--method", "rate/raw", "--failure", "rate_error_free_median_rad_s < 1", "--db", "a.db"},
+            "higher values of this metric are worse"},
+        Wrong{"search with a small budget",
+              {"search", "roll", "--method", "rate/raw", "--worst", "rate_error_free_median_rad_s", "--budget", "20",
+               "--db", "a.db"},
+              "--budget is 20; it must be at least --population, 50"},
         Wrong{"a point of no curve", {"run", "hill", "--seed", "1", "--vary", "world.rock_count"}, "KEY=NUMBER"},
         Wrong{"a point beyond its bound", {"run", "hill", "--seed", "1", "--vary", "world.rock_count=-1"}, "within"},
         Wrong{"triage of one draw by results",

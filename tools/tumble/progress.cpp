@@ -60,6 +60,12 @@ std::string progress_line(const RegistrationProgress& p, int bar_width) {
   return bar_text(share, bar_width) + fmt::format("{}/{} lidar sweeps  {:.0f} sweeps/s", p.done, p.all, per_s);
 }
 
+std::string progress_line(const SearchProgress& p, int bar_width) {
+  const double share = p.budget == 0 ? 1.0 : static_cast<double>(p.runs) / static_cast<double>(p.budget);
+  return bar_text(share, bar_width) +
+         fmt::format("{}/{} runs  {} failures  in {}", p.runs, p.budget, p.failures, duration_text(p.elapsed_s));
+}
+
 ProgressDisplay::ProgressDisplay(Write write, bool terminal) : write_(std::move(write)), terminal_(terminal) {}
 
 ProgressDisplay ProgressDisplay::on_standard_error() {
@@ -87,7 +93,9 @@ void ProgressDisplay::finish_line(const Progress& progress) {
 
 template void ProgressDisplay::show_line(const scenarios::SweepProgress&, double);
 template void ProgressDisplay::show_line(const RegistrationProgress&, double);
+template void ProgressDisplay::show_line(const SearchProgress&, double);
 template void ProgressDisplay::finish_line(const scenarios::SweepProgress&);
 template void ProgressDisplay::finish_line(const RegistrationProgress&);
+template void ProgressDisplay::finish_line(const SearchProgress&);
 
 }  // namespace tumble::tools

@@ -23,6 +23,15 @@ struct RegistrationProgress {
 
 std::string progress_line(const RegistrationProgress& progress, int bar_width);
 
+/// SearchProgress is the progress of a search for failures on one scenario.
+struct SearchProgress {
+  std::size_t runs = 0, budget = 0, failures = 0;
+  double elapsed_s = 0.0;
+};
+
+/// Formats the progress, for example "[####------]  40/100 runs  3 failures  in 1 min 10 s".
+std::string progress_line(const SearchProgress& progress, int bar_width);
+
 class ProgressDisplay {
  public:
   using Write = std::function<void(std::string_view)>;
@@ -32,8 +41,10 @@ class ProgressDisplay {
 
   void show(const scenarios::SweepProgress& progress) { show_line(progress, progress.elapsed_s); }
   void show(const RegistrationProgress& progress) { show_line(progress, progress.elapsed_s); }
+  void show(const SearchProgress& progress) { show_line(progress, progress.elapsed_s); }
   void finish(const scenarios::SweepProgress& progress) { finish_line(progress); }
   void finish(const RegistrationProgress& progress) { finish_line(progress); }
+  void finish(const SearchProgress& progress) { finish_line(progress); }
 
  private:
   template <class Progress>

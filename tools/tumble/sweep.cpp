@@ -11,7 +11,6 @@
 #include <tuple>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/sweep/certified_results.hpp"
 #include "scenarios/sweep/results.hpp"
 #include "scenarios/sweep/sweep_notes.hpp"
 #include "tools/examples/leave_examples.hpp"
@@ -41,15 +40,6 @@ struct SweepVerbOptions {
   double risk = 0.05;
 };
 
-void take_scenarios(const std::vector<std::string>& named, scenarios::Suite& suite) {
-  if (named.empty()) return;
-  if (!suite.recordings.empty() || !suite.classes.empty())
-    throw scenarios::BadInput(fmt::format("--scenario does not apply to suite '{}', because the suite lists its {}",
-                                          suite.name, suite.recordings.empty() ? "simulated runs" : "recordings"));
-  for (const std::string& name : named) require_known("scenario of suite '" + suite.name + "'", name, suite.scenarios);
-  std::erase_if(suite.scenarios, [&](const std::string& name) { return std::ranges::count(named, name) == 0; });
-}
-
 void say_what_it_holds(const Session& session, const SweepVerbOptions& options, const scenarios::Suite& suite) {
   if (!options.scenarios.empty() || suite.scenarios.size() < 2) return;
   if (std::ranges::count(suite.scenarios, options.suite) == 0) return;
@@ -78,26 +68,6 @@ bool select(const scenarios::DataRoot& data, const SweepVerbOptions& options, sc
     suite.methods = options.methods;
   }
   return options.shard.empty() || shard_seeds(parse_shard(options.shard), suite.first_seed, suite.last_seed);
-}
-
-void certify(const Session& session, const scenarios::DataRoot& data, const std::filesystem::path& database,
-             const std::atomic<bool>& stop) {
-  scenarios::Results results(database, scenarios::Results::Mode::create_or_append);
-  bool announced = false;
-  scenarios::CertifyOptions options;
-  options.stop = &stop;
-  options.on_row = [&](const scenarios::CertificateRow&, double) {
-    if (!announced)
-      session.note(
-          "the program measures the agreement of this build's simulation with physics; this happens once per build and "
-          "takes about half a minute");
-    announced = true;
-  };
-  const scenarios::Certificate certificate = scenarios::certify_results(
-      results, scenarios::CertificateStore(session.cache(), data), {data, session.program()}, options);
-  if (!stop.load() && !certificate.passes()) {
-    session.note("some measurements of this build's simulation fail; 'tumble certify' shows these measurements");
-  }
 }
 
 std::string command_of(const SweepVerbOptions& options) {
@@ -263,7 +233,7 @@ int run_sweep(const Session& session, const SweepVerbOptions& options) {
   scenarios::require_sound(suite, how);
   const std::optional<scenarios::Question> question = ask(options, data, suite);
   note_command(scenarios::open_results(data, suite, options.database), options);
-  if (suite.recordings.empty()) certify(session, data, options.database, interrupt.raised());
+  if (suite.recordings.empty()) certify_results_file(session, data, options.database, interrupt.raised());
   AskedSweep swept;
   if (question) {
     swept = sweep_until(session, data, suite, owner, how, *question);

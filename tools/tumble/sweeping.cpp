@@ -1,9 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/tumble/sweeping.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdio>
 
+#include "scenarios/errors.hpp"
+#include "scenarios/sweep/certified_results.hpp"
+#include "scenarios/sweep/results.hpp"
+#include "tools/tumble/arguments.hpp"
 #include "tools/tumble/progress.hpp"
 
 namespace tumble::tools {
@@ -27,6 +33,35 @@ scenarios::SweepProgress sum(const scenarios::SweepProgress& before, const scena
 }
 
 }  // namespace
+
+void take_scenarios(const std::vector<std::string>& named, scenarios::Suite& suite) {
+  if (named.empty()) return;
+  if (!suite.recordings.empty() || !suite.classes.empty())
+    throw scenarios::BadInput(fmt::format("--scenario does not apply to suite '{}', because the suite lists its {}",
+                                          suite.name, suite.recordings.empty() ? "simulated runs" : "recordings"));
+  for (const std::string& name : named) require_known("scenario of suite '" + suite.name + "'", name, suite.scenarios);
+  std::erase_if(suite.scenarios, [&](const std::string& name) { return std::ranges::count(named, name) == 0; });
+}
+
+void certify_results_file(const Session& session, const scenarios::DataRoot& data,
+                          const std::filesystem::path& database, const std::atomic<bool>& stop) {
+  scenarios::Results results(database, scenarios::Results::Mode::create_or_append);
+  bool announced = false;
+  scenarios::CertifyOptions options;
+  options.stop = &stop;
+  options.on_row = [&](const scenarios::CertificateRow&, double) {
+    if (!announced)
+      session.note(
+          "the program measures the agreement of this build's simulation with physics; this happens once per build and "
+          "takes about half a minute");
+    announced = true;
+  };
+  const scenarios::Certificate certificate = scenarios::certify_results(
+      results, scenarios::CertificateStore(session.cache(), data), {data, session.program()}, options);
+  if (!stop.load() && !certificate.passes()) {
+    session.note("some measurements of this build's simulation fail; 'tumble certify' shows these measurements");
+  }
+}
 
 scenarios::SweepProgress sweep_with_progress(const Session& session, const scenarios::DataRoot& data,
                                              const scenarios::Suite& suite, const scenarios::DatabaseOwner& database,

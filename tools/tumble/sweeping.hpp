@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <atomic>
+#include <filesystem>
+#include <string>
 #include <vector>
 
 #include "scenarios/summary/question.hpp"
@@ -8,6 +11,14 @@
 #include "tools/tumble/session.hpp"
 
 namespace tumble::tools {
+
+/// Keeps only the named scenarios of a suite, in the order of the suite; all if `named` is empty.
+void take_scenarios(const std::vector<std::string>& named, scenarios::Suite& suite);
+
+/// Stores the certificate of this build (checks of its simulation) in a results database. The certificate is measured
+/// at most once per build and machine.
+void certify_results_file(const Session& session, const scenarios::DataRoot& data,
+                          const std::filesystem::path& database, const std::atomic<bool>& stop);
 
 scenarios::SweepProgress sweep_with_progress(const Session& session, const scenarios::DataRoot& data,
                                              const scenarios::Suite& suite, const scenarios::DatabaseOwner& database,

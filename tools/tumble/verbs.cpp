@@ -22,6 +22,8 @@ std::span<const Verb> verbs() {
       {"compare", "compares methods on the same simulated runs: differences, tests, failures and number of runs needed",
        declare_compare},
       {"sensitivity", "shows which random parameters of a scenario influence a method's scores", declare_sensitivity},
+      {"search", "estimates the probability of a rare failure and finds simulated runs on which a method fails",
+       declare_search},
       {"render", "renders pictures of a recording or of a simulated run", declare_render},
       {"replay", "writes a page that plays a recording with its estimates; the page needs no network", declare_replay},
       {"bench", "compares an external method with stored results on the standard simulated runs of its kind",

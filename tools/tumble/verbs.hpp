@@ -32,6 +32,7 @@ Action declare_merge(VerbOptions& verb, const Session& session);
 Action declare_report(VerbOptions& verb, const Session& session);
 Action declare_compare(VerbOptions& verb, const Session& session);
 Action declare_sensitivity(VerbOptions& verb, const Session& session);
+Action declare_search(VerbOptions& verb, const Session& session);
 Action declare_render(VerbOptions& verb, const Session& session);
 Action declare_replay(VerbOptions& verb, const Session& session);
 Action declare_bench(VerbOptions& verb, const Session& session);

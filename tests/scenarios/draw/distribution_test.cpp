@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <boost/math/special_functions/erf.hpp>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "scenarios/draw/fixture_registry.hpp"
+#include "scenarios/errors.hpp"
 
 namespace tumble::scenarios {
 namespace {
@@ -62,6 +64,45 @@ TEST(Distribution, DrawsFollowTheStatedLaw) {
 TEST(Distribution, TheLawCheckRefusesAWrongLaw) {
   EXPECT_GT(ks_distance(draws({Shape::uniform, {2.0, 5.0}}), [](double x) { return (x - 2.0) / 3.2; }), kKsBound);
   EXPECT_GT(ks_distance(draws({Shape::normal, {1.0, 2.0, 0.0, 3.0}}), [](double x) { return x / 3.0; }), kKsBound);
+}
+
+/// The values of equally spaced probabilities have the same distribution as the values of random seeds.
+TEST(Distribution, ANormalScoreGivesTheSameLawAsASeed) {
+  const auto at_scores = [](const Distribution& distribution) {
+    std::vector<double> out;
+    for (int i = 0; i < kDraws; ++i)
+      out.push_back(number_at(distribution, -std::sqrt(2.0) * boost::math::erfc_inv(2.0 * (i + 0.5) / kDraws)));
+    return out;
+  };
+  for (const Distribution& d :
+       {Distribution{Shape::uniform, {2.0, 5.0}}, Distribution{Shape::log_uniform, {0.01, 100.0}},
+        Distribution{Shape::normal, {1.0, 2.0}}, Distribution{Shape::normal, {0.0, 11.0, 11.3, 30.0}},
+        Distribution{Shape::choice, {30.0, 40.0, 50.0}}}) {
+    const std::vector<double> scored = at_scores(d);
+    std::vector<double> drawn = draws(d);
+    EXPECT_TRUE(std::is_sorted(scored.begin(), scored.end()));
+    std::sort(drawn.begin(), drawn.end());
+    const auto below_scored = [&](double x) {
+      return static_cast<double>(std::upper_bound(scored.begin(), scored.end(), x) - scored.begin()) / kDraws;
+    };
+    const auto below_drawn = [&](double x) {
+      return static_cast<double>(std::upper_bound(drawn.begin(), drawn.end(), x) - drawn.begin()) / kDraws;
+    };
+    double distance = 0.0;
+    for (const double x : scored) distance = std::max(distance, std::abs(below_scored(x) - below_drawn(x)));
+    EXPECT_LT(distance, 1.95 / std::sqrt(kDraws)) << to_string(d.shape) << ": exceeded with probability 1e-3";
+  }
+}
+
+TEST(Distribution, AnExtremeNormalScoreStaysWithinTheEnds) {
+  for (const double score : {-40.0, -9.0, 9.0, 40.0}) {
+    const double value = number_at({Shape::normal, {0.0, 11.0, 11.3, 30.0}}, score);
+    EXPECT_TRUE(value >= 11.3 && value <= 30.0) << score;
+    EXPECT_NEAR(number_at({Shape::normal, {0.0, 1.0}}, score), score, 0.0);
+    EXPECT_EQ(number_at({Shape::choice, {1.0, 2.0}}, score), score < 0.0 ? 1.0 : 2.0);
+  }
+  EXPECT_EQ(number_at({Shape::constant, {7.0}}, 3.0), 7.0);
+  EXPECT_THROW(number_at({Shape::uniform, {3.0, 2.0}}, 0.0), BadInput);
 }
 
 TEST(Distribution, StaysWithinItsEnds) {

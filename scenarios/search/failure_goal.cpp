@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/search/failure_goal.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "scenarios/draw/strict_yaml.hpp"
+#include "scenarios/errors.hpp"
+#include "scenarios/scoring/metric.hpp"
+#include "scenarios/scoring/score.hpp"
+#include "scenarios/text.hpp"
+
+namespace tumble::scenarios {
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+bool is_higher_better(const std::string& metric) {
+  return metric_info(metric).sense == Sense::higher;
+}
+
+std::string trimmed(const std::string& text) {
+  const std::size_t first = text.find_first_not_of(' ');
+  return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(' ') - first + 1);
+}
+
+void require_metric(const std::string& name, Kind kind) {
+  std::vector<std::string> known;
+  for (const Metric& metric : metrics()) {
+    if (metric.kind == kind) known.push_back(metric.info.name);
+  }
+  if (std::find(known.begin(), known.end(), name) != known.end()) return;
+  throw BadInput(fmt::format("unknown metric '{}' of kind {}{}", name, to_string(kind), suggestion(name, known)));
+}
+
+}  // namespace
+
+double FailureGoal::score(OutcomeStatus status, double value) const {
+  if (status == OutcomeStatus::rejected) return -kInfinity;
+  if (status != OutcomeStatus::ok) return kInfinity;
+  if (std::isnan(value)) return -kInfinity;
+  return value_at(value);
+}
+
+double FailureGoal::value_at(double score) const {
+  return is_higher_better(metric) ? -score : score;
+}
+
+double FailureGoal::bound() const {
+  const double largest = std::numeric_limits<double>::max();
+  return std::clamp(value_at(limit), -largest, largest);
+}
+
+std::string FailureGoal::text() const {
+  return fmt::format("{} {} {}", metric, is_higher_better(metric) ? '<' : '>', limit);
+}
+
+FailureGoal parse_goal(const std::string& text, Kind kind) {
+  const std::size_t sign = text.find_first_of("<>");
+  FailureGoal goal;
+  if (sign == std::string::npos || !read_number(trimmed(text.substr(sign + 1)), goal.limit) || std::isnan(goal.limit))
+    throw BadInput(fmt::format(
+        "the failure is '{}'; write 'METRIC > VALUE' with a number in SI units, or 'METRIC > inf' for lost runs only",
+        shortened(text)));
+  goal.metric = trimmed(text.substr(0, sign));
+  require_metric(goal.metric, kind);
+  const char worse = is_higher_better(goal.metric) ? '<' : '>';
+  if (text[sign] != worse)
+    throw BadInput(fmt::format("the failure is '{}'; write '{} {} {}', because {} values of this metric are worse",
+                               text, goal.metric, worse, goal.limit, worse == '<' ? "lower" : "higher"));
+  return goal;
+}
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scenarios/data_root.hpp"
+#include "scenarios/draw/drawn_numbers.hpp"
+#include "scenarios/draw/scenario.hpp"
+#include "scenarios/methods/method.hpp"
+#include "scenarios/search/failure_goal.hpp"
+#include "scenarios/search/input_shift.hpp"
+#include "scenarios/search/splitting.hpp"
+#include "scenarios/sweep/results.hpp"
+#include "scenarios/sweep/sweep.hpp"
+
+/// failure_search.hpp estimates the probability that a method fails on a random draw of a scenario, and finds draws on
+/// which it fails.
+namespace tumble::scenarios {
+
+/// Key under which the results database stores the runs of a search, with the index of the run as value.
+inline constexpr const char* kSearchRun = "search.run";
+
+struct SearchOptions {
+  std::size_t population = 50, budget = 1000;  ///< as in SplittingOptions
+  std::uint64_t seed = 1;                      ///< seed of the search
+  double timeout_s = 300.0;                    ///< time limit of one method run
+  int jobs = 1;                                ///< number of processes
+  double memory_mib = kWorkerMemoryMib;        ///< memory limit (RLIMIT_DATA) of each process
+  const std::atomic<bool>* stop = nullptr;
+  /// Called after each run with the numbers of runs and of failures so far.
+  std::function<void(std::size_t runs, std::size_t failures)> on_runs;
+};
+
+/// FoundFailure is a draw on which the method fails. Its distance is the norm of its normal scores: the draw with the
+/// smallest distance has the largest probability density.
+struct FoundFailure {
+  std::size_t run = 0;  ///< index of the run
+  double distance = 0.0;
+  OutcomeStatus status = OutcomeStatus::ok;
+  double value = 0.0;  ///< value of the metric; NaN if it is missing
+  Scenario scenario;   ///< scenario with constant parameters
+  std::uint64_t seed = 0;
+};
+
+struct SearchResult {
+  SplittingResult splitting;
+  std::size_t failures = 0, rejected = 0;  ///< runs that fail, and runs that could not be simulated
+  std::vector<FoundFailure> likely;        ///< the failure with the smallest distance of each family, smallest first
+  FoundFailure worst;              ///< run with the largest score, of equal runs that with the smallest distance
+  std::vector<InputShift> shifts;  ///< of the failures in the last population, or without failures of all its members
+};
+
+/// Returns the scenario with each random parameter fixed to its value at the normal score.
+Scenario scenario_at(const Scenario& scenario, std::span<const DrawnNumber> numbers, std::span<const double> normals);
+
+/// Estimates the probability of a failure by adaptive multilevel splitting over all random parameters of the scenario
+/// and the seed (splitting.hpp). Each run is simulated and estimated in a separate process, and stored in `results`. A
+/// search whose runs are in `results` continues. The result is equal for any number of jobs.
+///
+/// Throws BadInput for invalid options, for a scenario without random parameters, if the method cannot process the
+/// scenario, if `results` contains another search on this scenario and method, or if the operating system killed a run.
+SearchResult search_failures(const DataRoot& data, const Scenario& scenario, const Method& method,
+                             const FailureGoal& goal, Results& results, const SearchOptions& options);
+
+}  // namespace tumble::scenarios

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "scenarios/statistics/statistics.hpp"
+
+/// splitting.hpp estimates the probability of a rare event by adaptive multilevel splitting (Cérou, Guyader, Stochastic
+/// Analysis and Applications 25:417, 2007; docs/maths/statistics.md, "Probability of a rare failure").
+namespace tumble::scenarios {
+
+/// SplittingPoint is one random draw: a standard normal number for each random parameter, and the seed of all other
+/// random numbers (noise, terrain).
+struct SplittingPoint {
+  std::vector<double> normals;
+  std::uint64_t seed = 0;
+};
+
+/// Returns the scores of the points. Returns fewer scores to stop the search; these scores are not used.
+using ScorePoints = std::function<std::vector<double>(std::span<const SplittingPoint>)>;
+
+/// Move proposes the new normal numbers of a member from its present ones, with the step in (0, 1]. The move must leave
+/// the standard normal distribution invariant.
+using Move = std::function<std::vector<double>(std::span<const double> normals, double step,
+                                               const std::function<double()>& normal)>;
+
+/// Returns x √(1 − step²) + step ξ, with standard normal ξ (preconditioned Crank-Nicolson), equation (S27) of
+/// statistics.md.
+std::vector<double> crank_nicolson(std::span<const double> normals, double step, const std::function<double()>& normal);
+
+struct SplittingOptions {
+  std::size_t numbers = 0;      ///< number of random parameters
+  std::size_t population = 50;  ///< number of draws that advance together, at least 4
+  std::size_t budget = 1000;    ///< largest number of scored draws, at least `population`
+  double bound = 0.0;           ///< a draw fails if its score exceeds the bound; finite
+  std::uint64_t seed = 1;       ///< seed of the search
+  Move move = crank_nicolson;
+};
+
+/// ScoredPoint is a scored draw of the search.
+struct ScoredPoint {
+  SplittingPoint point;
+  double score = 0.0;
+  std::size_t family = 0;  ///< index of the first draw from which the draw descends
+};
+
+/// SplittingLevel describes the population after all members up to a score were replaced.
+struct SplittingLevel {
+  double score = 0.0;        ///< each member of the population exceeds this score
+  Interval probability{};    ///< probability that a random draw exceeds the score
+  std::size_t runs = 0;      ///< number of scored draws so far
+  std::size_t families = 0;  ///< number of first draws from which the population descends
+  std::size_t moves = 0;     ///< number of moves of each new member
+  double accepted = 0.0;     ///< fraction of accepted moves
+};
+
+struct SplittingResult {
+  Interval probability{0.0, 0.0, 1.0};  ///< probability of a failure with its 95 % interval
+  bool complete = false;                ///< the population reached the bound within the budget
+  bool stopped = false;                 ///< `ScorePoints` stopped the search
+  std::vector<ScoredPoint> draws;       ///< all scored draws, in order
+  std::vector<std::size_t> members;     ///< indices in `draws` of the population at the end
+  std::vector<SplittingLevel> levels;
+};
+
+/// Estimates the probability that the score of a random draw exceeds the bound.
+///
+/// In each step, the search removes the quarter of the population with the lowest scores. Each removed member is
+/// replaced by a copy of a remaining member, which then makes several Metropolis moves: a move is accepted if its score
+/// exceeds the highest removed score. Half of the moves also draw a new seed. The fractions of remaining members
+/// multiply to the probability. The search ends if at most a quarter of the population does not exceed the bound.
+///
+/// The step size follows the fraction of accepted moves. The number of moves follows the fraction of accepted moves
+/// with a new seed, so that 90 % of the copies get a new seed. The interval considers common ancestors. Equal options
+/// give equal results for deterministic scores. Scores may be infinite, but not NaN. Throws BadInput for invalid
+/// options or NaN scores.
+SplittingResult split(const SplittingOptions& options, const ScorePoints& score);
+
+}  // namespace tumble::scenarios

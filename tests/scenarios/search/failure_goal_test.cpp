@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scenarios/search/failure_goal.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "scenarios/errors.hpp"
+
+namespace tumble::scenarios {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+std::string complaint(const std::string& text) {
+  try {
+    parse_goal(text, Kind::slam);
+  } catch (const BadInput& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(FailureGoal, IsReadAndWritten) {
+  const FailureGoal error = parse_goal("translation_error_end_m > 0.5", Kind::slam);
+  EXPECT_EQ(error, (FailureGoal{"translation_error_end_m", 0.5}));
+  EXPECT_EQ(parse_goal("translation_error_end_m>0.5", Kind::slam), error);
+  EXPECT_EQ(error.text(), "translation_error_end_m > 0.5");
+  EXPECT_EQ(parse_goal("map_overlap < 0.8", Kind::slam).text(), "map_overlap < 0.8");
+}
+
+TEST(FailureGoal, ScoresRiseWithBadness) {
+  const FailureGoal error{"translation_error_end_m", 0.5}, overlap{"map_overlap", 0.8};
+  EXPECT_GT(error.score(OutcomeStatus::ok, 0.6), error.bound());
+  EXPECT_LE(error.score(OutcomeStatus::ok, 0.5), error.bound()) << "a failure exceeds the limit";
+  EXPECT_GT(overlap.score(OutcomeStatus::ok, 0.7), overlap.bound());
+  EXPECT_LT(overlap.score(OutcomeStatus::ok, 0.9), overlap.bound());
+  EXPECT_EQ(overlap.value_at(overlap.score(OutcomeStatus::ok, 0.7)), 0.7);
+  for (const FailureGoal& goal : {error, overlap}) {
+    EXPECT_GT(goal.score(OutcomeStatus::diverged, 0.0), goal.bound());
+    EXPECT_GT(goal.score(OutcomeStatus::crashed, std::nan("")), goal.bound());
+    EXPECT_EQ(goal.score(OutcomeStatus::rejected, std::nan("")), -kInfinity);
+    EXPECT_EQ(goal.score(OutcomeStatus::ok, std::nan("")), -kInfinity);
+  }
+}
+
+TEST(FailureGoal, AnInfiniteLimitMeansLostRuns) {
+  const FailureGoal lost = parse_goal("translation_error_end_m > inf", Kind::slam);
+  EXPECT_TRUE(std::isfinite(lost.bound()));
+  EXPECT_GT(lost.score(OutcomeStatus::diverged, 1.0), lost.bound());
+  EXPECT_LT(lost.score(OutcomeStatus::ok, 1e300), lost.bound());
+}
+
+TEST(FailureGoal, ComplaintsNameWhatIsAllowed) {
+  EXPECT_THAT(complaint("translation_error_end_m 0.5"), HasSubstr("write 'METRIC > VALUE'"));
+  EXPECT_THAT(complaint("translation_error_end_m > half"), HasSubstr("write 'METRIC > VALUE'"));
+  EXPECT_THAT(complaint("translation_error_end_m > nan"), HasSubstr("write 'METRIC > VALUE'"));
+  EXPECT_THAT(complaint("translation_error_end > 1"), HasSubstr("did you mean 'translation_error_end_m'"));
+  EXPECT_THAT(complaint("translation_error_end_m < 1"), HasSubstr("higher values of this metric are worse"));
+  EXPECT_THAT(complaint("map_overlap > 1"), HasSubstr("lower values of this metric are worse"));
+  EXPECT_EQ(complaint("ate_m > 1"), "") << "or everything is refused";
+}
+
+}  // namespace
+}  // namespace tumble::scenarios
