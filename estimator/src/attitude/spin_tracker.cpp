@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "tumble/attitude/regimes.hpp"
+#include "tumble/attitude/detail/regimes.hpp"
 #include "tumble/common/detail/scalar_update.hpp"
 #include "tumble/common/detail/squared.hpp"
 
