@@ -30,11 +30,12 @@ Settings<TumblingOdometry::Params> odometry_settings(double lag_s, std::vector<s
   TumblingOdometry::Params params;
   params.lever_arm_I_m.setZero();  // the recording contains the lever arm
   params.lag_s = lag_s;
+  params.expert->mapping.own_body_L = presets::rig_body_L();
   fixed.insert(fixed.end(),
                {"rate_lever_arm_sigma_m", "rate_gyro_noise_density", "rate_accel_noise_density", "rate_rails_stated_*",
                 "rate_period_s", "rate_lag_s", "rate_evidence_gravity_m_s2", "rate_carried_gravity_m_s2",
                 "rate_carried_gap_max_s", "rate_carried_period_s", "rate_carried_lag_s", "mapping_mount_sigma_*",
-                "mapping_time_offset_sigma_s", "mapping_gravity_m_s2", "mapping_range_*", "mapping_own_body_*"});
+                "mapping_time_offset_sigma_s", "mapping_gravity_m_s2", "mapping_range_*"});
   return Settings<TumblingOdometry::Params>(
       params, {.stated = {"imu_*", "lever_arm_x_m", "lever_arm_y_m", "lever_arm_z_m", "gravity_m_s2",
                           "mapping_accel_rail_m_s2"},
@@ -61,7 +62,6 @@ TumblingOdometry::Params stated_params(const sim::Sensors& sensors, TumblingOdom
   params.imu = bridge::imu_sheet(imu);
   params.lever_arm_I_m = bridge::lever_arm_I_m(imu);
   params.T_IL = bridge::T_IL(imu, sensors.lidars.front());
-  params.own_body_L = presets::rig_body_L();
   params.expert->gravity_m_s2 = sensors.gravity_m_s2;
   return params;
 }
@@ -216,6 +216,7 @@ Estimate run(Output output, const Settings<TumblingOdometry::Params>& settings, 
   }
   TumblingOdometry::Params params = stated_params(sensors, settings.defaults());
   settings.apply(parameters, params);
+  params.own_body_L = params.expert->mapping.own_body_L;
   TumblingOdometry odometry(params);
   if (map != nullptr) estimate.status = odometry.use_map(*map);
   if (!estimate.status.ok()) return estimate;

@@ -63,7 +63,8 @@ std::string FailureGoal::text() const {
 FailureGoal parse_goal(const std::string& text, Kind kind) {
   const std::size_t sign = text.find_first_of("<>");
   FailureGoal goal;
-  if (sign == std::string::npos || !read_number(trimmed(text.substr(sign + 1)), goal.limit) || std::isnan(goal.limit))
+  if (sign == std::string::npos || trimmed(text.substr(0, sign)).empty() ||
+      !read_number(trimmed(text.substr(sign + 1)), goal.limit) || std::isnan(goal.limit))
     throw BadInput(fmt::format(
         "the failure is '{}'; write 'METRIC > VALUE' with a number in SI units, or 'METRIC > inf' for lost runs only",
         shortened(text)));

@@ -213,6 +213,17 @@ TEST(Odometry, AnEstimateThatItsHealthInvalidatesIsDiverged) {
   EXPECT_EQ(json_of(run_program({"score", rates, recording, "--json"}))["status"], "diverged");
 }
 
+TEST(Odometry, DropsPointsInsideTheGivenBox) {
+  const auto map_of = [](const std::string& corner) {
+    const std::string out = (test_folder() / ("box" + corner)).string(), low = "-" + corner;
+    const Ended ended = run_program({"odometry", short_stroll().string(), "--own-body", low, low, low, corner, corner,
+                                     corner, "-o", out, "--live"});
+    EXPECT_EQ(ended.status, 0) << ended.err;
+    return fs::file_size(fs::path(out) / "map.ply");
+  };
+  EXPECT_LT(map_of("3"), map_of("0.3"));
+}
+
 TEST(Odometry, RefusesARecordingWithoutALidarAndOptionsThatExcludeEachOther) {
   const fs::path folder = test_folder();
   std::ofstream table(folder / "imu.csv");

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "scenarios/errors.hpp"
 #include "scenarios/methods/diagnosis.hpp"
@@ -42,6 +43,11 @@ std::vector<RecordingFinding> findings_of(const OpenRecording& recording) {
   }
   const sim::Sensors& sensors = recording.content.sensors;
   append_findings(scenarios::findings_in_readings(sensors), out);
+  for (const auto& [missing, name] : {std::pair{sensors.imus.empty(), "IMU"}, {sensors.lidars.empty(), "lidar"}}) {
+    if (missing)
+      out.push_back(
+          {recording.options.path.filename().string(), fmt::format("the recording has no {}", name), "", false});
+  }
   const bool rolls = sensors.robot == "sphere" || sensors.robot == "pendulum";
   if (!sensors.imus.empty() && !sensors.lidars.empty() && !rolls) append_findings(findings_of_odometry(sensors), out);
   return out;

@@ -66,8 +66,10 @@ std::vector<std::string> parameter_texts(const OdometryOptions& options, const s
   if (options.own_body_m.empty()) return texts;
   const char* const names[] = {"own_body_min_x_m", "own_body_min_y_m", "own_body_min_z_m",
                                "own_body_max_x_m", "own_body_max_y_m", "own_body_max_z_m"};
+  const bool in_mapper = std::ranges::count(info.parameters, "mapping_own_body_min_x_m", &sim::Parameter::name) > 0;
   for (std::size_t k = 0; k < std::size(names); ++k)
-    texts.push_back(fmt::format("{}.{}={}", full_name(info), names[k], options.own_body_m[k]));
+    texts.push_back(
+        fmt::format("{}.{}{}={}", full_name(info), in_mapper ? "mapping_" : "", names[k], options.own_body_m[k]));
   return texts;
 }
 

@@ -125,10 +125,10 @@ void say_result(const Session& session, const ShownSearch& shown) {
         "with the same database continues the search",
         shown.scenario));
   const double plain = plain_draws(splitting.probability);
-  if (plain < static_cast<double>(splitting.draws.size()))
+  if (splitting.complete && plain < static_cast<double>(splitting.draws.size()))
     session.note(fmt::format(
-        "{}: {:.0f} independent draws of 'tumble sweep' would give as narrow an interval, so this failure is not rare "
-        "enough, or depends too much on noise, for this search",
+        "{}: {:.0f} independent simulated runs of 'tumble sweep' would give an equally narrow interval, because this "
+        "failure is frequent or depends on noise",
         shown.scenario, plain));
   const bool is_stuck = std::any_of(splitting.levels.begin(), splitting.levels.end(),
                                     [](const auto& level) { return level.moves > kMovesOfDrawnSearch; });
