@@ -175,7 +175,7 @@ TEST_F(EstimateFile, ATruncatedMapIsRecognised) {
   write_estimate(folder_, "icp", Kind::slam, estimate);
   EXPECT_EQ(complaint(folder_), "");
   std::filesystem::resize_file(folder_ / "map.ply", std::filesystem::file_size(folder_ / "map.ply") - 5);
-  EXPECT_NE(complaint(folder_).find("map.ply: the file is truncated"), std::string::npos);
+  EXPECT_NE(complaint(folder_).find("map.ply: the map file is truncated"), std::string::npos);
 }
 
 TEST_F(EstimateFile, ContactsComeBackAndBelongToTheirPoses) {

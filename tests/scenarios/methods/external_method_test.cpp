@@ -159,13 +159,13 @@ TEST_F(ExternalMethod, WhatItLeavesIsBoundedBeforeItIsRead) {
   EXPECT_THAT(refused(describe("slam", "truncate -s 100000000000 {output}")),
               HasSubstr("poses.tum: the output file has 100000000000 bytes; for this recording, it may have at most"));
   EXPECT_THAT(refused(describe("rate", "truncate -s 100000000000 {output}")),
-              HasSubstr("rates.csv: the file has 100000000000 bytes"));
+              HasSubstr("rates.csv: the output file has 100000000000 bytes"));
   EXPECT_THAT(refused(describe("position", "mkdir {output}; truncate -s 100000000000 {output}/estimate.json",
                                "output: estimate\n")),
-              HasSubstr("estimate.json: the file has 100000000000 bytes"));
+              HasSubstr("estimate.json: the output file has 100000000000 bytes"));
   const std::string pose = "printf '0.1 1 2 3 0 0 0 1\\n' > {output}; ";
   EXPECT_THAT(refused(describe("slam", pose + "truncate -s 100000000000 {map}")),
-              HasSubstr("map.ply: the file has 100000000000 bytes"));
+              HasSubstr("map.ply: the output file has 100000000000 bytes"));
   EXPECT_THAT(refused(describe("slam", "mkfifo {output}")), HasSubstr("not a regular file"));
   EXPECT_THAT(refused(describe("slam", "ln -s /dev/zero {output}")), HasSubstr("not a regular file"));
 }

@@ -221,10 +221,10 @@ TEST(Comparison, RefusesWhatIsNotThere) {
   options.methods = {"our"};
   EXPECT_THAT(complaint(options), HasSubstr("no method 'our'; did you mean 'ours'?"));
   EXPECT_THAT(complaint(on("rate_eror")), HasSubstr("no metric 'rate_eror'"));
-  EXPECT_THAT(complaint(on(kError, Margin{-1.0, false})), HasSubstr("margin is -1"));
+  EXPECT_THAT(complaint(on(kError, Margin{-1.0, false})), HasSubstr("margin of the comparison is -1"));
   options = on(kError);
   options.risk = 1.0;
-  EXPECT_THAT(complaint(options), HasSubstr("risk is 1"));
+  EXPECT_THAT(complaint(options), HasSubstr("risk of the comparison is 1"));
   EXPECT_EQ(complaint(on(kError)), "");
 }
 

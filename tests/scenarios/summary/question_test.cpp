@@ -187,9 +187,10 @@ TEST(Question, RefusesWhatCannotBeAsked) {
   refused([](Question& q) { q.metric = "rate_error"; }, "is unknown");
   refused([](Question& q) { q.metric = "estimate_cpu_s"; }, "cannot rank methods");
   refused([](Question& q) { q.metric = "translation_error_end_m"; }, "is of kind");
-  refused([](Question& q) { q.margin.value = -0.1; }, "margin is -0.1");
-  refused([](Question& q) { q.margin.value = std::numeric_limits<double>::quiet_NaN(); }, "margin is nan");
-  refused([](Question& q) { q.risk = 1.0; }, "risk is 1");
+  refused([](Question& q) { q.margin.value = -0.1; }, "margin of the question (--until) is -0.1");
+  refused([](Question& q) { q.margin.value = std::numeric_limits<double>::quiet_NaN(); },
+          "margin of the question (--until) is nan");
+  refused([](Question& q) { q.risk = 1.0; }, "risk of a wrong answer to the question (--until) is 1");
   refused([](Question& q) { q.looks = 0; }, "the number of interim analyses is 0");
 }
 

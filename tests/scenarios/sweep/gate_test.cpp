@@ -173,8 +173,8 @@ TEST(Gate, AMetricThatAnOkOutcomeHadMayNotGo) {
     if (outcome.seed == 3) std::erase_if(outcome.scores, [](const Score& score) { return score.metric == kNees; });
   };
   EXPECT_EQ(fault_after(kNees, drop), "the metric has no value, but has a value in the accepted results, at seed 3");
-  EXPECT_EQ(fault_after(kNees, [](Outcome& o) { score_of(o, kNees) = std::nan(""); }).substr(0, 69),
-            "the metric has no value, but has a value in the accepted results, at seed");
+  EXPECT_THAT(fault_after(kNees, [](Outcome& o) { score_of(o, kNees) = std::nan(""); }),
+              testing::StartsWith("the metric has no value, but has a value in the accepted results, at seed"));
 }
 
 TEST(Gate, AFailureThatWasAcceptedMayStayOrGo) {
