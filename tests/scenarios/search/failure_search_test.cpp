@@ -94,6 +94,8 @@ class FailureSearch : public testing::TemporaryFolder {
   }
 };
 
+class FailureSearchSoak : public FailureSearch {};
+
 std::vector<double> scores_of(const SearchResult& result) {
   std::vector<double> out;
   for (const ScoredPoint& draw : result.splitting.draws) out.push_back(draw.score);
@@ -108,7 +110,7 @@ SearchOptions small(std::size_t population, std::size_t budget) {
   return out;
 }
 
-TEST_F(FailureSearch, FindsThePlantedFaultWithItsProbabilityAndCause) {
+TEST_F(FailureSearchSoak, FindsThePlantedFaultWithItsProbabilityAndCause) {
   const double probability = 1e-2;
   const FailureGoal goal{kMetric, std::exp(quantile_beyond(probability))};
   const SearchResult found = search("p.db", planted(), goal, small(24, 3000));
@@ -180,7 +182,7 @@ TEST_F(FailureSearch, ContinuesWithTheStoredRuns) {
   EXPECT_EQ(scores_of(search("part.db", crashing, goal, small(12, 70))), scores_of(whole));
 }
 
-TEST_F(FailureSearch, LostRunsExceedEachLimit) {
+TEST_F(FailureSearchSoak, LostRunsExceedEachLimit) {
   const FailureGoal lost{kMetric, std::numeric_limits<double>::infinity()};
   const SearchResult found = search("p.db", planted(1.5), lost, small(16, 500));
   EXPECT_TRUE(found.splitting.complete);
