@@ -174,7 +174,7 @@ TEST(Gate, AMetricThatAnOkOutcomeHadMayNotGo) {
   };
   EXPECT_EQ(fault_after(kNees, drop), "the metric has no value, but has a value in the accepted results, at seed 3");
   EXPECT_THAT(fault_after(kNees, [](Outcome& o) { score_of(o, kNees) = std::nan(""); }),
-              testing::StartsWith("the metric has no value, but has a value in the accepted results, at seed"));
+              ::testing::StartsWith("the metric has no value, but has a value in the accepted results, at seed"));
 }
 
 TEST(Gate, AFailureThatWasAcceptedMayStayOrGo) {
