@@ -42,7 +42,7 @@ struct Dialect {
   std::string run;           ///< starts the published estimator
   std::vector<std::string> notes;
   std::vector<Source> sources;
-  std::vector<ConfigurationFile> files;  ///< with placeholders (configuration_of)
+  std::vector<ConfigurationFile> files;  ///< templates, filled by configuration_of
 
   ReaderNames names(const SensorFacts& facts) const;
   SweepLayout sweeps(const SensorFacts& facts) const;
@@ -50,7 +50,7 @@ struct Dialect {
 
 std::span<const Dialect> all_dialects();
 
-/// Each placeholder "@quantity@" of a configuration template becomes a value of the recording's sensors;
+/// Fills the templates of a configuration: "@quantity@" becomes a value of the recording's sensors, and
 /// "@quantity|text@" becomes `text` if the value is unknown.
 std::vector<ConfigurationFile> configuration_of(const Dialect& dialect, const SensorFacts& facts);
 

@@ -13,6 +13,7 @@
 
 #include "scenarios/recordings/number_text.hpp"
 #include "scenarios/recordings/upper_median.hpp"
+#include "tumble/common/so3.hpp"
 
 namespace tumble::scenarios {
 
@@ -38,10 +39,6 @@ struct Pair {
   Rows rows;            // derivative of the force difference with respect to position and bias
   Vector3d difference;  // specific force of the second IMU minus that of the first IMU
 };
-
-Matrix3d cross_matrix(const Vector3d& v) {
-  return (Matrix3d() << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0).finished();
-}
 
 Vector3d largest_readings(const sim::ImuRecord& imu) {
   Vector3d out = Vector3d::Zero();
@@ -76,7 +73,7 @@ std::vector<Pair> fast_pairs(const sim::ImuRecord& first, const sim::ImuRecord& 
     if (saturated || w.norm() < kRateMin_rad_s) continue;
     const Vector3d a = (first.gyro_rad_s[k + 1] - first.gyro_rad_s[k - 1]) / (1e-9 * static_cast<double>(step_ns));
     Pair pair;
-    pair.rows << cross_matrix(a) + cross_matrix(w) * cross_matrix(w), Matrix3d::Identity();
+    pair.rows << so3::hat(a) + so3::hat(w) * so3::hat(w), Matrix3d::Identity();
     pair.difference = at_time(second.accel_m_s2) - first.accel_m_s2[k];
     pairs.push_back(pair);
     differences.push_back((at_time(second.gyro_rad_s) - w).norm() / w.norm());
