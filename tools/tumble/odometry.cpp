@@ -178,11 +178,11 @@ int run_odometry(const Session& session, const OdometryOptions& options) {
   const Eigen::AlignedBox3d box = own_body(options);
   const std::string name = method_name(options);
   OpenRecording recording = open_recording(session, options.input);
-  require_both_sensors(options.input.path, recording.content.sensors);
+  const sim::Sensors& sensors = recording.content.sensors;
+  require_both_sensors(options.input.path, sensors);
+  const scenarios::Method method = with_prior_map(*chosen_method(name, {sensors.robot, true}), options.prior_map);
   const std::vector<FoundItem> found = complete_recording(session, recording, box, !options.own_body_m.empty());
   if (!session.json) session.print({found_table(found)}, {});
-  const sim::Sensors& sensors = recording.content.sensors;
-  const scenarios::Method method = with_prior_map(*chosen_method(name, {sensors.robot, true}), options.prior_map);
   const scenarios::MethodInfo& info = method.info;
   const scenarios::MethodPointer chosen[] = {scenarios::unowned(method)};
   const std::vector<scenarios::Method> methods = scenarios::with_parameters(chosen, parameter_texts(options, info));
