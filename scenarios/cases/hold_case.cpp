@@ -39,7 +39,8 @@ std::string doc_of(const Shrunk& shrunk, const std::string& method, const std::s
       "The method {} fails ({}) on a simplified form of the simulated run with seed {} of scenario {}. Removing any of "
       "these parts removes the failure: {}",
       method, shrunk.failure, seed, scenario, needed.empty() ? "none" : needed);
-  if (not_tried > 0) doc = fmt::format("{}. The number of parts whose removal was not tried is {}", doc, not_tried);
+  if (not_tried > 0)
+    doc = fmt::format("{}. The removal of other parts of the scenario was not tried (number: {})", doc, not_tried);
   return doc + ".";
 }
 

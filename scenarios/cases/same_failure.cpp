@@ -41,7 +41,8 @@ SameFailure::SameFailure(const Failure& failure, const Outcome& outcome) : statu
   const std::string text = "the run does not fail: its status is 'ok', and no pass-fail metric has failed";
   if (failure.metric.empty()) throw BadInput(text);
   const Score* const score = find_score(outcome.scores, failure.metric);
-  if (score == nullptr) throw BadInput(fmt::format("{}; metric {} is missing", text, failure.metric));
+  if (score == nullptr)
+    throw BadInput(fmt::format("{}; metric {} is missing in the scores of the run", text, failure.metric));
   throw BadInput(fmt::format("{}; metric {} is {:g}, which is not worse than the limit {:g}", text, failure.metric,
                              score->value, failure.limit));
 }

@@ -78,18 +78,16 @@ void show_plane(const DataSheet& sheet, const MeasuredPlane& plane, const RealRa
     entries.push_back({row, subject, law, unit, value, measured.low, measured.high, note});
   };
   const char* slope =
-      "a simulated device with the sensing elements of a real device has the same saturation plane: difference of the "
-      "slope to a neighbouring axis";
+      "a gyro simulated with the sensing elements of a real gyro has the measured tilted rail: slope to another axis";
   add("real_rail_slope", name + ", " + axis_name(plane.element + 1), slope, "1", fitted.first_slope, plane.first_slope);
   add("real_rail_slope", name + ", " + axis_name(plane.element + 2), slope, "1", fitted.second_slope,
       plane.second_slope);
   add("real_rail_distance", name,
-      "a simulated device with the sensing elements of a real device has the same saturation plane: difference of the "
-      "distance from zero",
+      "a gyro simulated with the sensing elements of a real gyro has the measured tilted rail: distance from zero",
       "rad/s", fitted.distance, plane.distance_rad_s);
   add("real_rail_offset", name,
-      "a simulated device with the sensing elements of a real device has the same saturation plane: difference of the "
-      "midpoint between both limits",
+      "a gyro simulated with the sensing elements of a real gyro has the measured tilted rail: midpoint between "
+      "upper and lower rail",
       "rad/s", fitted.offset, plane.offset_rad_s);
 }
 
@@ -135,13 +133,14 @@ std::vector<CertificateEntry> certify_real_rails(const CertificateInput& input, 
     if (sheet.sensor_kind != "imu") continue;
     const DrawnPlanes drawn = drawn_planes(sheet, setup);
     entries.push_back({"real_rail_slope_drawn", name + " gyro",
-                       "the largest measured slope of a saturation plane is within the simulated distribution of this "
-                       "device: ratio to the standard deviation of the simulated slopes",
+                       "the tilted rails of simulated gyros spread as far as those of real gyros: largest real slope / "
+                       "standard deviation of the simulated slopes",
                        "1", slope / drawn.slope, 0.0, kCut, ""});
-    entries.push_back({"real_rail_offset_drawn", name + " gyro",
-                       "the largest measured offset of a saturation plane is within the simulated distribution of this "
-                       "device: ratio to the standard deviation of the simulated offsets",
-                       "1", offset_rad_s / drawn.offset_rad_s, 0.0, kCut, ""});
+    entries.push_back(
+        {"real_rail_offset_drawn", name + " gyro",
+         "the tilted rails of simulated gyros spread as far as those of real gyros: largest real offset / "
+         "standard deviation of the simulated offsets",
+         "1", offset_rad_s / drawn.offset_rad_s, 0.0, kCut, ""});
   }
   return entries;
 }

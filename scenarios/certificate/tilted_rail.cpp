@@ -69,16 +69,15 @@ std::vector<CertificateEntry> certify_tilted_rail(const CertificateInput& input,
   for (const auto& [subject, errors] : {std::pair{"mti30 gyro", gyro}, std::pair{"mti30 accel", accel}}) {
     const bool enough = errors.samples >= kFewestClipped && errors.samples < kMany;
     const std::string note =
-        enough
-            ? ""
-            : "the fit of a saturation plane needs at least 10 samples per sign in which the element is always clipped";
+        enough ? ""
+               : "the fit of a tilted rail needs at least 10 samples per sign that only this sensing element clips";
     const double none = std::nan("");
     entries.push_back(
         {"tilted_rail_slope", subject,
-         "clipped readings of simulated devices are on the saturation planes of their elements: maximum slope error",
+         "clipped readings of a simulated IMU are on the tilted rails of its sensing elements: maximum slope error",
          "1", enough ? errors.slope : none, 0.0, 1e-9, note});
     entries.push_back({"tilted_rail_distance", subject,
-                       "clipped readings of simulated devices are on the saturation planes of their elements: maximum "
+                       "clipped readings of a simulated IMU are on the tilted rails of its sensing elements: maximum "
                        "error of distance and offset, relative to the saturation limit",
                        "1", enough ? errors.distance_share : none, 0.0, 1e-9, note});
   }

@@ -47,7 +47,7 @@ DataSheet parse_data_sheet(const std::string& text, const std::string& file, con
   for (const auto& [name, node] : fields.at("values").entries()) {
     const sim::Parameter* const parameter = find_parameter(type->parameters, name);
     if (parameter == nullptr) {
-      node.fail(fmt::format("the key '{}' is not a number of sensors of kind '{}'{}", name, type->name,
+      node.fail(fmt::format("'{}' is not a parameter of a sensor of kind '{}'{}", name, type->name,
                             suggestion(name, names_of(type->parameters))));
     }
     sheet.entries.push_back(parse_entry(name, node, *parameter));

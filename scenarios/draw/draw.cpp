@@ -32,7 +32,7 @@ sim::ResolvedSituation draw(const DataRoot& data, const Scenario& scenario, std:
   try {
     return sim::resolve(given);
   } catch (const sim::InvalidSituation& error) {
-    throw BadInput(scenario.file + ": draw with seed " + std::to_string(seed) + ": " + error.what());
+    throw BadInput(scenario.file + ": simulated run with seed " + std::to_string(seed) + ": " + error.what());
   }
 }
 

@@ -50,7 +50,7 @@ void fix_of_sensor(Scenario& scenario, const std::string& key, const std::string
   const auto at = std::find(names.begin(), names.end(), name);
   if (at == names.end()) fail(scenario, key, "unknown sensor '" + name + "'" + suggestion(name, names));
   if (dot == std::string::npos)
-    fail(scenario, key, "the key names no number of the sensor; write 'sensors.NAME.NUMBER'");
+    fail(scenario, key, "the key names a sensor without a parameter; write 'sensors.SENSOR.PARAMETER'");
   Scenario::Sensor& sensor = scenario.sensors[static_cast<std::size_t>(at - names.begin())];
   const std::string number = rest.substr(dot + 1);
   const std::string mount = "mount_error.";

@@ -172,8 +172,9 @@ Method rate_tumble() {
   info.kind = Kind::rate;
   info.doc =
       "Smooths the rates of the whole recording with bounds from clipped readings, the specific force at the lever arm "
-      "in free flight, and Euler's equation. The method also estimates the rig constants, uses further IMUs on the "
-      "body (not imu_reference), and runs the hand-held smoother during hand-held motion.";
+      "in free flight, and Euler's equation. The method also calibrates the rig (lever arm, biases, inertia "
+      "ratios, gyro axis directions). The method uses all IMUs on the body except the comparison IMU "
+      "'imu_reference'. During hand-held motion, the method runs the hand-held smoother.";
   info.ours = true;
   info.source = "ours: extends Deschenes et al., Saturation-Aware Angular Velocity Estimation, ICRA 2024";
   info.settings = {&rate_tumble_settings()};

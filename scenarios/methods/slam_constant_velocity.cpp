@@ -94,7 +94,7 @@ Method slam_constant_velocity() {
                    .doc = "Uses the lidar only: predicts the pose with constant velocity, deskews the sweep once, and "
                           "registers the sweep point to plane as a rigid body. The rate of a tumble changes too much "
                           "between two sweeps for this method. Without point times, the method does not deskew. The "
-                          "adaptive threshold and the point-to-point distance of the original are not modelled.",
+                          "adaptive threshold and the point-to-point distance of KISS-ICP are not modelled.",
                    .source = "similar to KISS-ICP, Vizzo et al., RA-L 2023",
                    .settings = {&rigid_settings()}},
                   run_slam_constant_velocity);

@@ -55,8 +55,8 @@ struct AlongParams {
     visit(p.segment_m, {"along_segment_m", "m", 0.01, 100.0,
                         "length of the rolled path over which the lidar measures the radius of the sphere"});
     visit(p.segment_sigma_m, {"along_segment_sigma_m", "m", 1e-6, 10.0,
-                              "minimum standard deviation of the length of the rolled path, from the errors of the "
-                              "centre and of the registration"});
+                              "minimum standard deviation of the length of the rolled path; errors of the "
+                              "registered positions of the sphere's centre cause it"});
     visit(p.corrected_sigmas, {"along_corrected_sigmas", "1", 0.0, 1e3,
                                "the radius measured by the lidar is used if it differs from the stated radius by more "
                                "than this many standard deviations"});

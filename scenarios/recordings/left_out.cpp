@@ -89,7 +89,7 @@ std::string LeftOut::note(std::size_t kept) const {
   std::string text = fmt::format("caution: the import leaves out {} of {} {}:", count(), kept + count(), items_);
   const char* separator = " ";
   for (const Cause& each : causes_) {
-    text += fmt::format("{}{} with {} (first: {})", separator, each.count, each.name, each.first);
+    text += fmt::format("{}{} because of {} (first error: {})", separator, each.count, each.name, each.first);
     separator = "; ";
   }
   return text;

@@ -170,7 +170,7 @@ std::string lidar_problem(const sim::LidarRecord& lidar, const Points& points) {
 std::string column_problem(const std::string& name) {
   const auto plain = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
   if (!name.empty() && std::all_of(name.begin(), name.end(), plain)) return "";
-  return "the name must consist of letters, digits and _, and must not be empty";
+  return "the name of this entry must consist of letters, digits and _, and must not be empty";
 }
 
 template <class Record>
@@ -181,7 +181,7 @@ std::string names_problem(const std::string& list, const std::vector<Record>& re
     const std::string& name = records[i].name;
     problem = in(list + "/" + std::to_string(i),
                  first_of({column_problem(name),
-                           names.insert(name).second ? "" : "two entries of the list have the same name"}));
+                           names.insert(name).second ? "" : "two entries of '" + list + "' have the same name"}));
   }
   return problem;
 }
@@ -220,7 +220,7 @@ std::string series_truth_problem(const sim::SeriesTruth& series) {
 std::string series_mismatch(const sim::SeriesRecord& series, const sim::SeriesTruth& truth) {
   if (truth.quantities.empty()) return "";  // reference instruments measure no quantities
   if (truth.quantities.size() != series.quantities.size())
-    return "truth and sensor differ in the number of quantities; the numbers must be equal";
+    return "truth and sensor differ in the number of measured quantities; the numbers must be equal";
   std::string problem;
   for (std::size_t i = 0; i < truth.quantities.size() && problem.empty(); ++i) {
     problem = in("quantities/" + std::to_string(i),
@@ -362,7 +362,8 @@ std::string find_mismatch(const sim::Sensors& sensors, const sim::Truth& truth) 
   if (truth.lidars.size() != sensors.lidars.size())
     return "truth and sensors differ in the number of lidars; the numbers must be equal";
   if (truth.series.size() != sensors.series.size())
-    return "truth and sensors differ in the number of series; the numbers must be equal";
+    return "truth and sensors differ in the number of series (sensors other than IMU and lidar); the numbers must be "
+           "equal";
   std::string problem;
   for (std::size_t i = 0; i < truth.imus.size() && problem.empty(); ++i) {
     const sim::ImuRecord& imu = sensors.imus[i];

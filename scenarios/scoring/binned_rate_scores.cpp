@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -70,10 +68,8 @@ void add_bin(const char* axis, const std::string& words, std::vector<Metric>& al
   const auto name = [&](const char* base) {
     return BinnedMetric{base, axis, edges<kAxis>()[kBin], edges<kAxis>()[kBin + 1]}.name();
   };
-  all.push_back({{name("rate_error_median_rad_s"), Unit::rad_s,
-                  fmt::format("median rate error (norm) over clipped samples {}", words), Sense::lower},
-                 Kind::rate,
-                 error_in_bin<kAxis, kBin, 50>});
+  all.push_back(
+      {{name("rate_error_median_rad_s"), Unit::rad_s, words, Sense::lower}, Kind::rate, error_in_bin<kAxis, kBin, 50>});
   all.push_back({{name("rate_error_p99_rad_s"), Unit::rad_s,
                   "99th percentile of the rate error (norm) over clipped samples", Sense::lower},
                  Kind::rate,
@@ -90,10 +86,11 @@ void add_bins(const char* axis, const std::string& words, std::vector<Metric>& a
 std::vector<MetricInfo> binned_rate_quantities() {
   return {
       {"rate_error_median_rad_s", Unit::rad_s,
-       "median rate error (norm) over the clipped samples of one interval of the x axis", Sense::lower},
+       "median rate error (norm) over the clipped samples in one bin of the curve's x axis", Sense::lower},
       {"rate_error_p99_rad_s", Unit::rad_s,
-       "99th percentile of the rate error (norm) over the clipped samples of one interval of the x axis", Sense::lower},
-      {"clip_depth_rad_s", Unit::rad_s, "largest saturation deficit of an axis"},
+       "99th percentile of the rate error (norm) over the clipped samples in one bin of the curve's x axis",
+       Sense::lower},
+      {"clip_depth_rad_s", Unit::rad_s, "largest saturation deficit of a gyro axis: true rate minus clipped reading"},
       {"clip_length_s", Unit::s, "length of a segment of clipped samples"},
       {"clipped_axes", Unit::number, "number of clipped axes"},
   };
@@ -101,12 +98,17 @@ std::vector<MetricInfo> binned_rate_quantities() {
 
 std::vector<Metric> binned_rate_metrics() {
   std::vector<Metric> all;
-  add_bins<BinAxis::depth>("clip_depth_rad_s", "whose largest saturation deficit is in this interval", all,
-                           std::make_index_sequence<kDepthEdges.size() - 1>());
-  add_bins<BinAxis::length>("clip_length_s", "in segments of this length", all,
-                            std::make_index_sequence<kLengthEdges.size() - 1>());
-  add_bins<BinAxis::count>("clipped_axes", "with this number of clipped axes", all,
-                           std::make_index_sequence<kCountEdges.size() - 1>());
+  add_bins<BinAxis::depth>(
+      "clip_depth_rad_s",
+      "median rate error (norm) over clipped samples; the name states the range of the largest saturation deficit", all,
+      std::make_index_sequence<kDepthEdges.size() - 1>());
+  add_bins<BinAxis::length>(
+      "clip_length_s",
+      "median rate error (norm) over clipped samples; the name states the range of the segment's length", all,
+      std::make_index_sequence<kLengthEdges.size() - 1>());
+  add_bins<BinAxis::count>(
+      "clipped_axes", "median rate error (norm) over clipped samples; the name states the number of clipped gyro axes",
+      all, std::make_index_sequence<kCountEdges.size() - 1>());
   return all;
 }
 

@@ -65,9 +65,10 @@ FailureGoal parse_goal(const std::string& text, Kind kind) {
   FailureGoal goal;
   if (sign == std::string::npos || trimmed(text.substr(0, sign)).empty() ||
       !read_number(trimmed(text.substr(sign + 1)), goal.limit) || std::isnan(goal.limit))
-    throw BadInput(fmt::format(
-        "the failure is '{}'; write 'METRIC > VALUE' with a number in SI units, or 'METRIC > inf' for lost runs only",
-        shortened(text)));
+    throw BadInput(
+        fmt::format("the failure is '{}'; write 'METRIC > VALUE' with a number in SI units, or 'METRIC > inf' for "
+                    "failed runs (status not ok) only",
+                    shortened(text)));
   goal.metric = trimmed(text.substr(0, sign));
   require_metric(goal.metric, kind);
   const char worse = is_higher_better(goal.metric) ? '<' : '>';

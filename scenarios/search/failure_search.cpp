@@ -163,8 +163,8 @@ class Evaluator {
       if (message && (message->outcome || message->rejected)) return *message;
     }
     const OutcomeStatus status = ended.late ? OutcomeStatus::timeout : ended_as(ended.end);
-    const std::string what =
-        ended.late ? "the draw did not end within its time limit" : "the draw's process " + ended.end.describe();
+    const std::string what = ended.late ? "the simulated run did not end within its time limit"
+                                        : "the process that computed the simulated run failed: " + ended.end.describe();
     return {without_answer(task, status, what).front(), {}};
   }
 

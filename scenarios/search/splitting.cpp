@@ -27,8 +27,8 @@ void require_sound(const SplittingOptions& options) {
   if (options.population < kPopulationMin)
     throw BadInput(fmt::format("the population is {}; it must be at least {}", options.population, kPopulationMin));
   if (options.budget < options.population)
-    throw BadInput(fmt::format("the budget is {} draws; it must be at least the population, {}", options.budget,
-                               options.population));
+    throw BadInput(fmt::format("the budget is {} simulated runs; it must be at least the population, {}",
+                               options.budget, options.population));
   if (!std::isfinite(options.bound))
     throw BadInput(fmt::format("the bound of the score is {}; it must be finite", std::to_string(options.bound)));
 }
@@ -76,7 +76,8 @@ class Splitting {
       return false;
     }
     for (std::size_t i = 0; i < fresh.size(); ++i) {
-      if (std::isnan(scores[i])) throw BadInput(fmt::format("the score of draw {} is not a number", draws().size()));
+      if (std::isnan(scores[i]))
+        throw BadInput(fmt::format("the score of simulated run {} is not a number", draws().size()));
       fresh[i].score = scores[i];
       draws().push_back(std::move(fresh[i]));
     }

@@ -107,9 +107,10 @@ std::vector<std::uint64_t> Question::look_seeds() const {
 std::string Question::describe() const {
   std::string scenes;
   for (const std::string& scenario : scenarios) scenes += (scenes.empty() ? "" : ",") + scenario;
-  return fmt::format("{}:{}:{}:{:.17g}{} of {}, seeds {}..{}, {} looks, risk {:.17g}", method, against, metric,
-                     margin.relative ? 100.0 * margin.value : margin.value, margin.relative ? "%" : "", scenes,
-                     first_seed, last_seed, looks, risk);
+  return fmt::format(
+      "{}:{}:{}:{:.17g}{} of scenarios {}, seeds {}..{}, {} interim analyses, risk of a wrong answer {:.17g}", method,
+      against, metric, margin.relative ? 100.0 * margin.value : margin.value, margin.relative ? "%" : "", scenes,
+      first_seed, last_seed, looks, risk);
 }
 
 void require_sound(const Question& question) {
@@ -135,8 +136,9 @@ void require_sound(const Question& question) {
   if (question.looks < 1 || question.looks > kLooksMax)
     throw BadInput(
         fmt::format("the number of interim analyses is {}; it must be within [1, {}]", question.looks, kLooksMax));
-  if (question.scenarios.empty()) throw BadInput("a question about two methods needs at least one scenario");
-  if (question.last_seed < question.first_seed) throw BadInput("a question about two methods needs at least one seed");
+  if (question.scenarios.empty()) throw BadInput("the comparison of two methods (--until) needs at least one scenario");
+  if (question.last_seed < question.first_seed)
+    throw BadInput("the comparison of two methods (--until) needs at least one seed");
 }
 
 void claim(Results& results, const Question& question, const std::filesystem::path& database) {
@@ -167,7 +169,7 @@ std::vector<Answer> answers(const Results& results, const Question& question, st
 }
 
 const char* finding_text(const Answer& answer, const Question& question) {
-  return answer.finding == Finding::worse && question.margin.value > 0.0 ? "not better by the margin"
+  return answer.finding == Finding::worse && question.margin.value > 0.0 ? "not better by the margin of --until"
                                                                          : to_string(answer.finding);
 }
 

@@ -137,7 +137,7 @@ void read_row(const GateLine& line, std::span<const MethodPointer> described, Ga
 double within(const YamlNode& node, double low, double high) {
   const double value = node.number();
   if (!(value >= low && value <= high)) {
-    node.fail(fmt::format("the limit for new results is {}; it must be within [{}, {}]", number_text(value),
+    node.fail(fmt::format("this limit of the accuracy gate is {}; it must be within [{}, {}]", number_text(value),
                           number_text(low), number_text(high)));
   }
   return value;

@@ -30,14 +30,14 @@ std::string text_of(const Notes& notes, const std::string& key) {
 }
 
 void require_same_origin(const Notes& first, const Notes& other, const fs::path& path) {
-  const std::pair<const char*, const char*> origins[] = {{"build", "was written by build"},
-                                                         {"data", "was made from models and scenarios"}};
+  const std::pair<const char*, const char*> origins[] = {{"build", "program build"},
+                                                         {"data", "digest of models and scenarios"}};
   for (const auto& [key, words] : origins) {
     if (text_of(first, key) == text_of(other, key)) continue;
-    throw BadInput(
-        fmt::format("{}: this database {} '{}', which differs from '{}' of the first database; to join the databases "
-                    "anyway, set --mixed-builds",
-                    path.string(), words, text_of(other, key), text_of(first, key)));
+    throw BadInput(fmt::format(
+        "{}: the {} of this database is '{}', but '{}' in the first database; to join the databases anyway, "
+        "set --mixed-builds",
+        path.string(), words, text_of(other, key), text_of(first, key)));
   }
 }
 

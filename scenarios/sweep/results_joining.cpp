@@ -200,10 +200,10 @@ class Joining {
   }
 
   [[noreturn]] void complain(const ShardRow& row, const std::string& known, const std::string& digest) const {
-    throw BadInput(
-        fmt::format("{}: {}: the status is {} with digest '{}', but another database has {} with digest '{}'; one "
-                    "build must give the same result everywhere",
-                    path_.string(), words(row), row.status, row.estimate_digest, known, digest));
+    throw BadInput(fmt::format(
+        "{}: {}: the method run has status {} and estimate digest '{}', but status {} and digest '{}' in another "
+        "database; one build must give the same result everywhere",
+        path_.string(), words(row), row.status, row.estimate_digest, known, digest));
   }
 
   void require_same_scores(const ShardRow& row, std::int64_t held) {

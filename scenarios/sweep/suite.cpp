@@ -42,7 +42,7 @@ std::vector<std::string> keys_of(const std::string& text, const YamlNode& node) 
   for (std::string key; std::getline(stream, key, '+');) {
     std::erase(key, ' ');
     if (key.empty() || std::find(keys.begin(), keys.end(), key) != keys.end()) {
-      node.fail(fmt::format("in the keys '{}' of a curve, a key is empty or occurs twice", text));
+      node.fail(fmt::format("in the varied keys '{}', a key is empty or occurs twice", text));
     }
     keys.push_back(key);
   }
@@ -58,7 +58,8 @@ Variation read_variation(const DataRoot& data, const Suite& suite, const std::st
     }
     curve.values.push_back(value);
   }
-  if (curve.values.empty()) node.fail(fmt::format("the curve over '{}' has no values; list at least one value", text));
+  if (curve.values.empty())
+    node.fail(fmt::format("the list of values of the varied key '{}' is empty; list at least one value", text));
   try {
     check(curve, data, suite.scenarios, suite.first_seed);
   } catch (const BadInput& error) {
@@ -72,7 +73,7 @@ void read_curves(const DataRoot& data, const YamlNode& node, Suite& suite) {
     Variation curve = read_variation(data, suite, text, values);
     for (const Variation& other : suite.curves) {
       if (other.key() == curve.key())
-        values.fail(fmt::format("the suite contains two curves over '{}'; give each curve once", curve.key()));
+        values.fail(fmt::format("the suite varies '{}' twice; list each key once", curve.key()));
     }
     suite.curves.push_back(std::move(curve));
   }
@@ -106,12 +107,13 @@ void read_classes(const DataRoot& data, const YamlNode& node, Suite& suite) {
         scenarios.fail("unknown scenario '" + scenario + "'" + suggestion(scenario, known));
       for (const YamlNode& seed : seeds.items()) {
         each.draws.emplace_back(scenario, seed.unsigned_integer());
-        if (!seen.insert(each.draws.back()).second) seed.fail("a draw occurs twice");
+        if (!seen.insert(each.draws.back()).second) seed.fail("a simulated run (scenario and seed) occurs twice");
       }
       if (std::find(suite.scenarios.begin(), suite.scenarios.end(), scenario) == suite.scenarios.end())
         suite.scenarios.push_back(scenario);
     }
-    if (each.draws.empty()) scenarios.fail("this class is empty; each class needs at least one simulated run");
+    if (each.draws.empty())
+      scenarios.fail("this class of simulated runs is empty; each class needs at least one simulated run");
     suite.classes.push_back(std::move(each));
   }
   if (seen.empty()) node.fail("this key is empty; the suite needs at least one simulated run");

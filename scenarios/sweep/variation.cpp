@@ -38,11 +38,11 @@ const char* words(Reach reach) {
     case Reach::nothing:
       return "nothing";
     case Reach::simulation:
-      return "a parameter of the scenario";
+      return "a scenario parameter";
     case Reach::input:
-      return "an error of the methods' input";
+      return "an input error";
     case Reach::method:
-      return "a parameter of a method";
+      return "a method parameter";
   }
   return "";
 }

@@ -149,7 +149,7 @@ TEST(Sweep, OffATerminalWritesNoControlCharacters) {
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_THAT(ended.err, Not(HasSubstr("\r")));
   EXPECT_THAT(ended.err, Not(HasSubstr("\x1b")));
-  EXPECT_THAT(ended.err, HasSubstr("1/1 draws"));
+  EXPECT_THAT(ended.err, HasSubstr("1/1 simulated runs"));
   std::vector<std::string> quiet = sweep_arguments(test_folder() / "x.db", "1");
   quiet.push_back("--quiet");
   EXPECT_EQ(run_shortened(quiet).err, "");

@@ -99,10 +99,10 @@ TEST(Page, LinksTheReplayOfAnExampleThatHasOne) {
 TEST(Page, SaysWhatItsRecordingsAre) {
   PageContent content;
   content.summary = page_summary("hill");
-  EXPECT_THAT(page_html(content, ""), HasSubstr("2 simulated runs of hill with known truth"));
+  EXPECT_THAT(page_html(content, ""), HasSubstr("2 simulated runs of scenario hill with known truth"));
   content.recorded = true;
   EXPECT_THAT(page_html(content, ""), HasSubstr("the same recordings (hill) and are scored against the truth"));
-  EXPECT_THAT(page_html(content, ""), Not(HasSubstr("simulated runs of hill")));
+  EXPECT_THAT(page_html(content, ""), Not(HasSubstr("simulated runs of scenario hill")));
 }
 
 TEST(Page, SaysWhatItsTasksAndMethodsAre) {
@@ -202,7 +202,10 @@ TEST(Page, DrawsAScoreOverTheRangeOfWhatBreaksIt) {
   content.sensitivity = {{"hill", Kind::rate, "raw", "rate_error_clipped_median_rad_s", 36, {slope}}};
   const std::string page = page_html(content, "");
   EXPECT_THAT(page, HasSubstr("<svg class=\"dependence\""));
-  EXPECT_THAT(page, HasSubstr("<title>world.&lt;slope&gt; 0.1 to 0.2: 0.100 rad/s [0.0500, 0.200], 12 draws</title>"));
+  EXPECT_THAT(
+      page,
+      HasSubstr(
+          "<title>world.&lt;slope&gt; from 0.1 to 0.2: 0.100 rad/s [0.0500, 0.200] in 12 simulated runs</title>"));
   EXPECT_THAT(page, Not(HasSubstr("nan")));
   EXPECT_THAT(page, Not(HasSubstr("=\"inf"))) << "an infinite end lies on the frame";
   content.sensitivity[0].influences[0].dependence.resize(1);

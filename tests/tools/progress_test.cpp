@@ -37,11 +37,13 @@ TEST(DurationText, UsesTwoUnitsAtMost) {
 
 TEST(ProgressLine, ShowsShareCountsAndTimeLeft) {
   EXPECT_EQ(progress_line(progress(4, 10, 40.0, 60.0), 10),
-            "[####------]  4/10 draws  40 %  16 outcomes  1 not ok (1 failed)  0 rejected  left 1 min 00 s");
+            "[####------]  4/10 simulated runs  40 %  16 method runs, 1 not ok (1 failed)  0 simulations rejected  "
+            "left 1 min 00 s");
   EXPECT_EQ(progress_line(progress(0, 10, 3.0, 0.0), 0),
-            "0/10 draws  0 %  0 outcomes  1 not ok (1 failed)  0 rejected  left ?");
+            "0/10 simulated runs  0 %  0 method runs, 1 not ok (1 failed)  0 simulations rejected  left ?");
   EXPECT_EQ(progress_line(progress(10, 10, 90.0, 0.0), 4),
-            "[####]  10/10 draws  100 %  40 outcomes  1 not ok (1 failed)  0 rejected  in 1 min 30 s");
+            "[####]  10/10 simulated runs  100 %  40 method runs, 1 not ok (1 failed)  0 simulations rejected  in 1 "
+            "min 30 s");
 }
 
 TEST(ProgressLine, NamesEachWayToFailAndWhatIsKept) {
@@ -50,15 +52,17 @@ TEST(ProgressLine, NamesEachWayToFailAndWhatIsKept) {
   p.kept = 3;
   p.to_keep = 8;
   EXPECT_EQ(progress_line(p, 0),
-            "4/10 draws  40 %  16 outcomes  3 not ok (2 diverged, 1 timeout)  0 rejected  kept 3/8  left 1 min 00 s");
+            "4/10 simulated runs  40 %  16 method runs, 3 not ok (2 diverged, 1 timeout)  0 simulations rejected  kept "
+            "3/8  left 1 min 00 s");
   p.failures.clear();
   p.to_keep = 0;
-  EXPECT_EQ(progress_line(p, 0), "4/10 draws  40 %  16 outcomes  0 not ok  0 rejected  left 1 min 00 s");
+  EXPECT_EQ(progress_line(p, 0),
+            "4/10 simulated runs  40 %  16 method runs, 0 not ok  0 simulations rejected  left 1 min 00 s");
 }
 
 TEST(ProgressLine, OfNothingToDoIsComplete) {
   EXPECT_EQ(progress_line(progress(0, 0, 0.0, 0.0), 4),
-            "[####]  0/0 draws  100 %  0 outcomes  1 not ok (1 failed)  0 rejected  in 0 s");
+            "[####]  0/0 simulated runs  100 %  0 method runs, 1 not ok (1 failed)  0 simulations rejected  in 0 s");
 }
 
 TEST(ProgressLine, OfAnEstimatorShowsSweepsPerSecond) {

@@ -45,8 +45,8 @@ void add_maps(const scenarios::RunResult& run, Example& example) {
   if (maps.empty()) return;
   std::string names;
   for (const ErrorMap& map : maps) {
-    names += fmt::format("{}{} ({:.1f} % of its points within 0.1 m)", names.empty() ? "" : ", ", map.name,
-                         100.0 * map.share_within(0.1f));
+    names += fmt::format("{}{} ({:.1f} % of the map points are within 0.1 m of the true surface)",
+                         names.empty() ? "" : ", ", map.name, 100.0 * map.share_within(0.1f));
   }
   example.pictures.push_back(
       {"maps",

@@ -50,7 +50,7 @@ std::string costs_html(const std::vector<CostRow>& rows) {
   if (rows.empty()) return "";
   std::string out =
       "<p>The real-time factor is the duration of a recording divided by the CPU time of its estimate (median over the "
-      "draws). A method with a factor above 1 is faster than real time on one "
+      "simulated runs). A method with a factor above 1 is faster than real time on one "
       "processor.</p>\n<details><summary>Real-time factors</summary>\n" +
       html::table_head({"scenario", "method", "CPU time [s]", "real-time factor"}, 2);
   for (const CostRow& row : rows) {

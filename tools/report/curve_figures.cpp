@@ -202,10 +202,10 @@ Figure curve_figure(const Curve& curve, const Palette& palette) {
 std::string curves_html(std::span<const Curve> curves, std::vector<Figure>& figures, const Palette& palette) {
   if (curves.empty()) return "";
   std::string out =
-      "<h3>Curves</h3>\n<p>The line shows the median over the draws, the band the quartiles, and the dotted line the "
-      "limit of the worst 5 %. A failed run ranks as the worst of all, so a line ends where half of the runs fail. The "
-      "lower plot shows the share of failed runs (status other than <i>ok</i>, or a failed map) with its 95 % "
-      "Clopper–Pearson interval.</p>\n";
+      "<h3>Curves</h3>\n<p>The line shows the median over the simulated runs, the band the quartiles, and the dotted "
+      "line the limit of the worst 5 %. A failed run ranks as the worst of all, so a line ends where half of the runs "
+      "fail. The lower plot shows the share of failed runs (status other than <i>ok</i>, or a failed map) with its 95 "
+      "% Clopper–Pearson interval.</p>\n";
   for (auto curve = curves.begin(); curve != curves.end();) {
     const Curve& first = *curve;
     out += fmt::format("<details{}><summary>{} · {}</summary><div class=\"pair\">",

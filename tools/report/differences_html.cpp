@@ -67,13 +67,13 @@ std::string folded_tables(const std::vector<Row>& rows, const std::vector<std::s
 std::string differences_html(const std::vector<MetricComparison>& rows) {
   if (rows.empty()) return "<p>No method can be compared with a baseline.</p>\n";
   return fmt::format(
-             "<p>Each method is compared with the baseline of its task on the same draws. The tables show the median "
-             "of the paired differences with its 95 % bootstrap interval (BCa). They also show the number of draws on "
-             "which the method was better and worse. The last column is the p-value of the signed-rank test, with "
-             "Holm’s correction for the {} comparisons of this page. A failed run ranks as the worst.</p>\n",
+             "<p>Each method is compared with the baseline of its task on the same simulated runs. The tables show the "
+             "median of the paired differences with its 95 % bootstrap interval (BCa). They also show the number of "
+             "runs on which the method was better and worse. The last column is the p-value of the signed-rank test, "
+             "with Holm’s correction for the {} comparisons of this page. A failed run ranks as the worst.</p>\n",
              rows.size()) +
-         folded_tables(rows, {"metric", "method", "draws", "median", "baseline", "median difference [95 %]",
-                              "better : worse", "p (Holm)", "finding", "more draws"});
+         folded_tables(rows, {"metric", "method", "simulated runs", "median", "baseline", "median difference [95 %]",
+                              "better : worse", "p (Holm)", "finding", "more runs needed"});
 }
 
 std::string paired_failures_html(const std::vector<FailureComparison>& rows) {
@@ -82,12 +82,12 @@ std::string paired_failures_html(const std::vector<FailureComparison>& rows) {
     if (row.share.value > 0.0 || row.against_share.value > 0.0) failed.push_back(row);
   }
   if (failed.empty()) return "";
-  return "<p>The table shows the shares of draws with a failed run (status other than <i>ok</i>) or a negative "
-         "verdict, with 95 % intervals (Clopper–Pearson). Further columns count the draws on which only the method "
-         "failed, and on which only the baseline failed. The last column shows McNemar’s paired test with Holm’s "
-         "correction. The table leaves out pairs of methods without a failure.</p>\n" +
-         folded_tables(failed, {"failure", "method", "draws", "share [95 %]", "baseline [95 %]", "method alone",
-                                "baseline alone", "p (Holm)", "finding"});
+  return "<p>The table shows the shares of simulated runs with a failed method run (status other than <i>ok</i>) or a "
+         "negative verdict, with 95 % intervals (Clopper–Pearson). Further columns count the simulated runs on which "
+         "only the method failed, and on which only the baseline failed. The last column shows McNemar’s paired test "
+         "with Holm’s correction. The table leaves out pairs of methods without a failure.</p>\n" +
+         folded_tables(failed, {"failure", "method", "simulated runs", "share [95 %]", "baseline [95 %]",
+                                "method alone", "baseline alone", "p (Holm)", "finding"});
 }
 
 }  // namespace tumble::tools

@@ -110,10 +110,10 @@ std::string distributions_html(std::span<const Spread> spreads, std::span<const 
       "<p>The table shows distributions of the simulated motions, which are computed from the truth. For comparison, "
       "it contains values of " +
       html::escaped(scenarios::kPublishedMotion) +
-      ". Brackets contain the middle 90 % of the draws. For a share of draws or of all samples, the brackets contain "
-      "the 95 % interval.</p>\n<details><summary>Table of the motions</summary><div "
-      "class=\"scroll\"><table><thead><tr><th>quantity</th><th>scenario</th><th class=\"number\">draws</th><th "
-      "class=\"number\">median</th><th>unit</th><th>published, for the rig</th></tr></thead><tbody>\n";
+      ". Brackets contain the middle 90 % of the simulated runs. For a share of runs or of all samples, the brackets "
+      "contain the 95 % interval.</p>\n<details><summary>Table of the motions</summary><div "
+      "class=\"scroll\"><table><thead><tr><th>quantity</th><th>scenario</th><th class=\"number\">simulated "
+      "runs</th><th class=\"number\">median</th><th>unit</th><th>published, for the rig</th></tr></thead><tbody>\n";
   for (const Spread& spread : spreads) {
     out += "<tr>" + html::cell(spread.quantity) + html::cell(spread.scenario) +
            html::cell(std::to_string(spread.values.size()), "number") +

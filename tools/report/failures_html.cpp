@@ -56,9 +56,10 @@ std::string draws_html(const PageContent& content) {
   for (std::size_t i = 0; i < failed.shown.size(); ++i)
     (i < kOpenDraws ? open : folded) += draw_html(content, failed.shown[i]);
   std::string out = fmt::format(
-      "<h3>Draws with failures</h3>\n<p>On {} draw{}, at least one run has a status other than <i>ok</i>. {}Draws with "
-      "the most failed methods come first. The command below a run repeats the run. With <code>-o FOLDER</code>, "
-      "<code>tumble run</code> writes recording, estimates, pictures and a replay.</p>\n",
+      "<h3>Simulated runs with failures</h3>\n<p>On {} simulated run{}, at least one method run has a status other "
+      "than <i>ok</i>. {}Simulated runs with the most failed methods come first. The command below a run repeats the "
+      "run. With <code>-o FOLDER</code>, <code>tumble run</code> writes recording, estimates, pictures and a "
+      "replay.</p>\n",
       failed.draws, failed.draws == 1 ? "" : "s",
       failed.shown.size() < failed.draws
           ? fmt::format("The page shows {} of the simulated runs on which methods failed. ", failed.shown.size())

@@ -38,9 +38,10 @@ std::string draws_text(const Summary& summary) {
     most = std::max(most, draws);
   }
   const std::string names = names_text(summary.scenarios, "scenarios");
-  const char* each = summary.scenarios.size() > 1 ? "each " : "";
-  return least == most ? fmt::format("{} simulated run{} {}of {}", most, most == 1 ? "" : "s", each, names)
-                       : fmt::format("{} to {} simulated runs each of {}", least, most, names);
+  const std::string runs = least == most ? fmt::format("{} simulated run{}", most, most == 1 ? "" : "s")
+                                         : fmt::format("{} to {} simulated runs", least, most);
+  return summary.scenarios.size() > 1 ? fmt::format("{} per scenario ({})", runs, names)
+                                      : fmt::format("{} of scenario {}", runs, names);
 }
 
 std::string data_text(const PageContent& content) {
@@ -108,7 +109,8 @@ std::string difference_text(const ContestResult& result) {
 std::string baseline_text(const ContestResult& result) {
   const std::string value = styled_value(result.row.metric, result.row.against_median, true);
   if (!(result.times >= 1.5)) return value;
-  return fmt::format("{}, {:.{}f} times as much", value, result.times, result.times < 10.0 ? 1 : 0);
+  return fmt::format("{} ({:.{}f} times the median of {})", value, result.times, result.times < 10.0 ? 1 : 0,
+                     result.row.contest.method);
 }
 
 std::string contest_html(const ContestResult& result, std::size_t comparisons) {
@@ -118,7 +120,7 @@ std::string contest_html(const ContestResult& result, std::size_t comparisons) {
   return fmt::format(
       "<li class=\"contest {}\"><div><b>{} · {}</b><small>{}</small></div>"
       "<div><b class=\"winner\">{}</b> {}<small>{} {}</small></div>{}"
-      "<div><b class=\"difference\">{}</b><small>better on {} of {} draws: {}</small></div></li>\n",
+      "<div><b class=\"difference\">{}</b><small>better on {} of {} simulated runs: {}</small></div></li>\n",
       state, escaped(row.contest.scenario), to_string(row.contest.kind),
       escaped(scenarios::metric_info(metric).doc.empty() ? metric : scenarios::metric_info(metric).doc),
       escaped(row.contest.method), escaped(styled_value(metric, row.median, true)), escaped(row.contest.against),
@@ -140,9 +142,9 @@ std::string contests_html(const std::vector<ContestResult>& results, std::size_t
     (i < kShownContests ? shown : folded) += contest_html(results[i], comparisons);
   std::string out =
       "<section class=\"contests\" id=\"contests\"><p class=\"key\">Each row compares the best method with the "
-      "baseline. The row shows both medians over the draws, and the median of the paired differences with its 95 % "
-      "interval (BCa). The bar shows the same interval as a percentage of the baseline’s median, from −100 % to +100 "
-      "%.</p>\n<ul>" +
+      "baseline. The row shows both medians over the simulated runs, and the median of the paired differences with its "
+      "95 % interval (BCa). The bar shows the same interval as a percentage of the baseline’s median, from −100 % to "
+      "+100 %.</p>\n<ul>" +
       shown + "</ul>\n";
   if (!folded.empty())
     out += fmt::format("<details><summary>{} more contests</summary><ul>{}</ul></details>\n",

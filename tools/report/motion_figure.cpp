@@ -30,7 +30,7 @@ json density(const MotionMap& map) {
   }
   return {
       {"type", "contour"},
-      {"name", "all draws"},
+      {"name", "all simulated runs"},
       {"x", map.rate_rad_s},
       {"y", map.force_m_s2},
       {"z", std::move(rows)},
@@ -94,7 +94,8 @@ std::string caption_of(const MotionMap& map) {
       "the largest values in published campaigns",
       draws, shown < draws ? fmt::format("; {} of the simulated runs are shown as points", shown) : "");
   for (const PublishedExtreme& extreme : map.extremes) out += "; " + extreme.source;
-  return fmt::format("{}. The two maxima of a simulated run may occur at different instants.", out);
+  return fmt::format("{}. Largest rate and largest specific force of a simulated run may occur at different instants.",
+                     out);
 }
 
 }  // namespace

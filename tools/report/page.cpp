@@ -32,7 +32,7 @@ struct Part {
 };
 
 std::string draws_html(const Summary& summary) {
-  std::string out = html::table_head({"scenario", "draws scored", "draws rejected by the simulation"}, 1);
+  std::string out = html::table_head({"scenario", "simulated runs scored", "runs rejected by the simulation"}, 1);
   for (const std::string& scenario : summary.scenarios) {
     const auto rejected = summary.rejected.find(scenario);
     out += "<tr>" + html::cell(scenario) + html::cell(std::to_string(summary.draws.at(scenario)), "number") +
@@ -52,7 +52,7 @@ std::string rejected_html(const std::vector<scenarios::RejectedDraw>& rejected) 
     out += fmt::format("<li>{}: {} of <code>{}</code>, first seed {}</li>", escaped(key.second), seeds.size(),
                        escaped(key.first), seeds.front());
   }
-  return out.empty() ? "" : "<p>The simulation rejected draws for these reasons:</p><ul>" + out + "</ul>\n";
+  return out.empty() ? "" : "<p>The simulation rejected runs for these reasons:</p><ul>" + out + "</ul>\n";
 }
 
 std::string motions_html(const PageContent& content, std::vector<Figure>& figures) {
@@ -67,19 +67,20 @@ std::string motions_html(const PageContent& content, std::vector<Figure>& figure
   out += distributions_html(content.motions, spreads);
   figures.insert(figures.end(), spreads.begin(), spreads.end());
   if (!content.summary.scenarios.empty())
-    out += "<details><summary>Draws</summary>\n" + draws_html(content.summary) + rejected_html(content.rejected) +
-           "</details>\n";
+    out += "<details><summary>Simulated runs</summary>\n" + draws_html(content.summary) +
+           rejected_html(content.rejected) + "</details>\n";
   return out;
 }
 
 std::string scores_html(const Summary& summary) {
   if (summary.sections.empty()) return "";
   std::string out =
-      "<h3>Scores</h3>\n<p>Each cell contains the median over the draws (for verdicts the share). Brackets contain the "
-      "95 % interval from order statistics. A failed estimate ranks as the worst of all; “–” means that at least half "
-      "of the estimates failed. The first row shows the share of failed estimates with its Clopper–Pearson interval. "
-      "“Better in” is the number of draws on which a method was better than the baseline on the same recording. The "
-      "best method that needs no truth is highlighted. Hover over a metric for its definition.</p>\n";
+      "<h3>Scores</h3>\n<p>Each cell contains the median over the simulated runs (for verdicts the share). Brackets "
+      "contain the 95 % interval from order statistics. A failed estimate ranks as the worst of all; “–” means that at "
+      "least half of the estimates failed. The first row shows the share of failed estimates with its Clopper–Pearson "
+      "interval. “Better in” is the number of simulated runs on which a method was better than the baseline on the "
+      "same recording. The best method that needs no truth is highlighted. Hover over a metric for its "
+      "definition.</p>\n";
   for (const Section& section : summary.sections) {
     out += "<details><summary>" + escaped(section.scenario) + " · " + escaped(to_string(section.kind)) +
            "</summary>\n" + score_table_html(section) + "</details>\n";
@@ -89,7 +90,8 @@ std::string scores_html(const Summary& summary) {
 
 std::string errors_html(const PageContent& content, std::vector<Figure>& figures) {
   std::string out;
-  if (!content.errors.empty()) out += "<p>Each point shows one draw. Each box shows the quartiles of one method.</p>\n";
+  if (!content.errors.empty())
+    out += "<p>Each point shows one simulated run. Each box shows the quartiles of one method.</p>\n";
   for (const Figure& figure : content.errors) out += plot_html(figure);
   figures.insert(figures.end(), content.errors.begin(), content.errors.end());
   return out + scores_html(content.summary) + curves_html(content.curves, figures, content.palette);

@@ -47,8 +47,8 @@ const MethodSummary* best_method(const Section& section, const std::string& metr
 }
 
 std::string failures_text(const MethodSummary& method) {
-  return fmt::format("{} of {} [{}–{} %]", method.not_ok, method.outcomes, plain(100.0 * method.not_ok_share.low),
-                     plain(100.0 * method.not_ok_share.high));
+  return fmt::format("{} of {} runs failed [95 % interval {}–{} %]", method.not_ok, method.outcomes,
+                     plain(100.0 * method.not_ok_share.low), plain(100.0 * method.not_ok_share.high));
 }
 
 std::string metric_cell(const std::string& name, const MetricSummary* metric, bool is_best) {

@@ -35,10 +35,11 @@ std::string dependence_cell(const Sensitivity& row, const Influence& each) {
   const bool is_share = row.metric == kFailure || scenarios::metric_info(row.metric).unit == scenarios::Unit::verdict;
   const auto label_of = [&](const scenarios::DependenceClass& part) {
     const std::string centre =
-        is_share ? fmt::format("{:.0f} % of the simulated runs failed [{:.0f}, {:.0f}]", 100.0 * part.centre.value,
-                               100.0 * part.centre.low, 100.0 * part.centre.high)
+        is_share ? fmt::format("failures {:.0f} % [{:.0f}, {:.0f}]", 100.0 * part.centre.value, 100.0 * part.centre.low,
+                               100.0 * part.centre.high)
                  : styled_value(row.metric, part.centre.value, true) + " " + styled_interval(row.metric, part.centre);
-    return fmt::format("{} {:.4g} to {:.4g}: {}, {} draws", each.number, part.low, part.high, centre, part.draws);
+    return fmt::format("{} from {:.4g} to {:.4g}: {} in {} simulated runs", each.number, part.low, part.high, centre,
+                       part.draws);
   };
   return "<td>" + dependence_svg(each.dependence, label_of) + "</td>";
 }
@@ -97,10 +98,10 @@ std::string sensitivity_html(const std::vector<Sensitivity>& rows, const std::st
       "significant influence. Significant means a risk of 5 %, with Holm’s correction over all parameters. The "
       "strength is the share of the variance of the score’s ranks that the parameter explains. It is the larger of "
       "the parameter’s first-order index and squared rank correlation. The plot shows the score over the range of "
-      "the parameter, in classes with equal numbers of draws. Each class shows the median (or the share of "
+      "the parameter, in classes with equal numbers of runs. Each class shows the median (or the share of "
       "failures) with its 95 % interval. Point at a class to see its values. A correlation above 0 means that "
       "larger values of the parameter give worse scores. The last two columns show median scores: of the quarter of "
-      "the draws with the lowest values, and of the quarter with the highest values.</p>\n";
+      "the runs with the lowest values, and of the quarter with the highest values.</p>\n";
   for (auto row = rows.begin(); row != rows.end();) {
     const Sensitivity& first = *row;
     out += fmt::format("<details{}><summary>{} · {}</summary>\n", row == rows.begin() ? " open" : "",

@@ -63,8 +63,8 @@ Table table_of(const std::vector<scenarios::Answer>& answers, const Question& qu
           : question.margin.relative   ? fmt::format(" by {:g} %", 100.0 * question.margin.value)
                                        : fmt::format(" by {:g}", question.margin.value),
           question.risk),
-      {"scenario", "answer", "seeds used", question.margin.value > 0.0 ? "better by this : not" : "better : worse",
-       "seeds needed at least"});
+      {"scenario", "answer", "seeds used",
+       question.margin.value > 0.0 ? "better by the margin : other" : "better : worse", "seeds needed at least"});
   table.align_right_from(2);
   for (const scenarios::Answer& each : answers) {
     table.add_row({each.scenario, finding_text(each, question), std::to_string(each.seeds),

@@ -60,7 +60,8 @@ scenarios::Suite suite_of(const scenarios::DataRoot& data, const BenchOptions& o
       scenarios::load_suite(data, options.suite.empty() ? scenarios::bench_suite_name(kind) : options.suite);
   if (suite.classes.empty())
     throw BadInput(fmt::format(
-        "suite {} has no classes of simulated runs; add the key 'draws' to the file of the suite", suite.name));
+        "suite {} has no classes (named groups of seeds per scenario); add the key 'draws' to the suite file",
+        suite.name));
   suite.methods = options.methods;
   return suite;
 }

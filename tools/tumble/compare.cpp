@@ -229,7 +229,8 @@ Action declare_compare(VerbOptions& verb, const Session& session) {
       "--against", options->against,
       "sets the method with which the other methods are compared [default: the last --method, or the baseline method]");
   verb.add("--metric", options->metrics,
-           "compares this metric; repeat the option for more metrics [default: the most important metrics of the kind]")
+           "compares this metric; repeat the option for more metrics [default: the most important metrics of the "
+           "method's kind]")
       .one_at_a_time();
   verb.add("--margin", options->margin,
            "sets the margin: a smaller loss counts as 'not worse'. Write a number in the metric's unit, or a "

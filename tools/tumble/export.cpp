@@ -121,7 +121,7 @@ Action declare_export(VerbOptions& verb, const Session& session) {
            "sensor data to a file. csv, pcd, ply, rosbag2 and --for write to a folder")
       .required();
   verb.add_flag("--with-truth", options->with_truth,
-                "adds the true poses of the body: to a bag as topic /truth, with --for as file truth.tum");
+                "adds the true poses of the body: as topic /truth to a bag, or as file truth.tum to a folder of --for");
   verb.add(
       "--estimate", options->estimates,
       "adds the poses and lidar points of an estimate (a folder, or a TUM file of the IMU) to a bag. If the recording "

@@ -107,8 +107,8 @@ class Found {
           kMeasured, kPoseOption);
     }
     add("pose of the lidar",
-        "assumed equal to the pose of the body and calibrated during the run. Tracking may fail if the error exceeds 1 "
-        "deg or 5 cm",
+        "the lidar is assumed at the origin and in the axes of the body; the run calibrates its pose. Tracking may "
+        "fail if the error exceeds 1 deg or 5 cm",
         kAssumed, kPoseOption);
   }
 
@@ -187,7 +187,7 @@ class Found {
         fmt::format("{} m/s^2; the first reading measures {} m/s^2 along {}",
                     rounded(recording_.content.sensors.gravity_m_s2), rounded(force.norm()),
                     vector_text(force.normalized())),
-        kMeasured, "no option is needed, because any mounting is allowed");
+        kMeasured, "no option is needed, because the IMU may have any orientation");
   }
 
   static std::string point_times(const sim::LidarRecord& lidar) {
@@ -201,12 +201,15 @@ class Found {
   void add_clocks() {
     const auto& agreement = recording_.rotation.primary;
     if (!agreement)
-      return add("clock of the lidar", "the stated time stamps, calibrated during the run", kAssumed, "--stamps");
+      return add("clock of the lidar",
+                 "the lidar's time stamps are unchanged; the run calibrates their offset to the IMU", kAssumed,
+                 "--stamps");
     add("clock of the lidar",
         agreement->delay_s == 0.0
-            ? std::string("agrees with the clock of the IMU within about 10 ms; calibrated during the run")
-            : fmt::format("{} s {} the clock of the IMU", rounded(std::abs(agreement->delay_s)),
-                          agreement->delay_s > 0.0 ? "after" : "before"),
+            ? std::string(
+                  "the lidar's clock agrees with the IMU's clock within about 10 ms; the run calibrates the offset")
+            : fmt::format("the lidar's rotation follows the gyro's rotation {} s {}",
+                          rounded(std::abs(agreement->delay_s)), agreement->delay_s > 0.0 ? "later" : "earlier"),
         kMeasured, "--stamps");
   }
 

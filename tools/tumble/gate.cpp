@@ -76,9 +76,9 @@ void keep_accepted(const scenarios::Gate& gate, const GateOptions& options,
   if (options.accept) return;  // accepts new scenarios too
   for (const scenarios::MethodPointer& method : given) {
     if (std::none_of(accepted.begin(), accepted.end(), [&](const auto& run) { return is_of(run, method); }))
-      throw scenarios::BadInput(
-          fmt::format("{}: the gate of suite {} has no accepted results of this method; add the results with --accept",
-                      full_name(method->info), suite.name));
+      throw scenarios::BadInput(fmt::format(
+          "{}: the accuracy gate of suite {} has no accepted results of this method; add the results with --accept",
+          full_name(method->info), suite.name));
   }
   for (const std::string& name : names) require_known("scenario of suite " + suite.name, name, suite.scenarios);
   suite.scenarios = names;
@@ -249,8 +249,8 @@ Action declare_gate(VerbOptions& verb, const Session& session) {
            "compares with the accepted results in this FILE.yaml, which needs a FILE.csv in the same folder [default: "
            "scenarios/gates/SUITE.yaml]");
   verb.add("--method", options->methods,
-           "also checks the external method in this FILE.yaml; with --accept, adds the named method (external, or of "
-           "this build) to the gate; repeat the option for more methods")
+           "also checks the external method in this FILE.yaml. With --accept, the accuracy gate also stores results of "
+           "this method (external, or of this build). Repeat the option for more methods")
       .one_at_a_time();
   verb.add("--jobs", options->jobs, "runs this number of processes in parallel [default: number of processors]")
       .whole(1, 1024)

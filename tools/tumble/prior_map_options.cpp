@@ -39,10 +39,9 @@ std::shared_ptr<const PriorMap> read_map_of(const PriorMapOptions& options) {
 }  // namespace
 
 void declare_prior_map(VerbOptions& verb, PriorMapOptions& options) {
-  verb.add(
-      "--map", options.map,
-      "localises 'slam/tumble_live' or 'slam/tumble_lag' in this map of an earlier run: map.tumblemap of an estimate, "
-      "or a PCD or PLY file");
+  verb.add("--map", options.map,
+           "estimates poses in this prior map, with the method 'slam/tumble_live' or 'slam/tumble_lag'. The map is the "
+           "file map.tumblemap of an earlier run, or a PCD or PLY file");
   verb.add(
       "--map-pose", options.pose,
       "states the IMU's pose in the map at the start: X Y Z HEADING [m, rad], then the standard deviations SIGMA_M "

@@ -43,8 +43,9 @@ std::string progress_line(const scenarios::SweepProgress& p, int bar_width) {
   const double share =
       p.draws_total == 0 ? 1.0 : static_cast<double>(p.draws_done) / static_cast<double>(p.draws_total);
   std::string line = bar_text(share, bar_width);
-  line += fmt::format("{}/{} draws  {} %  {} outcomes  {} not ok{}  {} rejected", p.draws_done, p.draws_total,
-                      static_cast<int>(share * 100.0), p.outcomes, p.not_ok(), failures_text(p), p.rejected);
+  line +=
+      fmt::format("{}/{} simulated runs  {} %  {} method runs, {} not ok{}  {} simulations rejected", p.draws_done,
+                  p.draws_total, static_cast<int>(share * 100.0), p.outcomes, p.not_ok(), failures_text(p), p.rejected);
   if (p.to_keep > 0) line += fmt::format("  kept {}/{}", p.kept, p.to_keep);
   if (p.draws_done < p.draws_total) {
     line += "  left " + (p.draws_done == 0 ? "?" : duration_text(p.left_s));

@@ -51,7 +51,8 @@ std::string wins_text(const Wins& wins) {
 
 Table score_table(const Section& section, bool all) {
   Table table(
-      fmt::format("{}: {} (paired with {})", section.scenario, to_string(section.kind), section.baseline),
+      fmt::format("{}: scores of {} methods (each is paired with {})", section.scenario, to_string(section.kind),
+                  section.baseline),
       {"metric", "method", "draws", "median", "95 % interval", "worst 5 %", "better in", "not ok", "at most (95 %)"});
   table.align_right_from(2);
   for (const std::string& name : all ? section.metrics : scenarios::headline_metrics(section.kind)) {

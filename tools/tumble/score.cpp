@@ -117,8 +117,8 @@ void require_compared(const ScoreOptions& options, const Standing& standing) {
 std::string alignment_text(const Standing& standing) {
   const Eigen::Vector3d& t = standing.alignment.translation_m;
   return fmt::format(
-      "position and yaw at the first common pose, {:.3f} s: yaw {:.6g} rad, ({:.6g}, {:.6g}, {:.6g}) m; scale and tilt "
-      "are not aligned",
+      "aligned in position and yaw at {:.3f} s, the first pose within the truth: the estimate is rotated about the "
+      "vertical by {:.6g} rad and moved by ({:.6g}, {:.6g}, {:.6g}) m; scale and tilt are not aligned",
       standing.first_s, standing.alignment.yaw_rad, t.x(), t.y(), t.z());
 }
 
@@ -139,7 +139,7 @@ std::string judge_trajectory(const Session& session, const Standing& standing, c
     outcome.message = "covers " + cover_text(standing);
   }
   session.note("scored as " + std::string(to_string(outcome.kind)) + ", covers " + cover_text(standing));
-  session.note("aligned in " + alignment_text(standing));
+  session.note(alignment_text(standing));
   return status;
 }
 

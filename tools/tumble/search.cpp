@@ -121,24 +121,24 @@ void say_result(const Session& session, const ShownSearch& shown) {
   const scenarios::SplittingResult& splitting = shown.result.splitting;
   if (!splitting.complete)
     session.note(fmt::format(
-        "{}: the budget ended before the population reached the bound, so the interval is wide; a larger --budget "
-        "with the same database continues the search",
+        "{}: the budget ended before the simulated runs reached the bound of --failure, so the interval of the "
+        "probability is wide; a larger --budget with the same database continues the search",
         shown.scenario));
   const double plain = plain_draws(splitting.probability);
   if (splitting.complete && plain < static_cast<double>(splitting.draws.size()))
     session.note(fmt::format(
-        "{}: {:.0f} independent simulated runs of 'tumble sweep' would give an equally narrow interval, because this "
-        "failure is frequent or depends on noise",
+        "{}: {:.0f} independent simulated runs of 'tumble sweep' would give an equally narrow interval of the failure "
+        "probability; this failure is frequent or depends on noise",
         shown.scenario, plain));
   const bool is_stuck = std::any_of(splitting.levels.begin(), splitting.levels.end(),
                                     [](const auto& level) { return level.moves > kMovesOfDrawnSearch; });
   if (is_stuck)
     session.note(fmt::format(
-        "{}: moves with a new seed are rarely accepted, because noise or terrain cause the failures; the interval may "
-        "be too narrow",
+        "{}: the search rarely accepts a new seed, because noise or terrain cause the failures; the interval of the "
+        "failure probability may be too narrow",
         shown.scenario));
   if (!shown.draws.empty())
-    session.note("'tumble shrink' with the file, seed and method of a command above simplifies the draw");
+    session.note("to simplify a listed run, give the file, seed and method of its command to 'tumble shrink'");
 }
 
 int search(const Session& session, const SearchVerbOptions& options) {
@@ -180,7 +180,7 @@ int search(const Session& session, const SearchVerbOptions& options) {
 
 Action declare_search(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<SearchVerbOptions>();
-  verb.add("SUITE", options->suite, "searches each scenario of this suite, suite file, or this scenario")
+  verb.add("SUITE", options->suite, "searches all scenarios of this suite or suite file, or only this scenario")
       .required()
       .check(a_suite(session));
   verb.add("--scenario", options->scenarios,
@@ -192,13 +192,14 @@ Action declare_search(VerbOptions& verb, const Session& session) {
       "defines a failure: 'METRIC > VALUE' in SI units, or 'METRIC < VALUE' if lower values are worse. A run whose "
       "status is not ok also fails; with the value inf, only such a run fails");
   verb.add("--worst", options->worst,
-           "searches for the draw with the worst value of this metric, instead of a probability");
-  verb.add("--budget", options->budget, "simulates at most this number of draws of each scenario")
+           "searches for the simulated run with the worst value of this metric, and estimates no failure probability");
+  verb.add("--budget", options->budget, "limits the number of simulated runs of each scenario")
       .whole(1, 10000000)
       .shows_default();
-  verb.add("--population", options->population,
-           "sets the number of draws that advance together; a larger population gives a narrower interval and needs a "
-           "larger budget")
+  verb.add(
+          "--population", options->population,
+          "sets the number of simulated runs per level of the search; a larger population gives a narrower interval of "
+          "the probability and needs a larger budget")
       .whole(4, 100000)
       .shows_default();
   verb.add("--seed", options->seed, "sets the seed of the search; another seed gives an independent estimate")

@@ -23,9 +23,9 @@ constexpr std::size_t kShiftsShown = 5;
 
 Table probability_table(const ShownSearch& shown) {
   const scenarios::SearchResult& result = shown.result;
-  Table table(fmt::format("{}: probability of {} {}", shown.scenario, shown.method, shown.goal.text()),
+  Table table(fmt::format("{}: probability that {} fails ({})", shown.scenario, shown.method, shown.goal.text()),
               {"probability", "95 % interval", "bound reached", "runs", "failures found", "not simulated",
-               "plain draws for this interval"});
+               "independent runs for this interval"});
   const Interval& p = result.splitting.probability;
   table.add_row({number_text(p.value), interval_text(p), result.splitting.complete ? "yes" : "no",
                  std::to_string(result.splitting.draws.size()), std::to_string(result.failures),
@@ -45,8 +45,8 @@ Table levels_table(const ShownSearch& shown) {
 }
 
 Table shifts_table(const ShownSearch& shown) {
-  Table table(fmt::format("{}: random parameters of the worst draws", shown.scenario),
-              {"number", "shift [sigma]", "Holm p", "10 %, 50 %, 90 % of the draws", "of the scenario"});
+  Table table(fmt::format("{}: random parameters of the worst simulated runs", shown.scenario),
+              {"number", "shift [sigma]", "Holm p", "quantiles 0.1, 0.5, 0.9 in these runs", "in the scenario"});
   for (std::size_t i = 0; i < shown.result.shifts.size() && i < kShiftsShown; ++i) {
     const InputShift& each = shown.result.shifts[i];
     const auto three = [](double low, double middle, double high) {
@@ -60,7 +60,7 @@ Table shifts_table(const ShownSearch& shown) {
 }
 
 Table draws_table(const ShownSearch& shown) {
-  Table table(fmt::format("{}: draws that the search found", shown.scenario),
+  Table table(fmt::format("{}: simulated runs that the search found", shown.scenario),
               {"run", "status", shown.goal.metric, "distance [sigma]", "command"});
   for (const ShownDraw& each : shown.draws) {
     table.add_row({std::to_string(each.found.run), to_string(each.found.status), number_text(each.found.value),

@@ -56,7 +56,7 @@ std::string amount_text(const std::optional<double>& value) {
 }
 
 Table lines_table(const Shrunk& shrunk, const std::string& metric) {
-  Table table("", {"part of the draw", "fate", "from", "to", "without it: status", metric});
+  Table table("", {"part of the simulated run", "fate", "from", "to", "without it: status", metric});
   for (const ShrinkLine& line : shrunk.lines) {
     table.add_row({line.what, to_string(line.fate), amount_text(line.from), amount_text(line.to),
                    line.without ? to_string(line.without->status) : "",
@@ -66,7 +66,7 @@ Table lines_table(const Shrunk& shrunk, const std::string& metric) {
 }
 
 Table outcomes_table(const Shrunk& shrunk, const std::string& metric) {
-  Table table("", {"draw", "status", metric, "estimate took [s]"});
+  Table table("", {"simulated run", "status", metric, "estimate took [s]"});
   const auto add = [&](const char* name, const scenarios::Outcome& outcome) {
     table.add_row({name, to_string(outcome.status), number_text(value_of(outcome.scores, metric)),
                    number_text(value_of(outcome.scores, "estimate_cpu_s"))});
@@ -135,7 +135,7 @@ void require_whole(const ShrinkVerbOptions& options) {
 }
 
 std::string control_text(const Shrunk& shrunk, const scenarios::ShrinkOptions& options) {
-  if (!options.control) return "the result is not confirmed, because no control method was used";
+  if (!options.control) return "no control method (--control) confirms that the failure comes from the method";
   const std::string& name = options.control->info.name;
   return shrunk.controlled ? fmt::format("the control method {} does not fail on the smaller simulated run", name)
                            : fmt::format(
@@ -160,8 +160,9 @@ int run_shrink(const Session& session, const ShrinkVerbOptions& options) {
   shrinking.control = control_of(options, *method, scenario, time_limit_s);
   shrinking.budget = options.budget;
   shrinking.on_trial = [&](const scenarios::ShrinkTrial& trial) {
-    session.note(fmt::format("run {:>3} of at most {}: {}: {}, {} {}{}", trial.run, options.budget, trial.what,
-                             trial.kept ? "fails" : "does not fail", to_string(trial.outcome.status),
+    session.note(fmt::format("run {:>3} of at most {}: {}: the method {} (status {}, {} {}){}", trial.run,
+                             options.budget, trial.what, trial.kept ? "fails" : "does not fail",
+                             to_string(trial.outcome.status), metric,
                              number_text(value_of(trial.outcome.scores, metric)),
                              trial.outcome.message.empty() ? "" : " (" + trial.outcome.message + ")"));
   };
@@ -174,7 +175,8 @@ int run_shrink(const Session& session, const ShrinkVerbOptions& options) {
   scenarios::replace_file(options.file, scenarios::to_yaml(made));
   session.print({lines_table(shrunk, metric), outcomes_table(shrunk, metric)}, to_json(shrunk, metric, options));
   session.note(fmt::format(
-      "{}: {} runs, {}; {}; {}; case file: {}", shrunk.failure, shrunk.runs,
+      "the search for a simpler failure ({}) took {} simulated runs: {}; {}; {}; the case file is {}", shrunk.failure,
+      shrunk.runs,
       shrunk.complete ? "no further part of the simulated run can be removed"
                       : "the budget of simulated runs is used up; a larger --budget may remove more parts",
       control_text(shrunk, shrinking),

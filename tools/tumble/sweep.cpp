@@ -187,8 +187,9 @@ std::optional<scenarios::Question> ask(const SweepVerbOptions& options, const sc
     throw scenarios::BadInput(
         "--until does not apply with --shard, because a shard contains only a part of the simulated runs");
   if (!suite.recordings.empty() || !suite.curves.empty())
-    throw scenarios::BadInput(fmt::format(
-        "--until does not apply to suite '{}', because the suite contains recordings or curves", suite.name));
+    throw scenarios::BadInput(
+        fmt::format("--until does not apply to suite '{}', because the suite contains recordings or varied parameters",
+                    suite.name));
   if (!suite.classes.empty())
     throw scenarios::BadInput(fmt::format(
         "--until does not apply to suite '{}', because the suite lists its simulated runs and has no range of seeds",

@@ -173,9 +173,10 @@ Action declare_triage(VerbOptions& verb, const Session& session) {
   verb.add("--metric", options->metric,
            "lists this metric; with --limit the metric also decides about failure [default: the first metric of the "
            "method's kind]");
-  verb.add("--limit", options->limit,
-           "sets the limit of the metric in SI units; a run beyond the limit fails [default: only status and "
-           "map_failed decide]");
+  verb.add(
+      "--limit", options->limit,
+      "sets the limit of the metric of --metric in SI units; a run beyond the limit fails [default: a run fails only "
+      "by its status or the metric map_failed]");
   return [&session, options] { return run_triage(session, *options); };
 }
 

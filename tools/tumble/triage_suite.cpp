@@ -107,7 +107,9 @@ std::string conclusion(const std::vector<InputWorth>& worths) {
                        first->cured, first->failed);
   const std::string failures = first->failed == 0 ? "no method run failed (--metric and --limit define a failure)"
                                                   : "replacing a single input by its true value prevents no failure";
-  if (first->better <= first->worse) return fmt::format("{}; no true input improves most simulated runs", failures);
+  if (first->better <= first->worse)
+    return fmt::format("{}; no replacement of an input by its true value improves more simulated runs than it worsens",
+                       failures);
   return fmt::format("{}; the true value of {} improves {} of {} simulated runs", failures, name, first->better,
                      first->better + first->worse);
 }

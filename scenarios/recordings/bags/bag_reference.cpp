@@ -79,7 +79,8 @@ Eigen::Isometry3d pose_of_reference(const std::string& topic, const std::string&
                     whose));
   } else if (frame != "body" && frame != "base_link") {
     out.notes.push_back(fmt::format(
-        "{}, whose pose on the body is unknown; the import assumes that the frame is the body frame", whose));
+        "{}. The pose of this frame on the body is unknown; the import assumes that the poses belong to the body frame",
+        whose));
   }
   return T_BA.value_or(body);
 }

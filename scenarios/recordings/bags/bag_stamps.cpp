@@ -37,10 +37,13 @@ std::int64_t between(std::int64_t from_ns, std::int64_t to_ns) {
   return to_ns > from_ns ? std::numeric_limits<std::int64_t>::max() : std::numeric_limits<std::int64_t>::min();
 }
 
-std::string course(std::int64_t before_ns, std::int64_t now_ns) {
-  if (now_ns > before_ns) return "increases by " + seconds_text(between(before_ns, now_ns));
-  if (now_ns < before_ns) return "decreases by " + seconds_text(between(now_ns, before_ns));
-  return now_ns == 0 ? "is 0 in both messages" : "does not change";
+std::string course(const char* which, std::int64_t before_ns, std::int64_t now_ns) {
+  if (now_ns > before_ns)
+    return fmt::format("the {} stamp increases by {}", which, seconds_text(between(before_ns, now_ns)));
+  if (now_ns < before_ns)
+    return fmt::format("the {} stamp decreases by {}", which, seconds_text(between(now_ns, before_ns)));
+  return now_ns == 0 ? fmt::format("the {} stamp is 0 in this message and the previous message", which)
+                     : fmt::format("the {} stamp does not change", which);
 }
 
 }  // namespace
@@ -64,8 +67,8 @@ void BagStamps::add(std::int64_t header_ns, std::int64_t record_ns) {
 
 std::string BagStamps::disorder(std::size_t k) const {
   if (k == 0) return "the time stamp of this message is far from the time stamps of all other messages";
-  const std::string header = "the header's " + course(header_ns_[k - 1], header_ns_[k]),
-                    record = "the record's " + course(record_ns_[k - 1], record_ns_[k]);
+  const std::string header = course("header", header_ns_[k - 1], header_ns_[k]),
+                    record = course("record", record_ns_[k - 1], record_ns_[k]);
   const bool by_header = source_ == StampSource::header;
   const bool header_rises = header_ns_[k] > header_ns_[k - 1], record_rises = record_ns_[k] > record_ns_[k - 1];
   const bool rises = by_header ? header_rises : record_rises, other_rises = by_header ? record_rises : header_rises;

@@ -112,9 +112,9 @@ double unit_by_size(double span, double largest, double period_ns, const std::st
   append_number(period, period_ns * 1e-6);
   if (!(period_ns > 0.0)) {
     throw BadInput(
-        fmt::format("{}: the point times in field '{}' have a range of {} in a sweep, but the point times are not time "
-                    "stamps since 1970; state the times of the sweeps (--times), or the duration of one sweep "
-                    "(--sweep-period)",
+        fmt::format("{}: the point times in field '{}' have a range of {} in a sweep. Their unit is unknown, because "
+                    "they are not times since 1970 and the sweep period is unknown; state the times of the sweeps "
+                    "(--times), or the duration of one sweep (--sweep-period)",
                     where, field, range));
   }
   throw BadInput(fmt::format(

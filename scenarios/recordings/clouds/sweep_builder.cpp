@@ -68,8 +68,10 @@ std::string in_ns(std::int64_t time_ns) {
 
 std::string said(const PointTimeRule& rule) {
   const char* unit = rule.unit_ns == 1e9 ? "s" : rule.unit_ns == 1e6 ? "ms" : rule.unit_ns == 1e3 ? "us" : "ns";
-  return fmt::format("the point times come from field '{}', in {}{}", rule.field, unit,
-                     rule.absolute ? " of the clock" : " after the sweep's time stamp");
+  return rule.absolute
+             ? fmt::format("the point times come from field '{}', in {} of the lidar's clock", rule.field, unit)
+             : fmt::format("the point times come from field '{}', in {} after the sweep's time stamp", rule.field,
+                           unit);
 }
 
 std::int64_t middle_of(const std::vector<std::optional<std::int64_t>>& times_ns) {

@@ -45,7 +45,7 @@ std::string unit(const PointColumn& column) {
       break;
   }
   const std::string count = column.scale == 1.0 ? "ns" : "s";
-  return count + (column.absolute ? " since 1970" : " after the header's time stamp");
+  return count + (column.absolute ? ", counted from 1970" : ", counted from the time stamp of the message header");
 }
 
 Json fields_of(const SweepLayout& sweeps, bool timed) {
@@ -57,7 +57,7 @@ Json fields_of(const SweepLayout& sweeps, bool timed) {
          {"unit", "ns after timebase; timebase equals the header's time stamp"}},
         {{"name", "x y z"}, {"type", "float32"}, {"unit", "m; positions are in the lidar's frame and not deskewed"}},
         {{"name", "reflectivity"}, {"type", "uint8"}, {"unit", "0 to 255"}},
-        {{"name", "tag"}, {"type", "uint8"}, {"unit", "always 0, which means a single return with full confidence"}},
+        {{"name", "tag"}, {"type", "uint8"}, {"unit", "every tag is 0: a single return with full confidence"}},
         {{"name", "line"}, {"type", "uint8"}, {"unit", "ring number from bottom to top, or line number"}}};
   }
   for (const PointColumn& column : sweeps.columns) {

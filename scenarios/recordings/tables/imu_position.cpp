@@ -90,8 +90,9 @@ ImuPosition estimate_imu_position(const sim::ImuRecord& first, const sim::ImuRec
   const std::vector<Pair> pairs = fast_pairs(first, second, rate_difference);
   out.samples = pairs.size();
   if (pairs.size() < kSamplesMin) {
-    out.problem = fmt::format("only {} samples have a rate above {} rad/s and no saturated gyro; the position needs {}",
-                              pairs.size(), rounded(kRateMin_rad_s), kSamplesMin);
+    out.problem = fmt::format(
+        "only {} samples have a rate above {} rad/s and no saturated gyro; an estimate of the IMU's position needs {}",
+        pairs.size(), rounded(kRateMin_rad_s), kSamplesMin);
     return out;
   }
   if (rate_difference > kRateDifferenceMax) {
@@ -126,7 +127,7 @@ ImuPosition estimate_imu_position(const sim::ImuRecord& first, const sim::ImuRec
   out.position_m = solution.head<3>();
   out.sigma_m = (kCorrelatedSamples * variance * inverse.diagonal().head<3>()).cwiseMax(0.0).cwiseSqrt();
   if (!(out.sigma_m.maxCoeff() <= kSigmaMax_m))
-    out.problem = fmt::format("its position has the standard deviation {} m; the maximum is {} m",
+    out.problem = fmt::format("the estimated position of this IMU has the standard deviation {} m; the maximum is {} m",
                               rounded(out.sigma_m.maxCoeff()), rounded(kSigmaMax_m));
   return out;
 }

@@ -45,7 +45,7 @@ void require_plausible_force(const std::string& where, const sim::ImuRecord& imu
       "{}: the median specific force is {} m/s^2 if the accelerometer is read in {}. The median must be from 3 to 30 "
       "m/s^2. The specific force may be in {}{}{}",
       where, std::to_string(middle), read_as, likely, known ? " (set '--accel-unit " + likely + "')" : "",
-      middle < kLeastMedian_m_s2 ? "; gravity may be removed" : "");
+      middle < kLeastMedian_m_s2 ? "; the readings may be linear acceleration, without gravity" : "");
   if (known) throw RepairableInput(text, {"--accel-unit", likely});
   throw BadInput(text);
 }
@@ -257,19 +257,19 @@ std::string require_plausible_rates(const std::string& where, const sim::ImuReco
       rounded(turn.ratio), turn.windows, rounded(turn.correlation));
   const bool as_deg = unit == GyroUnit::deg_s;
   if (!as_deg && near_factor(turn.ratio, 1.0 / kDegreesPerRadian))
-    throw RepairableInput(
-        fmt::format("{}: if the gyro is read in rad/s, {}. The ratio must be from 0.5 to 2. The rates may be in "
-                    "deg/s{}",
-                    where, seen, kTakenInDegrees),
-        {"--gyro-unit", "deg/s"});
+    throw RepairableInput(fmt::format("{}: if the gyro is read in rad/s, {}. The ratio of both rotations must be from "
+                                      "0.5 to 2. The rates may be in deg/s{}",
+                                      where, seen, kTakenInDegrees),
+                          {"--gyro-unit", "deg/s"});
   if (as_deg && near_factor(turn.ratio, kDegreesPerRadian))
-    throw RepairableInput(
-        fmt::format("{}: if the gyro is read in deg/s, {}. The ratio must be from 0.5 to 2. The rates may be in "
-                    "rad/s{}",
-                    where, seen, kTakenInRadians),
-        {"--gyro-unit", "rad/s"});
-  if (near_factor(turn.ratio, 1.0)) return fmt::format("{}, so units and axes agree", seen);
-  return fmt::format("caution: {}. The ratio should be 1. Check the unit, the signs and the order of the axes", seen);
+    throw RepairableInput(fmt::format("{}: if the gyro is read in deg/s, {}. The ratio of both rotations must be from "
+                                      "0.5 to 2. The rates may be in rad/s{}",
+                                      where, seen, kTakenInRadians),
+                          {"--gyro-unit", "rad/s"});
+  if (near_factor(turn.ratio, 1.0)) return fmt::format("{}, so gyro and accelerometer agree in units and axes", seen);
+  return fmt::format(
+      "caution: {}. The ratio of both rotations should be 1. Check the unit, the signs and the order of the axes",
+      seen);
 }
 
 std::string rates_text(const std::string& where, const sim::ImuRecord& imu, GyroUnit unit) {

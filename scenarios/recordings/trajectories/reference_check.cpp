@@ -54,21 +54,22 @@ std::string disagreement(const TurningCheck& check, const std::string& imu) {
 }
 
 std::string caution(const TurningCheck& check, const std::string& frame, const std::string& imu) {
-  const std::string text =
-      "caution: " + disagreement(check, imu) + fmt::format("; expected: at most {}; ", share_text(kContradicts));
+  const std::string text = "caution: " + disagreement(check, imu) +
+                           fmt::format("; these rotations should differ by at most {}; ", share_text(kContradicts));
   const TurningFit& reading = check.reading.undelayed;
   if (reading.difference < kReferenceAgrees && reading.written == QuaternionConvention::as_stated) {
-    return text + fmt::format("the difference would be {} if the poses belonged to the {}{}",
+    return text + fmt::format("the rotations would differ by {} if the poses belonged to the {}{}",
                               share_text(reading.difference), frame,
                               frame == "IMU" ? "" : ": give --reference-frame " + frame);
   }
   const MountingFit& mounting = check.mounting.undelayed;
   if (mounting.difference < kReferenceAgrees) {
     const Eigen::Quaterniond& q = mounting.q_AI;
-    return text + fmt::format(
-                      "the difference would be {} if the IMU were rotated in the frame of the poses by the quaternion "
-                      "x y z w {:.4f} {:.4f} {:.4f} {:.4f}; check the mounting",
-                      share_text(mounting.difference), q.x(), q.y(), q.z(), q.w());
+    return text +
+           fmt::format(
+               "the rotations would differ by {} if the IMU were rotated in the frame of the poses by the quaternion "
+               "x y z w {:.4f} {:.4f} {:.4f} {:.4f}; check the mounting",
+               share_text(mounting.difference), q.x(), q.y(), q.z(), q.w());
   }
   return text + fmt::format(
                     "no other order or direction of the quaternions, no other frame and no delay within {:.0f} s "
@@ -83,8 +84,8 @@ std::string agreement(const TurningCheck& check, const std::string& imu) {
       fmt::format("the reference agrees with the gyro of '{}': rotations differ by {} (median of {} pairs of poses)",
                   imu, share_text(fit.difference), check.pairs);
   if (std::abs(fit.delay_s) >= kDelayNoted_s)
-    return fmt::format("caution: {} after a correction of the time stamps of the reference, which are {}", text,
-                       delay_text(fit.delay_s));
+    return fmt::format("caution: the time stamps of the reference are {}. Without this delay, {}",
+                       delay_text(fit.delay_s), text);
   return text +
          (check.clock_known ? "" : "; this motion does not reveal whether the clock of the reference has a delay") +
          (check.order_known ? "" : "; this motion does not reveal whether the quaternions have w first");
@@ -98,7 +99,8 @@ bool fits_as_stated(const TurningCheck& check) {
 [[noreturn]] void refuse(const TurningCheck& check, const std::string& imu, const std::string& where, double corrected,
                          const std::string& remedies) {
   throw BadInput(where + ": " + disagreement(check, imu) +
-                 fmt::format(", only {} after correction", share_text(corrected)) + remedies);
+                 fmt::format(", but the corrected rotations would differ by only {}", share_text(corrected)) +
+                 remedies);
 }
 
 void require_reading_as_stated(const TurningCheck& check, const std::string& imu, const std::string& where) {
@@ -130,7 +132,7 @@ std::string check_reference(const std::vector<ReferencePose>& poses, const Eigen
   if (check.pairs == 0)
     return fmt::format(
         "the reference is not checked against a gyro: too few pairs of poses of the reference (0.05 to 1 s apart) "
-        "rotate by at least 0.02 rad while '{}' has readings below its range",
+        "rotate by at least 0.02 rad while the gyro of '{}' is not saturated",
         imu.name);
   if (check.upright) {
     throw BadInput(

@@ -301,10 +301,15 @@ std::string delay_text(double delay_s) {
 }
 
 std::string delay_remedy(double delay_s) {
-  const bool late = delay_s > 0.0;
+  if (delay_s > 0.0)
+    return fmt::format(
+        "the time stamps of the poses are {0:.3f} s too late, but at most {1:.2f} s is accepted; subtract {0:.3f} s "
+        "from the time stamps",
+        delay_s, kDelayMax_s);
   return fmt::format(
-      "the time stamps of the poses are {}, but at most {:.2f} s is accepted; {} {:.3f} s {} the time stamps",
-      delay_text(delay_s), kDelayMax_s, late ? "subtract" : "add", std::abs(delay_s), late ? "from" : "to");
+      "the time stamps of the poses are {0:.3f} s too early, but at most {1:.2f} s is accepted; add {0:.3f} s to the "
+      "time stamps",
+      -delay_s, kDelayMax_s);
 }
 
 TurningCheck check_turning(std::span<const TimedAttitude> attitudes, const std::vector<CandidateFrame>& frames,

@@ -53,7 +53,7 @@ TEST(Complications, TheErrorsOfTheRigsSensorsAreThere) {
   for (const Complication& each : complications(fixed("hill"))) names.insert(each.name);
   for (const char* name :
        {"world: rocks", "world: trunks", "world: relief", "robot: offset of the centre of mass", "motion: forward spin",
-        "sensors.imu: rail of the gyro", "sensors.imu: tilt, scale and offset of the saturation limits",
+        "sensors.imu: rail of the gyro", "sensors.imu: misalignment, scale and offset of the sensing elements",
         "sensors.imu: white noise", "sensors.imu: bias", "sensors.imu: delay and clock error",
         "sensors.imu_reference: all errors of this sensor", "sensors.lidar: range noise",
         "sensors.lidar: mounting errors"})

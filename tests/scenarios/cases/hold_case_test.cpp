@@ -103,7 +103,8 @@ TEST(HoldCase, AShrunkDrawBecomesACaseThatStillFails) {
       named.doc,
       HasSubstr(
           "fails (map_failed) on a simplified form of the simulated run with seed 77 of scenario cliff. Removing any "
-          "of these parts removes the failure: world: bumps. The number of parts whose removal was not tried is 1."));
+          "of these parts removes the failure: world: bumps. The removal of other parts of the scenario was not tried "
+          "(number: 1)."));
   const Expectation& expected = named.named_case->expected.front();
   EXPECT_EQ(expected.drawn, 2.5);
   EXPECT_EQ(expected.value, 1.5);

@@ -149,7 +149,7 @@ TEST_F(DrawReal, WhatOnlyShowsWhenDrawnIsNamed) {
               HasSubstr("slope.yaml:9: sensors.lidar: unknown device 'rs17'; did you mean 'rs16'?"));
   EXPECT_THAT(draw_complaint("device: rs16", "device: mti30", 5),
               HasSubstr("is a sensor of kind 'imu'; it must be of kind 'spinning_lidar'"));
-  EXPECT_THAT(draw_complaint("[0, 0.003]", "[0, 1e6]", 5), HasSubstr("slope.yaml: draw with seed 5: "));
+  EXPECT_THAT(draw_complaint("[0, 0.003]", "[0, 1e6]", 5), HasSubstr("slope.yaml: simulated run with seed 5: "));
   EXPECT_THAT(draw_complaint("name: slope", "name: slop", 5),
               HasSubstr("name is 'slop'; it must be the name of the file, 'slope'"));
 }

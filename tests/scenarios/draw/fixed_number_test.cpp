@@ -52,7 +52,7 @@ TEST(FixNumber, ComplaintsNameTheNearestAndTheBound) {
   EXPECT_THAT(complaint("world.trunk_count", std::nan("")), HasSubstr("must be within"));
   EXPECT_THAT(complaint("word.trunk_count", 7), HasSubstr("did you mean 'world'"));
   EXPECT_THAT(complaint("sensors.imo.output_rate_hz", 100), HasSubstr("did you mean 'imu'"));
-  EXPECT_THAT(complaint("sensors.imu", 100), HasSubstr("names no number"));
+  EXPECT_THAT(complaint("sensors.imu", 100), HasSubstr("names a sensor without a parameter"));
   EXPECT_THAT(complaint("sensors.imu.mount_error.yaw_rd", 0), HasSubstr("did you mean 'yaw_rad'"));
   EXPECT_THAT(complaint("", 0), HasSubstr("the scenario has no number with the key"));
   EXPECT_EQ(complaint("motion.rest_s", 1.0), "") << "or everything is refused";

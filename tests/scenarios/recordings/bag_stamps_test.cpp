@@ -116,10 +116,10 @@ TEST_P(Stamps, APlaceThatNobodyStatesIsSaid) {
 TEST_P(Stamps, BrokenHeadersAreRefusedWithTheWayOut) {
   EXPECT_THAT(
       complaint_of(zero, sweep_before),
-      AllOf(HasSubstr("message 1 of /imu: the time stamp does not increase: the header's is 0 in both messages"),
-            HasSubstr("the record's increases by 0.005 s (set '--stamps record')")));
-  EXPECT_THAT(complaint_of(constant, sweep_before), HasSubstr("the header's does not change"));
-  EXPECT_THAT(complaint_of(back, sweep_before), HasSubstr("the header's decreases by 0.005 s"));
+      AllOf(HasSubstr("message 1 of /imu: the time stamp does not increase: the header stamp is 0 in this message"),
+            HasSubstr("the record stamp increases by 0.005 s (set '--stamps record')")));
+  EXPECT_THAT(complaint_of(constant, sweep_before), HasSubstr("the header stamp does not change"));
+  EXPECT_THAT(complaint_of(back, sweep_before), HasSubstr("the header stamp decreases by 0.005 s"));
   EXPECT_THAT(complaint_of(same, constant), HasSubstr("message 1 of /points: the time stamp does not increase"));
 }
 

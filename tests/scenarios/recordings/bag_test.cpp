@@ -198,12 +198,12 @@ TEST_P(Bag, RatesInDegreesAreNoticedByGravity) {
     write();
   };
   turning(1.0, 1.0);
-  EXPECT_THAT(read().notes, testing::Contains(HasSubstr("units and axes agree")));
+  EXPECT_THAT(read().notes, testing::Contains(HasSubstr("gyro and accelerometer agree in units and axes")));
   turning(57.29578, 1.0);
   EXPECT_THAT(complaint_of(), HasSubstr("The rates may be in deg/s"));
   reading_.gyro_unit = GyroUnit::deg_s;
   const Imported in_degrees = read();
-  EXPECT_THAT(in_degrees.notes, testing::Contains(HasSubstr("units and axes agree")));
+  EXPECT_THAT(in_degrees.notes, testing::Contains(HasSubstr("gyro and accelerometer agree in units and axes")));
   EXPECT_TRUE(in_degrees.sensors.imus[0].gyro_rad_s[0].isApprox(Eigen::Vector3d(1.0, 0.0, 0.0), 1e-7));
   turning(1.0, 1.0);
   EXPECT_THAT(complaint_of(), HasSubstr("if the gyro is read in deg/s, gravity rotates"));

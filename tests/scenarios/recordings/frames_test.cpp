@@ -247,7 +247,8 @@ TEST_P(Frames, APoseOfAnotherFrameIsMovedToTheBody) {
             Eigen::Vector3d(7, 7.5, 7));
   EXPECT_EQ(start("mast", ReferenceOf::body, ""), Eigen::Vector3d(7, 8, 9));
   EXPECT_EQ(start("base_link", ReferenceOf::named, ""), Eigen::Vector3d(7, 8, 9));
-  EXPECT_EQ(start("unknown", ReferenceOf::named, "whose pose on the body is unknown"), Eigen::Vector3d(7, 8, 9));
+  EXPECT_EQ(start("unknown", ReferenceOf::named, "The pose of this frame on the body is unknown"),
+            Eigen::Vector3d(7, 8, 9));
 }
 
 // a motion capture system sends such a transform
@@ -266,8 +267,8 @@ TEST_P(Frames, ATransformIsAReference) {
   ASSERT_TRUE(found.reference.has_value());
   EXPECT_EQ(found.reference->p_WB_m.at(0), Eigen::Vector3d(7, 8, 9));
   EXPECT_TRUE(found.reference->q_WB.at(0).isApprox(Eigen::Quaterniond(0.6, 0.8, 0, 0), 1e-12));
-  EXPECT_THAT(found.notes, Contains(HasSubstr("/vicon: according to the messages, the poses belong to the frame 'rig', "
-                                              "whose pose on the body is unknown")));
+  EXPECT_THAT(found.notes, Contains(HasSubstr("/vicon: according to the messages, the poses belong to the frame 'rig'. "
+                                              "The pose of this frame on the body is unknown")));
 }
 
 TEST_P(Frames, AStatedZeroIsAMounting) {

@@ -231,7 +231,7 @@ TEST_F(ImportCsv, UnitsOfTheGyroAreHeldAgainstGravity) {
   fixture::put(folder_ / "a.csv", turning(1.0, 1.0));
   const Imported good = import_imu_csv(folder_ / "a.csv", {});
   ASSERT_EQ(good.notes.size(), 1u);
-  EXPECT_THAT(good.notes[0], HasSubstr("units and axes agree"));
+  EXPECT_THAT(good.notes[0], HasSubstr("gyro and accelerometer agree in units and axes"));
   EXPECT_THAT(complaint_of(turning(57.29578, 1.0)), HasSubstr("The rates may be in deg/s"));
   fixture::put(folder_ / "deg.csv", turning(57.29578, 1.0));
   const Imported degrees = import_imu_csv(folder_ / "deg.csv", {}, AccelUnit::m_s2, GyroUnit::deg_s);

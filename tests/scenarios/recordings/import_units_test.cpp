@@ -48,7 +48,7 @@ TEST_F(ImportSphere, RatesInDegreesAreMetByTheTurning) {
   constexpr double kDegrees = 57.29577951308232;
   const Imported good = import(rolled(4.0, 1.0), 150.0);
   EXPECT_EQ(gravity_rotation(good.sensors.imus[0], RotationWindows::even).windows, 0);
-  EXPECT_THAT(good.notes, testing::Contains(HasSubstr("units and axes agree")));
+  EXPECT_THAT(good.notes, testing::Contains(HasSubstr("gyro and accelerometer agree in units and axes")));
   EXPECT_THAT(complaint_of(rolled(4.0, kDegrees), 150.0), HasSubstr("The rates may be in deg/s"));
   EXPECT_EQ(complaint_of(rolled(4.0, kDegrees), 150.0, GyroUnit::deg_s), "");
   EXPECT_THAT(complaint_of(rolled(4.0, 1.0), 150.0, GyroUnit::deg_s), HasSubstr("The rates may be in rad/s"));
@@ -65,7 +65,7 @@ TEST_F(ImportSphere, RatesBeyondTheRangeAreAnotherUnit) {
 TEST_F(ImportSphere, ForcesWithoutGravityAreMet) {
   std::string text = "sec,nsec,wx,wy,wz,fx,fy,fz\n";
   for (int k = 0; k < 100; ++k) text += "0," + std::to_string(k * 10'000'000) + ",0,0,0,0.1,0,0.02\n";
-  EXPECT_THAT(complaint_of(text, 7.854), HasSubstr("gravity may be removed"));
+  EXPECT_THAT(complaint_of(text, 7.854), HasSubstr("the readings may be linear acceleration, without gravity"));
 }
 
 TEST_F(ImportSphere, AGyroThatReadsNothingIsSaid) {

@@ -47,9 +47,8 @@ TEST(LeftOut, FewFaultsAreNotedAndManyAreRefused) {
   left_out.add("a wrong time stamp", "a.csv:3: does not increase");
   left_out.guard([] { throw BadInput("a.csv:9: is not finite"); });
   EXPECT_EQ(left_out.note(38),
-            "caution: the import leaves out 2 of 40 readings: 1 with a wrong time stamp (first: a.csv:3: does not "
-            "increase); 1 "
-            "with faulty data (first: a.csv:9: is not finite)");
+            "caution: the import leaves out 2 of 40 readings: 1 because of a wrong time stamp (first error: a.csv:3: "
+            "does not increase); 1 because of faulty data (first error: a.csv:9: is not finite)");
   EXPECT_NO_THROW(left_out.require_few(38));
   EXPECT_EQ(
       fixture::complaint([&] { left_out.require_few(37); }),
@@ -141,11 +140,12 @@ TEST_P(OddBag, OneWrongStampCostsOneReading) {
     change_imu_ = [shift_ms](int k, ros::Imu& imu) {
       if (k == 60) imu.header = header_of(kFirstStamp_ns + (600 + shift_ms) * kMilli_ns, "imu");
     };
-    expect_one_left_out(149, 15,
-                        "/imu: caution: the import leaves out 1 of 150 readings: 1 with a wrong time stamp (first: ");
+    expect_one_left_out(
+        149, 15,
+        "/imu: caution: the import leaves out 1 of 150 readings: 1 because of a wrong time stamp (first error: ");
   }
-  EXPECT_THAT(read().notes, Contains(HasSubstr("message 60 of /imu: the time stamp is out of order: the header's "
-                                               "increases by 4.01 s")));
+  EXPECT_THAT(read().notes, Contains(HasSubstr("message 60 of /imu: the time stamp is out of order: the header "
+                                               "stamp increases by 4.01 s")));
   change_imu_ = [](int k, ros::Imu& imu) {
     if (k == 0) imu.header = header_of(0, "imu");
   };
@@ -158,7 +158,8 @@ TEST_P(OddBag, OneUnusableReadingCostsOneReading) {
     change_imu_ = [&](int k, ros::Imu& imu) {
       if (k == 60) imu.angular_velocity[1] = value;
     };
-    expect_one_left_out(149, 15, "/imu: caution: the import leaves out 1 of 150 readings: 1 with faulty data (first: ");
+    expect_one_left_out(
+        149, 15, "/imu: caution: the import leaves out 1 of 150 readings: 1 because of faulty data (first error: ");
   }
 }
 
@@ -211,19 +212,19 @@ TEST_P(OddBag, OneFaultyCloudCostsOneCloud) {
       if (k == 5) change(cloud);
     };
   };
-  const std::string note = "/points: caution: the import leaves out 1 of 15 clouds: 1 with ";
+  const std::string note = "/points: caution: the import leaves out 1 of 15 clouds: 1 because of ";
   change_cloud_ = at_5([](ros::PointCloud2& cloud) { cloud.data.resize(cloud.data.size() / 2); });
-  expect_one_left_out(150, 14, note + "faulty data (first: ");
+  expect_one_left_out(150, 14, note + "faulty data (first error: ");
   change_cloud_ = at_5([](ros::PointCloud2& cloud) { cloud.header = header_of(kFirstStamp_ns, "lidar"); });
-  expect_one_left_out(150, 14, note + "a wrong time stamp (first: ");
+  expect_one_left_out(150, 14, note + "a wrong time stamp (first error: ");
   change_cloud_ =
       at_5([](ros::PointCloud2& cloud) { cloud.header = header_of(kFirstStamp_ns + 9000 * kMilli_ns, "lidar"); });
-  expect_one_left_out(150, 14, note + "a wrong time stamp (first: ");
+  expect_one_left_out(150, 14, note + "a wrong time stamp (first error: ");
   change_cloud_ = at_5([](ros::PointCloud2& cloud) { cloud.fields.pop_back(), cloud.fields[0].name = "u"; });
-  expect_one_left_out(150, 14, note + "faulty data (first: ");
+  expect_one_left_out(150, 14, note + "faulty data (first error: ");
   change_cloud_ = nullptr;
   for (std::size_t p = 5 * kPoints; p < 6 * kPoints; ++p) recording_.sensors.lidars[0].position_L_m[p] *= 1e4f;
-  expect_one_left_out(150, 14, note + "points beyond the lidar's range (first: ");
+  expect_one_left_out(150, 14, note + "points beyond the lidar's range (first error: ");
 }
 
 TEST_P(OddBag, ManyFaultyCloudsAreRefused) {
@@ -244,7 +245,7 @@ TEST_P(OddBag, OneWildPointTimeCostsOnePoint) {
       Contains(AllOf(HasSubstr("/points: caution: the import leaves out 1 point with times outside their sweep"),
                      HasSubstr("message 5 of /points: the time of point 3 is"))));
   for (std::size_t p = 5 * kPoints; p < 5 * kPoints + 20; ++p) offsets[p] = 4'200'000'000u;
-  expect_one_left_out(150, 14, "1 with faulty data (first: ");
+  expect_one_left_out(150, 14, "1 because of faulty data (first error: ");
 }
 
 TEST_P(OddBag, EqualPointTimesMeanSweepsThatAreNotSkewed) {

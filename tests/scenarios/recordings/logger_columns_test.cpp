@@ -321,7 +321,7 @@ TEST_F(LoggerTable, TheUserNamesColumns) {
   EXPECT_EQ(seconds.info.origin_ns, 12'500'000'000);
   const auto refused = [&](const char* choice) { return fixture::complaint([&] { import_columns(split, choice); }); };
   EXPECT_THAT(refused("time=a,b,gyro=c,d,e,accel=f,g,z"),
-              HasSubstr("log.csv:1: --columns: the table has no column 'z'"));
+              HasSubstr("log.csv:1: --columns names 'z', but 0 of the 8 columns have this name"));
   EXPECT_THAT(refused("time=a,b,gyro=c,d,accel=f,g,h"), HasSubstr("--columns: gyro has 2 columns; it must have 3"));
   EXPECT_THAT(refused("gyro=c,d,e,accel=f,g,h"), HasSubstr("--columns: time has 0 columns"));
   EXPECT_THAT(refused("a,b"), HasSubstr("the entry 'a' of --columns must begin with time=, gyro= or accel="));

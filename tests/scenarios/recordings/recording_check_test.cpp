@@ -80,18 +80,18 @@ TEST(RecordingCheck, NamesWhatContradicts) {
       {[](auto& s) { s.series[0].quantities[1].values.pop_back(); }, "quantities/1: values has 4 rows"},
       {[nan](auto& s) { s.series[0].quantities[1].noise = nan; }, "quantities/1: noise is nan"},
       {[](auto& s) { s.series[0].quantities[1].name = "a,b"; },
-       "quantities/1: the name must consist of letters, digits and _, and must not be empty"},
+       "quantities/1: the name of this entry must consist of letters, digits and _, and must not be empty"},
       {[](auto& s) { s.series[0].quantities[1].name = ""; },
-       "the name must consist of letters, digits and _, and must not be empty"},
+       "the name of this entry must consist of letters, digits and _, and must not be empty"},
       {[](auto& s) { s.series[0].quantities[1].unit = "\x1b"; }, "unit must be UTF-8 text without control characters"},
       {[](auto& s) { s.series[0].quantities[1].name = "pressure_pa"; },
-       "quantities/1: two entries of the list have the same name"},
+       "quantities/1: two entries of 'quantities' have the same name"},
       {[](auto& s) {
          s.series[0].constants.push_back({"ground_pressure_pa", 1.0});
        },
-       "sensors/series/0: constants/1: two entries of the list have the same name"},
+       "sensors/series/0: constants/1: two entries of 'constants' have the same name"},
       {[](auto& s) { s.series[0].constants[0].name = "a b"; },
-       "constants/0: the name must consist of letters, digits and _, and must not be empty"},
+       "constants/0: the name of this entry must consist of letters, digits and _, and must not be empty"},
       {[nan](auto& s) { s.series[0].constants[0].value = nan; },
        "constants/0: the value of this constant is not finite"},
       {[](auto& s) { s.series[0].kind = "\xff"; },
@@ -136,7 +136,8 @@ TEST(RecordingCheck, NamesWhatContradictsInTheTruth) {
       {[](auto& t) { t.imus[1].gyro_bias_rad_s.clear(); }, "truth/imus/1: gyro_bias_I_rad_s has 0 rows"},
       {[](auto& t) { t.series[0].T_BX.linear() *= 1.001; }, "truth/series/0: T_BX must be a rigid transform"},
       {[](auto& t) { t.series[0].quantities[1].name = " "; },
-       "truth/series/0: quantities/1: the name must consist of letters, digits and _, and must not be empty"},
+       "truth/series/0: quantities/1: the name of this entry must consist of letters, digits and _, and must not be "
+       "empty"},
       {[](auto& t) { t.p_BG_m.x() = std::numeric_limits<double>::infinity(); }, "p_BG_m is not finite"}};
   for (const Case& each : cases) {
     sim::Truth truth = fixture::recording().truth;

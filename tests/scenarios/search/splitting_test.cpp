@@ -245,7 +245,8 @@ TEST(Splitting, RejectsInvalidOptions) {
   EXPECT_THAT(complaint(options), HasSubstr("the population is 3; it must be at least 4"));
   options = options_for(1.0, 1, 1);
   options.budget = 99;
-  EXPECT_THAT(complaint(options), HasSubstr("the budget is 99 draws; it must be at least the population, 100"));
+  EXPECT_THAT(complaint(options),
+              HasSubstr("the budget is 99 simulated runs; it must be at least the population, 100"));
   EXPECT_THAT(complaint(options_for(kUnbounded, 1, 1)), HasSubstr("must be finite"));
   EXPECT_THAT(complaint(options_for(1.0, 1, 1), std::nan("")), HasSubstr("is not a number"));
 }

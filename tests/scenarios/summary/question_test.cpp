@@ -103,7 +103,7 @@ TEST_F(QuestionTest, AMarginAsksForMore) {
   EXPECT_EQ(ask(question, 60).front().finding, Finding::worse);
   question.margin = {0.15, false};
   EXPECT_EQ(ask(question, 60).front().finding, Finding::worse);
-  EXPECT_STREQ(finding_text(ask(question, 60).front(), question), "not better by the margin")
+  EXPECT_STREQ(finding_text(ask(question, 60).front(), question), "not better by the margin of --until")
       << "it is better on every draw";
   question.margin = {0.05, false};
   EXPECT_EQ(ask(question, 60).front().finding, Finding::better);

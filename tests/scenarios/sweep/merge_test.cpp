@@ -113,11 +113,11 @@ TEST_F(MergeTest, TwoAnswersOfOneBuildAreRefusedAndNothingIsLeft) {
   const auto b = make("b.db", {row(1, OutcomeStatus::ok, "two")});
   EXPECT_THAT(
       complaint({a, b}),
-      HasSubstr("b.db: hill, seed 1, slam/icp: the status is ok with digest 'two', but another database has ok"));
+      HasSubstr("b.db: hill, seed 1, slam/icp: the method run has status ok and estimate digest 'two', but status ok"));
   EXPECT_FALSE(std::filesystem::exists(out_));
   EXPECT_EQ(files(), 2u);
   const auto c = make("c.db", {row(1, OutcomeStatus::diverged, "one")});
-  EXPECT_THAT(complaint({a, c}), HasSubstr("is diverged with digest"));
+  EXPECT_THAT(complaint({a, c}), HasSubstr("has status diverged and estimate digest"));
   // an existing output keeps its content
   make("out.db", {row(9, OutcomeStatus::ok)});
   EXPECT_NE(complaint({a, b}), "");
