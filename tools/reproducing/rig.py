@@ -374,6 +374,6 @@ The colour of a map point shows its distance to the true surface.
 ![angular speed against acceleration](rig_density.png)
 
 In the figure, a rectangle marks the highest values of other data sets according to the paper: 4.7 rad/s and 30.7 m/s².
-Two outlines show the highest angular speeds, in steps of 5 m/s², of the public data sets BROAD (Laidig et al., Data
-2021, CC BY 4.0) and AirbrakesV2 (MIT).
+For each acceleration step of 5 m/s², two lines show the highest angular speeds in the public data sets BROAD (Laidig et
+al., Data 2021, CC BY 4.0) and AirbrakesV2 (MIT).
 """

@@ -350,9 +350,10 @@ and 0.229° at 10 ms. Successive attitude steps of Madgwick's filter have a corr
 ## Autogain against Madgwick: distance to the reference and its derivative
 
 The *distance* is the angle between estimated and true attitude (figures 5 and 6 of the paper). A *step* is the change
-of this angle between samples at 120 Hz, and the *second difference* is the change between successive steps. Each cell
-is a median over the simulated runs. The mean angular rate is {slow} rad/s in `slow_roll`, {fast} rad/s in `roll`, and
-0.56 rad/s in a log of the paper's authors. The total variation in the paper includes noise of the optical tracker.
+of the attitude distance from sample to sample at 120 Hz. A *second difference* is the change between successive steps.
+Each cell is a median over the simulated runs. The mean angular rate is {slow} rad/s in `slow_roll`, {fast} rad/s in `roll`,
+and 0.56 rad/s in a log of the paper's authors. The paper's total variation of the distance includes noise of the
+optical tracker.
 
 {distance}
 ![distance to the truth](sphere_distance.png)
@@ -371,7 +372,7 @@ The figure of attitude distances shows the first simulated run of the scenario `
   rate of rolling without slip.
 - The column *published fusion* uses the sphere's radius of 0.145 m. The column *published fusion, radius 0.29 m* uses
   the diameter as radius, as the authors' code does. While the velocity from the accelerometer is near zero, the
-  published fusion halves the rolling velocity, and the doubled radius partly cancels this error.
+  published fusion halves the rolling velocity. A radius of 0.29 m partly cancels this error.
 
 ![paths with slip](sphere_slip.png)
 

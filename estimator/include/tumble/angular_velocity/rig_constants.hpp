@@ -28,7 +28,7 @@ struct RigConstants {
   Eigen::Vector3d sensing_direction(int j) const;
   /// Returns the inertia matrix, scaled to trace 3.
   Eigen::Matrix3d inertia_matrix() const;
-  /// Returns the coordinates `inertia` of a symmetric inertia matrix of any positive scale.
+  /// Converts a symmetric inertia matrix of any positive scale to the ratios `inertia`.
   static Eigen::Matrix<double, 5, 1> inertia_coordinates(const Eigen::Matrix3d& inertia);
   static const Eigen::Matrix3d& inertia_basis(int i);
 

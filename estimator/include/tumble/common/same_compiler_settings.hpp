@@ -33,7 +33,7 @@ using CompiledHere = SameCompilerSettings<EIGEN_MAX_STATIC_ALIGN_BYTES, EIGEN_MA
 template <>
 const char CompiledHere::linked;  // a declaration; src/common/same_compiler_settings.cpp has the definition
 
-/// One reference per source file makes the linker check each source file.
+/// This reference to `linked` makes the linker check each source file.
 [[gnu::used]] static const char* const kSameCompilerSettings = &CompiledHere::linked;
 
 }  // namespace tumble::detail

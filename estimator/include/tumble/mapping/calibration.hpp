@@ -37,7 +37,7 @@ struct StatedCalibration {
   double mount_sigma_rad = 0.0, mount_sigma_m = 0.0, time_offset_sigma_s = 0.0;
 
   /// Returns the distance between an estimated calibration and the stated calibration in standard deviations:
-  /// mapping.md (R69). The distance is the maximum over rotation, translation and time offset; infinite if `estimated`
+  /// mapping.md (R69). The result is the maximum over rotation, translation and time offset, or infinite if `estimated`
   /// changes an exact value.
   double deviations(const SweepCalibration& estimated) const;
   /// Returns `out_of_range` if deviations() is above kDistanceMax_sigmas, because the stated calibration is probably
@@ -47,8 +47,7 @@ struct StatedCalibration {
 
 }  // namespace tumble
 
-/// Descriptions of the parameters for the accuracy of the lidar's mounting and time offset. Several `Params` structs
-/// have these parameters.
+/// Descriptions of the parameters for the accuracy of the lidar's mounting and time offset.
 namespace tumble::calibration_fields {
 
 inline constexpr Field kMountSigma_rad{

@@ -55,8 +55,8 @@ struct PositionReading {
 struct PositionFrame {
   Eigen::Isometry3d T_PW = Eigen::Isometry3d::Identity();  ///< the rotation is about the vertical
   Eigen::Vector3d reference_W_m = Eigen::Vector3d::Zero();
-  /// Covariance in P of two errors: the displacement of the reference point [m], and the rotation about the vertical
-  /// through the reference point [rad].
+  /// Covariance of the error of T_PW, in axes of P: translation at `reference_W_m` [m], and rotation about the vertical
+  /// through this point [rad].
   Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
 
   /// Converts a pose from W to P, with the covariance of the position in P and the tilt errors of `in_W`.

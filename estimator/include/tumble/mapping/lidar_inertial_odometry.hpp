@@ -128,7 +128,7 @@ class LidarInertialOdometry {
   /// start in motion.
   Status check_vertical() const;
 
-  /// Estimates the pose at any time within the last `window_sweeps` sweeps. Returns `out_of_range` for any other time.
+  /// Estimates the pose at a time within the last `window_sweeps` sweeps. Returns `out_of_range` outside these sweeps.
   Status pose_at(TimeNs time_ns, PoseState& pose) const;
 
   /// Returns the current poses of the last `window_sweeps` sweeps, oldest first, which later sweeps still refine. The

@@ -11,11 +11,11 @@
 
 namespace tumble {
 
-/// Map of an earlier run in its frame M, in which a new run localises the robot. The z axis of M is vertical.
+/// Map of an earlier run in its frame M (z up), in which a new run localises the robot.
 struct PriorMap {
   std::vector<MapPoint> points = {};  ///< points with normals, in M; to_map_points() computes normals
-  /// Pose of the IMU in M where the new run starts, if known; only position and heading are used. Without T_MI, the run
-  /// may start anywhere in the map.
+  /// Start pose of the IMU in the frame M of the map, if known; only position and heading are used. If the start pose
+  /// is unknown, the run may start anywhere in the map.
   std::optional<Eigen::Isometry3d> T_MI = std::nullopt;
   double sigma_m = 0.0;    ///< standard deviation of the position of T_MI per axis; 0: exact
   double sigma_rad = 0.0;  ///< standard deviation of the heading of T_MI; 0: exact

@@ -45,15 +45,15 @@ struct SweepReport {
   /// True if the sweep relocalised the robot at an unpredicted pose, and two further sweeps have not yet confirmed this
   /// pose. A contradicting sweep reverts the relocalisation.
   bool relocalisation_unconfirmed = false;
-  /// Direction in world axes in which the lidar constrains the pose least, as a unit vector of position and attitude.
-  /// The attitude is scaled to metres by the root-mean-square lever arm.
+  /// Unit vector of position and attitude in world axes, along which the lidar constrains the pose least. The attitude
+  /// is multiplied by the root-mean-square distance of the points from the IMU.
   Eigen::Matrix<double, 6, 1> least_constrained_direction = Eigen::Matrix<double, 6, 1>::Zero();
   Eigen::Vector3d saturation_deficit_rad_s = Eigen::Vector3d::Zero();  ///< mean correction of the clipped gyro axes
   std::size_t points_used = 0;        ///< finite returns in range that do not hit the robot
   std::size_t isolated_points = 0;    ///< unused returns that no neighbouring beam confirms
   std::size_t points_registered = 0;  ///< usable points after sampling, one per voxel
   std::size_t map_points_added = 0;
-  /// true if the poses of the report are in the frame of the prior map
+  /// true if the poses are in the frame of the prior map
   bool in_prior_map = false;
 };
 

@@ -118,12 +118,12 @@ class RollingOdometry {
   /// sample), `gap` and `out_of_range`. `out_of_range` means that the run has finished, the time stamp exceeds
   /// kStampMax_ns, or the only IMU with readings has a frozen axis.
   ///
-  /// A single wrong time stamp causes the loss of one sample. After a gap of more than a second, the second sample
+  /// A single wrong time stamp causes the loss of one sample. The second sample after a gap of more than a second
   /// restarts the run. If the clock steps back, add_imus() rejects samples with `time_order` for 0.2 s, and then the
   /// run restarts. A restart finishes the poses so far and continues at the newest pose, like reset(pose). Poses after
   /// a restart have the flag `uncertain`, and their covariance includes the unknown motion during the gap.
   Status add_imus(std::span<const ImuSample> samples);
-  /// For a sphere with one IMU. Returns `ok` or an error of add_imus().
+  /// Processes a sample of a sphere with one IMU. Returns `ok` or an error of add_imus().
   Status add_imu(const ImuSample& sample) { return add_imus({&sample, 1}); }
 
   /// Processes a sample of one IMU whose samples are not simultaneous with those of the other IMUs. The IMUs are
@@ -151,9 +151,9 @@ class RollingOdometry {
   /// rest determines the tilt. Covariances are relative to `T_WG`.
   void reset(const Eigen::Isometry3d& T_WG);
 
-  /// Reports the suspected faults of the IMUs. A finding ends when its cause ends. The readings of a frozen unit are
-  /// ignored. If all units with readings are frozen, add_imus() rejects the sample. With kWholeRecording, finish()
-  /// checks the whole recording, and before finish() there is no finding.
+  /// Reports the present suspected faults of the IMUs. The readings of a frozen IMU are ignored. If all IMUs with
+  /// readings are frozen, add_imus() rejects the sample. With kWholeRecording, finish() checks the whole recording, and
+  /// before finish() there is no finding.
   SensorHealth health() const;
 
   /// Returns the merged IMUs of a whole recording with their findings (detail/imu_findings.hpp). Returns null before

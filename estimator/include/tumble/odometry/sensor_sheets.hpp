@@ -32,9 +32,9 @@ struct ImuSheet {
   }
 };
 
-/// Returns the largest reading that is certainly unsaturated, for a range from a data sheet. If the range is unknown
-/// (0), the result is infinity. The margin of 2 % covers the scale correction that a device's calibration applies to
-/// its saturation limit.
+/// Returns the largest reading that is certainly unsaturated, for a range from a data sheet. Returns infinity if the
+/// range is unknown (0). The margin of 2 % covers the scale correction that a device's calibration applies to its
+/// saturation limit.
 double unsaturated_range(double stated_range);
 
 /// LidarSheet contains the data sheet of a lidar. The estimators drop lidar returns outside of the stated range.
@@ -78,7 +78,7 @@ ImuSheet ouster_imu();
 /// IMU inside a Livox Mid-360; its ranges are assumed.
 ImuSheet mid360_imu();
 
-/// For programs that select a data sheet by name.
+/// Returns the data sheets of all IMUs with their names, for programs that select a data sheet by name.
 std::span<const std::pair<const char*, ImuSheet (*)()>> imus();
 
 /// RoboSense RS-16.
@@ -106,7 +106,7 @@ LidarSheet os1_128();
 /// Livox Mid-360.
 LidarSheet mid360();
 
-/// Returns the data sheets of all lidars with their names, for programs that select a data sheet by name.
+/// Returns the data sheets of all lidars with their names.
 std::span<const std::pair<const char*, LidarSheet (*)()>> lidars();
 
 }  // namespace sheets

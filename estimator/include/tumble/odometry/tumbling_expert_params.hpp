@@ -49,8 +49,8 @@ struct TumblingExpertParams {
   /// Maximum number of sweeps that wait for IMU samples, in addition to the sweeps within the lag. TumblingOdometry
   /// also stores at most sweeps_max sweeps that wait for take(), and then drops the oldest sweep.
   std::size_t sweeps_max = 16;
-  /// Parameters of the rate estimation. The default `uncalibrated` = 0.003 assumes the device's data sheet until
-  /// readings contradict the data sheet. The covariance of each rate includes the uncertainty of the calibration.
+  /// Parameters of the rate estimation. By default, the prior probability that the IMU does not match its data sheet is
+  /// 0.003. The covariance of each rate includes the uncertainty of the calibration.
   RegimeStream::Params rate = rate_defaults();
   /// Parameters of the mapping. By default, gravity's direction and the saturation deficit (true rate minus clipped
   /// reading) are unknowns of the registration.

@@ -53,9 +53,9 @@ struct SweepScale;
 ///
 /// An IMU sample costs one step of RegimeStream, and sometimes the registration of a sweep. After start-up, add_imu()
 /// allocates memory only if the sample completes a sweep. While SecondPass runs, a sweep costs up to four
-/// registrations. The end of SecondPass costs five additional registrations. The memory is bounded: it depends on the
-/// lag, the map radius, `sweeps_max` and the buffer of SecondPass. In addition, the map stores 12 bytes per sweep
-/// within ten metres. A call needs at most 64 KiB of stack.
+/// registrations. The end of SecondPass costs five additional registrations. The bounded memory depends on lag, map
+/// radius, `sweeps_max` and the buffer of SecondPass. The map also stores 12 bytes per sweep until the robot has moved
+/// ten metres. A call needs at most 64 KiB of stack.
 ///
 /// TumblingOdometry starts no threads, uses no files and prints nothing. A copy of a TumblingOdometry contains the
 /// complete state, so the copy can continue the run. The limitations of RegimeStream and LidarInertialOdometry apply to
@@ -69,8 +69,8 @@ class TumblingOdometry {
   struct Sweep {
     Status status;  ///< status of add_sweep(); `report.trajectory` is empty without a pose
     SweepReport report;
-    /// Transform from the world to the frame of the position readings, estimated from readings up to the sweep's end.
-    /// The value is empty if the transform is unknown.
+    /// Transform from the world to the frame of the position readings, estimated from readings up to the sweep's end;
+    /// empty if the readings do not determine the transform.
     std::optional<PositionFrame> position_frame;
   };
 
@@ -91,10 +91,10 @@ class TumblingOdometry {
   Status use_map(PriorMap map);
   /// Processes an IMU sample, and registers the sweeps whose rates become available. Time stamps must increase. Returns
   /// `non_finite`, `out_of_range`, `time_order` or `gap` if the sample is rejected. A single wrong time stamp causes
-  /// the loss of one sample. After a gap of more than a second, the second sample restarts the rate estimation with the
+  /// the loss of one sample. The second sample after a gap of more than a second restarts the rate estimation with the
   /// current calibration, and inertial integration bridges the gap. If the clock steps back, add_imu() rejects samples
-  /// with `time_order` for 0.2 s. The run then restarts at the newest pose, like reset(pose). OutlierFilter rejects
-  /// single outliers and may delay a sample by one. newest() is then one sample older.
+  /// with `time_order` for 0.2 s, and restarts at the newest pose, like reset(pose). OutlierFilter rejects single
+  /// outliers and may delay a sample by one. newest() is then one sample older.
   Status add_imu(const ImuSample& sample);
   /// Processes a sweep of points fired in [start_ns, end_ns], at any time after the sweep's last point. The points are
   /// copied. Points from before the end of the last sweep are dropped, because time stamps of sweeps may overlap by
@@ -105,10 +105,10 @@ class TumblingOdometry {
   Status add_sweep(TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points);
   /// Processes a sweep of one of several lidars: 0 is the first lidar, k is `further_lidars[k - 1]`. The points of a
   /// further lidar are registered together with the simultaneous sweep of the first lidar. The points of a further
-  /// lidar must arrive before the simultaneous sweep of the first lidar is registered, `lag_s` after the end of the
-  /// sweep. A lag of two sweep periods is long enough. The lidars need no synchronisation. Limitation: the ranges and
-  /// the own-body box of the first lidar also apply to the points of further lidars, in axes of the first lidar.
-  /// Returns `ok`, an error of add_sweep() for the first lidar, or `out_of_range` for an unknown lidar.
+  /// lidar must arrive within `lag_s` after the end of the first lidar's sweep. A lag of two sweep periods is long
+  /// enough. The lidars need no synchronisation. Limitation: the ranges and the own-body box of the first lidar also
+  /// apply to the points of further lidars, in axes of the first lidar. Returns `ok`, an error of add_sweep() for the
+  /// first lidar, or `out_of_range` for an unknown lidar.
   Status add_sweep(std::size_t lidar, TimeNs start_ns, TimeNs end_ns, std::span<const LidarPoint> points);
   /// Processes an odometer reading (mapping/further_readings.hpp). An odometer reading must arrive before the
   /// registration of its sweep, which is `lag_s` after the end of the sweep. If a sweep has several odometer readings,
@@ -149,7 +149,7 @@ class TumblingOdometry {
   /// last sweep). `velocity_covariance_I_m2_s2` (optional) is the covariance of the velocity error in IMU axes.
   Status newest(PoseState& pose, Eigen::Matrix3d* velocity_covariance_I_m2_s2 = nullptr) const;
   /// Reports the suspected faults of the sensors and of the estimate. Estimation continues after any finding, and a
-  /// finding ends when its cause ends (at the latest a minute later). The checks are RateStream::health(),
+  /// health finding ends when its fault ends (at the latest a minute later). The checks are RateStream::health(),
   /// ImuPlausibility, RestGravity, SweepScale, LidarInertialOdometry::check_vertical() and localised(), Localisation
   /// and StatedCalibration. With kWholeRecording, finish() checks the whole recording (detail/imu_findings.hpp), and
   /// before finish() there is no finding. Cost: a few hundred operations; health().ok() allocates nothing without a
@@ -165,7 +165,8 @@ class TumblingOdometry {
   /// Returns the rate of the newest IMU sample, if any. While the gyro is saturated, the rate of the newest sample is
   /// provisional.
   std::optional<RateState> newest_rate() const;
-  /// Returns the latest smoothed rate, which is about `lag_s` old. The result is empty while the lag fills.
+  /// Returns the latest smoothed rate, which is about `lag_s` old. Returns an empty value during the first `lag_s` of a
+  /// run.
   const std::optional<RateState>& smoothed_rate() const;
   /// Returns the estimated calibration of the IMU on the body (angular_velocity/rig_constants.hpp): lever arm, biases,
   /// inertia ratios and gyro axis directions.

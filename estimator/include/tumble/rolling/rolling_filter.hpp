@@ -40,7 +40,7 @@ class RollingFilter {
   struct Hypothesis {
     Vector x = Vector::Zero();  ///< errors: attitude (W), velocity and position of the IMU, constants
     Covariance P = Covariance::Zero();
-    Eigen::Vector3d contact_velocity_W_m_s = Eigen::Vector3d::Zero();  ///< contact velocity at the last node
+    Eigen::Vector3d contact_velocity_W_m_s = Eigen::Vector3d::Zero();  ///< contact velocity at the last time step
     double log_weight = 0.0;           ///< log probability relative to the most probable hypothesis
     std::int64_t mode_start_node = 0;  ///< node at which the current contact mode began
     std::int32_t parent = 0;           ///< index of the hypothesis' parent at the previous node
@@ -53,12 +53,12 @@ class RollingFilter {
     Eigen::Vector3d p_WG_m = Eigen::Vector3d::Zero();
     Eigen::Vector3d v_WG_m_s = Eigen::Vector3d::Zero();
     Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
-    /// position covariance at the last node, over all hypotheses
+    /// position covariance over all hypotheses, at the last time step (`node_s`)
     Eigen::Matrix3d position_covariance_m2 = Eigen::Matrix3d::Zero();
     Eigen::Vector3d contact_velocity_m_s =
-        Eigen::Vector3d::Zero();  ///< contact velocity at the last node, in world axes
+        Eigen::Vector3d::Zero();  ///< contact velocity at the last time step, in world axes
     RollingMode mode = RollingMode::grip;
-    double slip_probability = 0.0;  ///< probability that the contact point moves, at the last node
+    double slip_probability = 0.0;  ///< probability that the contact point moves, at the last time step
     double bump_probability = 0.0;  ///< part of slip_probability for modes in which the sphere hops
     bool at_rest = false;
     bool spins_in_place = false;  ///< the sphere rotates slowly about the contact point; no update of the gyro bias
@@ -74,7 +74,7 @@ class RollingFilter {
     RestDetector::State rest;
     Eigen::Vector3d low_passed_rate_rad_s = Eigen::Vector3d::Zero();
     bool position_constrained = false;      ///< the sphere is at rest and the reported position is constant
-    double variance_before_event_m2 = 0.0;  ///< horizontal position variance at the last node without an event
+    double variance_before_event_m2 = 0.0;  ///< horizontal position variance at the last time step without an event
     Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero();
     std::array<Hypothesis, kHypotheses> hypotheses{};
     int count = 0;
@@ -103,7 +103,6 @@ class RollingFilter {
   /// The covariance of the returned estimate contains only the position block.
   static RollingEstimate estimate(const State& state);
 
-  /// Returns the constants of sensors and sphere at the last node.
   static RollingCalibration calibration(const State& state);
 
  private:
