@@ -153,8 +153,8 @@ void discount_unobservable(double share, SensorErrorEvidence& evidence) {
     unobservable(3 * j + k, 2 + i) = unobservable(SensorErrors::kAccel + 3 * j + k, 2 + i) = 0.5;
     unobservable(3 * k + j, 2 + i) = unobservable(SensorErrors::kAccel + 3 * k + j, 2 + i) = -0.5;
   }
-  // Multiplies the information matrix by (I - d U U') on both sides. Only the five columns of U are stored, because the
-  // thread of a RateStream may have a small stack.
+  // Reduces the information along the unobservable directions. No full matrix is stored, because the thread of a
+  // RateStream may have a small stack.
   Eigen::Matrix<double, 5, SensorErrors::kSize> said = unobservable.transpose().lazyProduct(evidence.information);
   evidence.information.noalias() -= (1.0 - share) * unobservable.lazyProduct(said);
   said = unobservable.transpose().lazyProduct(evidence.information.transpose());
@@ -221,8 +221,7 @@ SensorErrorEvidence calibration_evidence(const KnownSensorErrors& earlier_runs, 
   Vector values;
   Matrix vectors;
   dense::decompose(scaled, values, vectors);
-  // If the variance along a direction equals the prior variance, the earlier run contains no information about the
-  // direction.
+  // The loaded calibration contains no information along directions in which its variance equals the prior variance.
   const Vector precision_ratio = values.cwiseMax(1e-12).cwiseInverse();
   const Vector of_mean = (precision_ratio.array() > 1.0).select(precision_ratio, Vector::Zero());
   const auto in_units = [&](const Vector& kept_values) -> Matrix {

@@ -9,8 +9,9 @@
 
 namespace tumble::mapping {
 
-/// While a relocalisation is unconfirmed, DeadReckoning predicts the pose without the relocalisation from the IMU. If
-/// later sweeps contradict the relocalisation, DeadReckoning predicts the relocalised pose.
+/// While a relocalisation is unconfirmed, DeadReckoning predicts the pose without the relocalisation from the IMU.
+/// After sweeps have contradicted the relocalisation, DeadReckoning predicts the rejected pose, as a starting pose of
+/// further searches.
 struct DeadReckoning {
   SweepBoundary boundary;
   LagWindow window;

@@ -9,7 +9,8 @@ namespace tumble::mapping {
 
 struct WaitingForStart {};
 
-/// While tracking, a sweep may remain without registration if its prior is certain, or if the search was abandoned.
+/// In the state Tracking, a sweep may be unregistered if its inertial prediction is certain, or after too many failed
+/// searches.
 struct Tracking {
   int failed_searches = 0;  ///< consecutive sweeps with points but without registration
 };

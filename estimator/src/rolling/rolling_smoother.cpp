@@ -13,7 +13,7 @@ namespace tumble {
 
 namespace {
 
-// With a longer lag of the smoother, the memory grows during the run.
+// maximum number of preallocated samples; with a longer lag of the smoother, the memory grows during the run
 constexpr std::size_t kPreallocatedMax = 1'000'000;
 
 RollingParams scale_noise(RollingParams params, double share) {
@@ -37,7 +37,8 @@ bool equal(const ImuSample& a, const ImuSample& b) {
          a.specific_force_m_s2 == b.specific_force_m_s2;
 }
 
-/// Returns the ratio of the reported variance to the variance of the final pass, which uses a reduced process noise.
+/// The final pass uses noise reduced by final_pass_noise_ratio, so the reported variance is the variance of the final
+/// pass times this result.
 double stated(const RollingSmoother::Params& params) {
   return 1.0 / (params.final_pass_noise_ratio * params.final_pass_noise_ratio);
 }
