@@ -12,8 +12,7 @@ namespace tumble {
 
 namespace {
 
-// If few clipped samples are classified as flight, the optimisation restarts with these factors of the flight
-// threshold.
+// If few clipped samples count as flight, the optimisation restarts with the flight threshold times these factors.
 constexpr double kRestartThresholds[] = {16.0, 0.25};
 constexpr double kFlightShareExpected = 0.5;
 

@@ -63,8 +63,7 @@ KnownSensorErrors RateStream::sensor_errors(const State& state) const {
   return out;
 }
 
-// See rate_stream.md (R101). The normal equations of the RateStream window must be factorised at the current estimates
-// and calibration.
+// See rate_stream.md (R101). The caller must factorise the normal equations at the current estimates and calibration.
 void RateStream::add_sensor_error_covariance(const arrow::BorderVector& rig_step, State& state) const {
   RateStreamDevice& device = state.device.front();
   const std::size_t count = state.window.size();

@@ -55,7 +55,7 @@ Vector deviations(const SensorErrorPriors& s, const Shares& shares) {
 
 constexpr double kPlain = 0.05;
 
-// Errors of the flight model last longer than a sample, so the information of the readings is reduced.
+// Errors of the free-flight equations last longer than a sample, so the information of the readings is reduced.
 constexpr double kEvidenceWeight = 0.03;
 
 struct Hypothesis {
@@ -79,8 +79,7 @@ Hypothesis posterior(const Matrix& information, const Matrix& earlier_runs, cons
   Vector sharpened = scaled_h;
   all.solve_vector(sharpened);
   out.log_odds = log_prior + 0.5 * scaled_h.dot(sharpened) - all.half_log_determinant();
-  // Errors of the flight model look like errors of scale and misalignment, so estimates of scale and misalignment stay
-  // zero.
+  // The estimated scale and misalignment stay zero, because errors of the free-flight equations have the same effect.
   Vector mean = Vector::Zero();
   mean.tail<kRest>() = scaled_h.tail<kRest>();
   dense::Cholesky(sharp.bottomRightCorner<kRest, kRest>()).solve_vector(mean.tail<kRest>());

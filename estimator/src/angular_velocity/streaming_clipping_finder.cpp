@@ -19,7 +19,7 @@ constexpr double kNearExtremeRatio = 0.9, kStoreRatio = 0.85;
 constexpr std::size_t kBeside = 4;
 // The first readings of a run determine the gyro's noise.
 constexpr std::size_t kLatestReadings = 48;
-// The search for saturation repeats when the number of readings near the extremes has grown by the fraction 1 /
+// The search for saturation repeats when the number of large readings has grown by the fraction 1 /
 // kSearchGrowthDivisor.
 constexpr std::size_t kSearchGrowthDivisor = 8;
 // minimum reading of gyro and accelerometer near saturation, as a fraction of the smallest possible saturation level
@@ -60,7 +60,7 @@ bool StreamingClippingFinder::is_near(const Vector3d& reading, Triad triad, cons
   return false;
 }
 
-// At most readings_max_ readings are stored: readings far from the largest are dropped first, then the oldest.
+// Above readings_max_ readings, those far from the largest readings are dropped first, then the oldest.
 void StreamingClippingFinder::store(const Vector3d& reading, Triad triad, Memory& memory) const {
   std::vector<Vector3d>& readings = memory.readings;
   if (readings.size() == readings_max_) {

@@ -293,7 +293,7 @@ double Motion::add_attitude(const Node& from, const Node& to, double jerk, Syste
   return w * error.squaredNorm();
 }
 
-// Adds the model of hand-held motion over one time step: carried.md (C2), (C4), (C6), (C7), (C8).
+// Adds the motion model of one time step: carried.md (C2), (C4), (C6), (C7), (C8).
 double Motion::add_step(const Node& from, const Node& to, double hand, System::Block& block, System::Block& next,
                         double jerk) const {
   double cost = add_attitude(from, to, jerk, block, next);

@@ -16,7 +16,7 @@ using hand_held::System;
 namespace {
 
 constexpr double kUnknown_rad2_s2 = 1e6;  // variance of a rate if the equations have no solution
-// Within this time of a clipped reading, the covariance is computed with an increased density of the angular jerk.
+// Near a clipped reading, the covariance is computed with an increased density of the angular jerk.
 constexpr double kNear_s = 0.1;
 
 std::uint8_t clipped_axes(const ClipSigns& signs) {

@@ -179,7 +179,6 @@ ImuSample ImuMerge::merge(State& state) const {
 /// Selects unsaturated IMUs that agree with the median of all IMUs: imu_merge.md (I5).
 ImuMerge::UnitMask ImuMerge::select_units(const Readings& readings, const UnitMask& present, const Vectors& rates,
                                           const Vectors& forces, double h, State& state) const {
-  // If the body rotates, IMUs at different positions measure different specific forces.
   const Eigen::Vector3d middle_rate = median(rates, present), middle_force = median(forces, present);
   const auto units = std::count(present.begin(), present.end(), true);
   const double rate_tolerance = params_.expert.outliers.rate_rad_s + kRateToleranceRatio * middle_rate.norm();

@@ -146,8 +146,7 @@ void conclude_scale(const std::vector<ScaleVote>& votes, PivotCheck& found) {
 PivotCheck PivotCheck::of(std::span<const ImuSample> samples, double gravity_m_s2, double gyro_range_rad_s,
                           double accel_range_m_s2) {
   static const Readings readings = all_readings();
-  // The second series is shifted by half a segment, so that an impact at the boundary of two segments is inside another
-  // segment.
+  // The second series is shifted by half a segment, so that an impact between two segments is inside another segment.
   std::array<Segments, 2> series = {Segments(gravity_m_s2, readings), Segments(gravity_m_s2, readings)};
   double mean_s = 0.0, since_s = 0.0;
   Eigen::Vector3d turned = Eigen::Vector3d::Zero(), gained = Eigen::Vector3d::Zero();

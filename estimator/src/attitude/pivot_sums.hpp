@@ -19,7 +19,7 @@ struct PivotFit {
 
 class PivotSums {
  public:
-  /// `at_s` is the time of the reading's middle since the first reading's start. Cost: O(1).
+  /// `at_s` is the time from the start of the first reading to the middle of this reading. Cost: O(1).
   void add(double at_s, double dt_s, const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& force_m_s2) {
     const Eigen::Quaterniond half = so3::exp(0.5 * dt_s * rate_rad_s);
     const Eigen::Quaterniond middle = turned_ * half;

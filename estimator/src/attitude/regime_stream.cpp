@@ -44,7 +44,6 @@ RateState mixed_rate(const RateState& rate, const RateState& hand_held, double s
 // The rates give the angular acceleration, because the value from RateStream depends on the specific force under test:
 // carried.md (C44).
 Eigen::Vector3d angular_acceleration(std::span<const RateStream::Knot> window, std::size_t k) {
-  // Seconds since the epoch as a floating-point number would lose precision.
   const auto between_s = [&](std::size_t from, std::size_t to) {
     return seconds(window[to].observation.sample.time_ns - window[from].observation.sample.time_ns);
   };
@@ -111,7 +110,6 @@ Status RegimeStream::push(const ImuSample& sample, std::span<const AuxiliaryRead
   return {};
 }
 
-// Advances SpinTracker to the sample of the reported rate.
 SpinRate RegimeStream::track_spin(const RateState& rate, State& state) const {
   const RateObservation& observation = state.rate.window[index_of(rate, state)].observation;
   const auto saturated = static_cast<std::uint8_t>(observation.unmeasured_axes() | observation.partly_saturated_axes());
@@ -157,7 +155,7 @@ bool RegimeStream::calibration_is_unstable(const State& state) const {
   return state.resets > kResetFraction * rate.lag_s / std::max(rate.period_s, rate.step_s);
 }
 
-// Updates the probabilities of flight, contact and hand-held motion: forward recursion of carried.md (C38).
+// Updates the probabilities of the motion regimes: forward recursion of carried.md (C38).
 void RegimeStream::update_probabilities(const RateState& rate, State& state) const {
   const double dt_s = state.reported == 0 ? params_.evidence.memory_s : seconds(rate.time_ns - state.reported_ns);
   state.probabilities = next(state.probabilities, dt_s, state.rate.window, index_of(rate, state),

@@ -24,7 +24,6 @@ constexpr double kRestTau_s = 0.5;
 // Time in which the bias variance grows to (0.1 deg/s)^2.
 constexpr double kBiasForgetting_s = 100.0;
 constexpr double kBiasClip_rad_s = 3.4907e-2;  // largest accepted bias: 2 deg/s
-// Duration of quiet readings after which the sensor is at rest.
 constexpr double kRestTime_s = 1.5;
 // Maximum difference of gyro and low-passed gyro at rest: 2 deg/s.
 constexpr double kRestRate_rad_s = 3.4907e-2;

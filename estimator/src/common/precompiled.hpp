@@ -13,7 +13,7 @@
 
 namespace tumble::precompiled {
 
-/// Using `known` instantiates the classes and evaluators of the given Eigen expressions; its value is always true.
+/// Using `known` instantiates the classes and evaluators of the given Eigen expressions. `known` is always true.
 template <class... Expressions>
 constexpr bool known = (... && (sizeof(std::remove_cvref_t<Expressions>) > 0 &&
                                 sizeof(Eigen::internal::evaluator<std::remove_cvref_t<Expressions>>) > 0));

@@ -15,8 +15,7 @@ constexpr double kOutlier = 4.0;  // largest error of an accepted stamp, in stan
 constexpr double kStray = 0.4;    // error of a stamp, in periods, above which the sample number is uncertain
 constexpr std::size_t kConsecutiveOutliersMax = 8;
 constexpr double kPeriodJitterMax = 0.25;  // maximum jitter in periods; random stamps have 0.29
-// If successive residuals have a larger correlation, the line fitted to the time stamps does not follow the sensor's
-// clock.
+// With a larger correlation of successive residuals, the line fitted to the time stamps does not follow the clock.
 constexpr double kErrorCorrelationMax = 0.5;
 constexpr double kStepMin_periods = 0.25;      // minimum time between two samples, in periods
 constexpr double kSampleNumberSigmaMax = 0.1;  // maximum uncertainty of the sample number after a gap, in periods
@@ -146,8 +145,7 @@ void SampleClock::begin(State& state) const {
   state.outliers = 0;
 }
 
-/// See sample_clock.md (S1), (S2), (S3). If the number of samples since the last time stamp is uncertain, the line fit
-/// restarts.
+/// See sample_clock.md (S1), (S2), (S3). The line fit restarts if the number of samples in a step is uncertain.
 void SampleClock::update_line(double step_ns, TimeNs stamp_ns, State& state) const {
   const double passed_ns = step_ns - state.fit_residual_ns;
   const double number = std::max(1.0, std::round(passed_ns / state.period_ns));

@@ -84,8 +84,8 @@ struct LidarInertialOdometry::Impl {
   bool extends_map() const { return !localiser.is_localised() || localiser.map().extend; }
 
   PoseState pose_along(const SweepTrajectory& motion, double t_s, const Registration::Matrix& errors) const;
-  /// Returns the poses at the ends of the IMU's averaging windows. `errors` is the covariance of the unknowns at the
-  /// start of the sweep.
+  /// Returns the poses at the ends of the IMU's averaging windows. `errors` is the covariance of the registration's
+  /// unknowns at the start of the sweep.
   std::vector<PoseState> poses_along(const SweepTrajectory& motion, TimeNs end_ns,
                                      const Registration::Matrix& errors) const;
   std::vector<PoseState> poses_of(const mapping::WindowSweep& sweep) const;

@@ -7,7 +7,7 @@ namespace tumble {
 
 namespace {
 
-/// An empty box means that no region of the robot's own body is excluded from sweeps.
+/// An empty box means that no own-body box is set.
 template <class Visitor>
 void visit_corners_in_order(const Eigen::AlignedBox3d& box, Visitor& visit) {
   const Eigen::AlignedBox3d none;

@@ -12,8 +12,7 @@ struct SweepBoundary {
   StateEstimate state_estimate;
   /// derivative of the unknowns at the end of the last sweep with respect to the unknowns at its start
   Registration::Matrix end_start_jacobian = Registration::Matrix::Identity();
-  /// standard deviation of each rate at the end of the last sweep, relative to its maximum in the sweep: mapping.md
-  /// (R8)
+  /// standard deviation of each rate at the end of the last sweep, relative to the maximum: mapping.md (R8)
   Eigen::Vector3d deficit_factor = Eigen::Vector3d::Zero();
   Eigen::Matrix3d clipped_velocity_m2_s2 =
       Eigen::Matrix3d::Zero();  ///< variance of the velocity due to the accelerometer's saturation, in W

@@ -118,8 +118,7 @@ void Registration::find_match(const VoxelMap& map, std::size_t point, Neighbours
   match.map_variance_m2 = variance / static_cast<float>(found.count) + match.plane.thickness_variance_m2;
 }
 
-/// A point-to-plane residual is weighted by inverse variance and robust weight (Geman, McClure, 1987): mapping.md
-/// (R19), (R21).
+/// Returns inverse variance times robust weight (Geman, McClure, 1987) of a residual: mapping.md (R19), (R21).
 Registration::Weight Registration::compute_weight(const SweepPoint& point, const Match& match, double distance_m,
                                                   double kernel_m) const {
   const double variance = point_variance_m2(point) + match.map_variance_m2;

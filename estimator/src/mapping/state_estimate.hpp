@@ -7,7 +7,7 @@
 
 namespace tumble::mapping {
 
-/// The covariances `weight` and `error` are C and E of mapping.md (section 6).
+/// The covariances `weight` and `error` are C and E of mapping.md, "Two covariances".
 struct StateEstimate {
   Registration::Estimate mean;  ///< mean; the covariance of its state is the motion block of `weight`
   /// For robustness, `weight` assigns less information to the points than independent points would have.
@@ -27,15 +27,14 @@ Registration::Matrix unknowns_at(const SweepTrajectory& trajectory, double t_s);
 /// keep matrices on the heap.
 void propagate_covariance(const Registration::Matrix& F, const Registration::Matrix& P, Registration::Matrix& out);
 
-/// Propagates the covariance `errors` by the transition matrix F. Only the blocks of pose and mounting are valid. These
+/// Returns the blocks of pose and mounting of the covariance `errors`, propagated by the transition matrix F. These
 /// blocks equal propagate_covariance() bit for bit, at a third of the cost.
 Registration::Matrix propagate_pose_and_mounting(const Registration::Matrix& F, const Registration::Matrix& errors);
 
 /// covariance of the errors of position, attitude and velocity in frame W
 using MotionErrors = Eigen::Matrix<double, Registration::kMotionSize, Registration::kMotionSize>;
 
-/// Propagates the covariance `errors` by the transition matrix F, and returns the block of position, attitude and
-/// velocity.
+/// Returns the block of position, attitude and velocity of `errors`, propagated by the transition matrix F.
 MotionErrors motion_errors(const Registration::Matrix& F, const Registration::Matrix& errors);
 
 /// Returns the covariance of the velocity in IMU axes, R_IW v_WI_W, including the attitude error.

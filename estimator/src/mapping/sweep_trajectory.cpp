@@ -12,7 +12,7 @@ namespace tumble {
 
 namespace {
 
-/// Returns the largest standard deviation of each rate before `end_ns`, among samples in which its axis is clipped.
+/// Returns for each axis the largest standard deviation of a clipped rate before `end_ns`.
 Eigen::Vector3d max_rate_sigma(std::span<const MotionSample> samples, TimeNs end_ns) {
   Eigen::Vector3d sigma = Eigen::Vector3d::Zero();
   for (const MotionSample& sample : samples) {

@@ -9,8 +9,7 @@ namespace tumble::mapping {
 
 struct WaitingForStart {};
 
-/// In the state Tracking, a sweep may be unregistered if its inertial prediction is certain, or after too many failed
-/// searches.
+/// Sweeps in the state Tracking may be unregistered, with a certain prediction or after too many failed searches.
 struct Tracking {
   int failed_searches = 0;  ///< consecutive sweeps with points but without registration
 };

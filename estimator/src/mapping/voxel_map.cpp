@@ -87,7 +87,7 @@ class VoxelMap::Rows {
     groups_.fill(kNotSearched);
   }
 
-  /// Returns the occupied cells of a row as bits. The lowest bit belongs to the cell with the smallest x.
+  /// Returns the occupied cells of a row as bits; the lowest bit has the smallest x.
   std::uint32_t occupied(int y, int z) {
     const Eigen::Vector3i away = Group::of({first_x_, y, z}) - low_;
     std::uint32_t bits = 0;

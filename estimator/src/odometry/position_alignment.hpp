@@ -28,8 +28,7 @@ class PositionAlignment {
   /// A reading waits until the sweep at its time is registered. Readings may arrive in any order. See
   /// TumblingOdometry::add_position().
   Status add(const PositionReading& reading, TimeNs done_ns, TimeNs latest_ns, std::size_t most);
-  /// Processes a registered sweep and the readings up to its end. Cost: O(n^2) per sweep with readings, for n stored
-  /// positions.
+  /// Processes a registered sweep and the readings up to its end. Cost: O(n^2) for n stored positions.
   void observe(const SweepReport& report);
   /// Discards the processed readings after a change of the world frame W.
   void restart_fit();

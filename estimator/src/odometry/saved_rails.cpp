@@ -29,8 +29,7 @@ void visit_rails(Visit& visit, Rails& rails) {
 
 }  // namespace
 
-/// The saturation planes of a sensor with upright rails are not saved, because its saturation limits determine the
-/// planes.
+/// Saturation planes of a sensor with upright rails are not saved, because its saturation limits suffice.
 void write_rails(const SaturationLevels& rails, SavedWriter& out) {
   SaturationLevels kept = rails;
   if (rails.gyro_clips_after_compensation) kept.planes = {};

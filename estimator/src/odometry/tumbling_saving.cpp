@@ -104,8 +104,7 @@ void set_search(const PoseState& pose, PriorMap& map) {
   map.sigma_rad = std::sqrt(pose.covariance(5, 5));
 }
 
-/// Returns the pose to save. If the run is not localised in its prior map, the covariance includes the uncertainty of
-/// the stated start pose.
+/// Returns the pose to save. Without localisation, the covariance includes the uncertainty of the start pose.
 std::optional<PoseState> newest_or_start(const TumblingOdometry::Impl& odometry) {
   const LidarInertialOdometry& mapper = odometry.mapper();
   const std::optional<Eigen::Isometry3d>& start = mapper.start();

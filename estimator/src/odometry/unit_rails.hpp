@@ -41,8 +41,7 @@ class UnitRails {
   /// finite are copied unchanged.
   void flag_clipped(std::span<const ImuSample> samples, const State& state, Samples& out) const;
 
-  /// The samples must be unflagged. observe() costs O(1) without allocation, except for occasional searches for
-  /// saturation planes.
+  /// The samples must be unflagged. Cost: O(1), except for rare searches for saturation planes. No memory is allocated.
   void observe(std::span<const ImuSample> samples, State& state) const;
 
  private:

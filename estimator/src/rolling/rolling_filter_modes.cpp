@@ -29,7 +29,7 @@ constexpr double kRestLogLikelihoodMin =
     -60.0;                             // smallest log likelihood at rest; limits the effect of a single bad node
 constexpr double kModeAgeMax_s = 1.0;  // maximum age of a mode; older modes count as equally old
 // During slip, the change of the contact velocity per node is a mixture of three Gaussians. The narrowest Gaussian is
-// narrower than the contact velocity noise of grip, so that slip at constant velocity does not count as grip.
+// narrower than the noise of grip, so that slip at constant velocity does not count as grip.
 constexpr double kPlateau_m_s = 0.004, kSteady_m_s = 0.01, kJump_m_s = 0.08, kPlateauFraction = 0.4,
                  kSteadyFraction = 0.35;
 constexpr double kRollOverSigma_m_s = 0.03, kHitSigma_m_s = 0.3, kRollOverFraction = 0.7;
@@ -89,8 +89,7 @@ double log_stationary(const rolling::Contact& c, const RollingFilter::Hypothesis
   Eigen::LLT<Eigen::Matrix3d> factor;
   double log_det = 0.0, cost = 0.0;
   if (mode == RollingMode::rough) {
-    // The normalisation of the likelihood uses the smaller variance of grip, so that a rough floor is not penalised in
-    // each node.
+    // The likelihood is normalised with the smaller variance of grip, so that a rough floor has no penalty per node.
     log_det = log_det_with(rolling::contact_variance(params, c, RollingMode::grip), factor);
     cost = kRoughCost;
   }
@@ -184,7 +183,6 @@ struct Kept {
   std::size_t count = 0;
 };
 
-/// The last kMinDissentingHypotheses kept candidates must not share the last mode change of the best candidate.
 Kept keep(std::span<const Candidate> candidates, std::int64_t node, double node_s) {
   Kept kept;
   for (const Candidate& candidate : candidates) {
@@ -211,7 +209,7 @@ void rearrange(const Origins& from, std::size_t count, std::span<RollingFilter::
     waits[k] = from[k] != k;
     readers[from[k]] += waits[k] ? 1 : 0;
   }
-  // Hypothesis k may be overwritten only after each copy of hypothesis k has been made.
+  // Hypothesis k may be overwritten only after hypothesis k has been copied.
   for (std::size_t first = 0; first < count; ++first) {
     for (std::size_t k = first; k < count && waits[k] && readers[k] == 0; k = from[k]) {
       all[k] = all[from[k]];
@@ -219,7 +217,7 @@ void rearrange(const Origins& from, std::size_t count, std::span<RollingFilter::
       --readers[from[k]];
     }
   }
-  // The remaining hypotheses replace each other in cycles, so one hypothesis per cycle is stored temporarily.
+  // The remaining hypotheses replace each other in cycles.
   for (std::size_t first = 0; first < count; ++first) {
     if (!waits[first]) continue;
     const RollingFilter::Hypothesis kept = all[first];

@@ -12,8 +12,7 @@ namespace tumble::rolling {
 
 namespace {
 
-// Random walks: rolling radius on a rough floor, slope, accelerometer bias, and velocity (proportional to the squared
-// rate).
+// Random walks: rolling radius on a rough floor, slope, accelerometer bias, velocity (grows with the squared rate).
 constexpr double kRoughRadiusWalk_m_sqrts = 1e-4, kSlopeWalk_sqrts = 0.02, kAccelBiasWalk_m_s2_sqrts = 2e-3,
                  kVelocityWalkPerRate2_sqrts = 4e-5;
 constexpr double kImpactSigmaRatio = 0.06;  // timing and direction of an impact, relative to its velocity change
@@ -233,8 +232,7 @@ ImuAverage gap_step(const RollingParams& params, const ImuSample& before, const 
   sample.device_clip_flags = 0;  // flags of the reading after the gap do not apply within the gap
   const double turning = std::max(before.angular_velocity_rad_s.norm(), after.angular_velocity_rad_s.norm());
   const double acceleration = kGapStill_rad_s2 + kGapAcceleration_rad_s2 * std::min(1.0, turning / kGapRate_rad_s);
-  // A parabolic deviation of the rate with second derivative a, over a data gap T, adds the rotation a T^3 / 12:
-  // rolling.md (R31).
+  // A parabolic rate deviation with second derivative a over a data gap T is the rotation a T^3 / 12: rolling.md (R31).
   const double mean_force_tilt_rad =
       acceleration * gap_s * gap_s * gap_s / 12.0 + kGapTimeSigmaRatio * change.norm() * gap_s;
   uncertainty.rad2 = mean_force_tilt_rad * mean_force_tilt_rad / pieces;

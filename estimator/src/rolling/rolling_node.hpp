@@ -70,8 +70,7 @@ ImuAverage gap_step(const RollingParams& params, const ImuSample& before, const 
 void integrate_gap(const RollingParams& params, const ImuAverage& piece, const GapUncertainty& uncertainty,
                    RollingNominal& nominal, RollingIntegrals& sums);
 
-/// Returns the matrix B of one node: the errors of attitude, velocity and position increase by B x, with the error
-/// state x.
+/// Returns the matrix B: over a node, errors of attitude, velocity and position increase by B times the error state.
 Moving transition(const RollingIntegrals& sums);
 void predict(const RollingParams& params, const RollingIntegrals& sums, const Moving& B, Vector& x, Covariance& P);
 

@@ -37,8 +37,7 @@ bool equal(const ImuSample& a, const ImuSample& b) {
          a.specific_force_m_s2 == b.specific_force_m_s2;
 }
 
-/// The final pass uses noise reduced by final_pass_noise_ratio, so the reported variance is the variance of the final
-/// pass times this result.
+/// Returns the factor from the variance of the final pass, which uses reduced noise, to the reported variance.
 double stated(const RollingSmoother::Params& params) {
   return 1.0 / (params.final_pass_noise_ratio * params.final_pass_noise_ratio);
 }
