@@ -35,7 +35,7 @@ constexpr double kPlateau_m_s = 0.004, kSteady_m_s = 0.01, kJump_m_s = 0.08, kPl
 constexpr double kRollOverSigma_m_s = 0.03, kHitSigma_m_s = 0.3, kRollOverFraction = 0.7;
 constexpr std::int64_t kAgesApart = 4;
 // A slip with constant spin looks like grip until its end, when a hundred hypotheses have higher weights than the
-// correct one. At least this number of kept hypotheses lacks the last mode change of the best hypothesis.
+// correct one. This number of places is reserved for hypotheses without the last mode change of the best hypothesis.
 constexpr std::size_t kMinDissentingHypotheses = 6;
 constexpr double kRoughCost = 0.2;
 // The foot of a ramp is a bump, so a slope is more probable after a bump.
