@@ -24,7 +24,7 @@ struct Between {
 
 Between between(const Vector3d& value, const Vector3d& change, const ImuNeighbours& near, double noise, double error,
                 const AuxiliaryImu& auxiliary_imu) {
-  // The variance covers two errors: the interpolation between two readings, and the clock error of the auxiliary IMU.
+  // The standard deviation includes the interpolation error and the clock error of the auxiliary IMU.
   const double crooked = near.share * (1.0 - near.share) + auxiliary_imu.clock_error_s / near.length_s;
   const double scaled = auxiliary_imu.scale_error * value.norm();
   return {value, (Vector3d::Constant(noise * noise + error * error + scaled * scaled) + (crooked * change).cwiseAbs2())

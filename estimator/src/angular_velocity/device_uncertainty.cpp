@@ -15,7 +15,6 @@ using Vector = SensorErrors::Vector;
 
 constexpr double kOddsEvidenceWeight = 0.3;
 
-// Computes I + share U L U, with the information matrix L of the sensor errors and their standard deviations U.
 void set_system(const SensorErrorEvidence& evidence, const Vector& deviation, double share, Matrix& system) {
   for (int j = 0; j < SensorErrors::kSize; ++j) {
     for (int i = 0; i < SensorErrors::kSize; ++i) {
@@ -39,8 +38,7 @@ bool corrected_covariance(const SensorErrorEvidence& evidence, const Vector& dev
   constexpr int kRest = SensorErrors::kSize - SensorErrors::kGSensitivity;
   constexpr double kEvidenceWeight = DeviceUncertainty::kEvidenceWeight;
   set_system(evidence, deviation, kEvidenceWeight, work.system);
-  // Errors of the flight model look like errors of scale and misalignment, so estimates of scale and misalignment stay
-  // zero.
+  // The estimated scale and misalignment stay zero, because errors of the free-flight equations have the same effect.
   Vector mean = Vector::Zero();
   const Eigen::Matrix<double, kRest, kRest> rest = work.system.bottomRightCorner<kRest, kRest>();
   mean.tail<kRest>() = rest.llt().solve(kEvidenceWeight * deviation.cwiseProduct(evidence.gradient).tail<kRest>());

@@ -76,7 +76,7 @@ bool agrees_with_flight(const Alternative& sense, const std::array<FlightSignChe
   return size >= kForceMin_m_s2 && (middle.force_m_s2 - expected).norm() <= kTolerance * size;
 }
 
-/// If a body may be hand-held, the check tests only an accelerometer with three inverted axes.
+/// On a body that may be hand-held, the only tested fault is an accelerometer with three inverted axes.
 bool is_tested(std::size_t sense, FlightSignCheck::Body body) {
   return body == FlightSignCheck::Body::thrown || sense <= 1;
 }

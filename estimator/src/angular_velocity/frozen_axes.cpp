@@ -107,7 +107,6 @@ bool FrozenAxes::at_rail(std::size_t channel, const Axis& axis) const {
   const double stated = is_gyro(channel) ? params_.gyro_range_rad_s : params_.accel_range_m_s2;
   const double size = std::abs(axis.reading);
   if (stated > 0.0 && size >= kPossibleRailRatio * stated) return true;
-  // If the device's saturation flag is set, the repeated reading may still be below the saturation level.
   if (axis.device_flagged && size >= kExtremeRatio * stated) return true;
   return size >= kExtremeRatio * stated && (axis.reading == axis.min_reading || axis.reading == axis.max_reading);
 }

@@ -9,9 +9,8 @@
 
 namespace tumble {
 
-/// Marks possibly saturated readings of a sensing element whose saturation level is unknown. A marked reading is near
-/// the known saturation levels of other sensing elements. Readings below `least`, the smallest possible saturation
-/// level, remain unmarked.
+/// If the saturation level of a sensing element is unknown, readings near the saturation levels of the other elements
+/// are marked as possibly saturated. Readings below `least`, the smallest possible saturation level, remain unmarked.
 void inflate_possible_saturation(const RailPlanes& planes, const MinSaturationLevels& least, double noise_rad_s,
                                  const ImuSample* before, RateObservation& now, const ImuSample* after);
 

@@ -22,11 +22,11 @@ constexpr double kBendRatioMin = 3.0;
 constexpr double kLevelRangeFraction = 0.2;
 constexpr std::size_t kNoiseWindow = 9;
 constexpr double kNoiseQuantile = 0.2;
-// A kink is an end of a segment at which the clipped axis bends and the other axes move smoothly.
+// A kink is a change of slope on the clipped axis alone, where a saturation starts or ends.
 constexpr double kMaxKinkLogLikelihood = 2.5;
 constexpr double kMotionSigmasMin = 10.0;
 constexpr double kThinLogLikelihoodMin = 8.0;
-// The fitted line and the partly saturated ends of a segment each cost two degrees of freedom.
+// The fitted line costs two degrees of freedom, and the partly saturated first and last readings cost two more.
 constexpr std::size_t kThinLostFreedom = 4;
 constexpr double kAtRailSigmas = 4.0, kAtRailRatioMax = 0.006;
 constexpr double kBeyondPenalty = 5.0, kOutlierFraction = 0.02;
@@ -54,8 +54,8 @@ Segment next_segment(std::span<const std::size_t> inliers, std::size_t& at) {
   return out;
 }
 
-// Returns the log-likelihood ratio of saturation to gyro noise for a segment's scatter about a line: rails.md (R65).
-// Saturated readings contain no noise if the device adds the noise before it clips.
+// Returns the log-likelihood ratio of saturation to gyro noise for the scatter of readings about a line: rails.md
+// (R65). Saturated readings contain no noise if the device adds the noise before it clips.
 double thin_log_likelihood(const DistinctReadings& readings, const RailFacet& facet, const Segment& s) {
   if (s.size() <= kThinLostFreedom) return 0.0;
   const std::size_t first = s.first + 1, count = s.size() - 2;
@@ -102,8 +102,8 @@ std::optional<SegmentShape> shape_of(const DistinctReadings& readings, const Rai
   return SegmentShape{depth * inside * inside, std::max(high - low, 2.0 * facet.deviation)};
 }
 
-// Returns the log-likelihood that saturation causes a kink at one end of a segment: rails.md (R64). An impact causes a
-// kink on all axes; saturation causes a kink on one axis.
+// Returns the log likelihood of saturation from the change of slope where the saturation starts or ends: rails.md
+// (R64). An impact changes the slope on all axes.
 double kink_evidence(const DistinctReadings& readings, const RailFacet& facet, const Segment& s, bool after) {
   const std::vector<Vector3d>& rates = readings.rates;
   if (s.size() < 3 || (after ? s.last + 3 >= rates.size() : s.first < 3)) return 0.0;
@@ -178,7 +178,7 @@ double segment_evidence(const DistinctReadings& readings, const Eigen::Matrix2d&
     ++facet.segments;
     odds += std::max(0.0, thin);
     if (!shape->bends()) continue;
-    // flatness: rails.md (R62); segments with similar mean reading: (R63)
+    // See rails.md (R62), (R63).
     const double flatness = static_cast<double>(s.size() - 1) * std::log(shape->bend / shape->flat);
     odds += std::min(flatness, -std::log(kConstantRateFraction)) + of_level;
     for (const bool after : {false, true}) odds += kink_evidence(readings, facet, s, after);

@@ -18,8 +18,7 @@ constexpr double kGridStep = 0.01;  // step of the search grid over cross-axis s
 constexpr int kRefinements = 10;
 constexpr double kSlabDeviations = 4.0, kSlabRatioMin = 2e-4, kSlabRatioMax = 0.006;
 
-// Collects readings that may be within `slab` of the largest reading along a sensing direction, for any cross-axis
-// sensitivities up to `steepest`.
+// Collects readings that may be on the saturation plane, for any cross-axis sensitivities up to `steepest`.
 double candidates(const DistinctReadings& readings, int axis, int sign, double steepest, double slab,
                   std::vector<std::size_t>& out) {
   double sure = -std::numeric_limits<double>::max();
@@ -43,7 +42,7 @@ void collect(const DistinctReadings& readings, double from, Side& side, Workspac
 }
 
 // Fits the saturation plane by least squares, with a prior on the cross-axis sensitivities: rails.md (R58). Cauchy
-// weights reduce the effect of partly saturated readings, which are below the plane.
+// weights reduce the effect of partly saturated readings, which are below the saturation plane.
 void fit(const DistinctReadings& readings, const FacetPrior& prior, double deviation, RailFacet& facet,
          Workspace& workspace) {
   const int axis = facet.axis;
@@ -56,7 +55,7 @@ void fit(const DistinctReadings& readings, const FacetPrior& prior, double devia
   const double weight = 1.0 / (deviation * deviation);
   for (const std::size_t k : workspace.inliers) {
     const Vector3d& y = readings.rates[k];
-    // Linear model of the saturation level: level = sign * (y_j + slopes . others).
+    // The saturation level is linear in the cross-axis sensitivities.
     Vector3d A;
     A << -facet.sign * others(y, axis), 1.0;
     const double off = level > 0.0 ? (facet.sign * row.dot(y) - level) / deviation : 0.0;

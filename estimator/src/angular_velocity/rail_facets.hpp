@@ -49,7 +49,7 @@ std::optional<Extreme> find_extreme(const RailPlaneFinder::Params& params, const
                                     int sign, const FacetPrior& prior, double slope_range,
                                     RailPlaneFinder::Workspace& workspace);
 
-/// Returns the cross-axis sensitivities whose saturation plane contains most readings, penalised by rails.md (R57).
+/// Returns the cross-axis sensitivities whose saturation plane is close to the most readings: rails.md (R57).
 Eigen::Vector2d search_slopes(const DistinctReadings& readings, const Extreme& extreme, double slope_max,
                               const FacetPrior& prior, RailPlaneFinder::Workspace& workspace);
 

@@ -27,9 +27,8 @@ using rails::Gate;
 using rails::others;
 using rails::Side;
 
-// The robust plane fit starts from two standard deviations, as fractions of the thickness of the layer of readings. The
-// small initial standard deviation suits a thin layer of saturated readings with a few partly saturated readings below
-// it.
+// The fit of a saturation plane starts from two standard deviations of the readings about the plane, relative to the
+// thickness of the searched layer. The small value suits layers with few partly saturated readings.
 constexpr double kInitialSigmaRatios[] = {0.5, 0.02};
 constexpr double kElementLevelRatio = 0.04;
 constexpr double kNearElementLogOdds = 5.0, kNearStatedLogOdds = 3.0, kOppositeSignLogOdds = 5.0,
@@ -91,7 +90,7 @@ RailPlane joined(const RailPlaneFinder::Params& params, const DistinctReadings& 
     for (const Vector3d& y : readings.rates) {
       if (!(side->sign * gate.row.dot(y) >= gate.from)) continue;
       if (!(rails::highest_value(y, axis, side->sign, gate.steepest) >= gate.near_min)) continue;
-      // Linear model of a saturation plane: y_j = sign * r + b - slopes . others, rails.md (R59).
+      // The reading is linear in saturation level, offset and cross-axis sensitivities: rails.md (R59).
       Eigen::Vector4d A;
       A << -others(y, axis), side->sign, 1.0;
       H += weight * A * A.transpose();
@@ -175,13 +174,13 @@ struct SideSearch {
     }
     const auto& rail = found.element[static_cast<std::size_t>(axis)];
     if (rail || !(side.log_odds > -std::numeric_limits<double>::infinity())) return false;
-    // An element's positive and negative plane may be accepted together although each plane alone is rejected.
+    // The planes of positive and negative saturation may be accepted together although each plane alone is rejected.
     Pair alone;
     alone[i] = side;
     RailPlanes supposed = found;
     supposed.element[static_cast<std::size_t>(axis)] = joined(params, readings, alone);
     const Side other = search_side(axis, -sign, supposed);
-    // The prior odds of the saturation level count only once for both planes of an element: rails.md (R68).
+    // The planes of positive and negative saturation share one prior: rails.md (R68).
     if (side.log_odds + other.log_odds - params.log_odds_before < params.log_odds_min) return false;
     pair[i] = side;
     pair[1 - i] = other;

@@ -12,7 +12,7 @@ namespace tumble {
 
 namespace {
 
-// If few clipped samples are in flight, other contact thresholds may fit better.
+// If few clipped samples count as flight, the optimisation restarts with the flight threshold times these factors.
 constexpr double kRestartThresholds[] = {16.0, 0.25};
 constexpr double kFlightShareExpected = 0.5;
 
@@ -31,7 +31,7 @@ void compute_flight_weights(const RateModel& model, std::span<const RateObservat
       const double dt_s = seconds(observations[k + 1].sample.time_ns - observations[k].sample.time_ns);
       after = model.jump(estimates[k].knot, estimates[k + 1].knot, dt_s);
     }
-    // If the gyro measures all axes, a wrong rate cannot cause a large flight residual.
+    // If no gyro axis is clipped, the rate is accurate, so the flight threshold is not raised.
     const int clipped = observations[k].unmeasured_axes();
     model.compute_flight_weight(observations[k], rig, rig_covariance, clipped != 0 ? threshold_factor : 1.0,
                                 std::min(before, after), estimates[k]);

@@ -17,11 +17,11 @@ class RateIteration {
   /// Returns false if the normal equations are not positive definite.
   bool factorise(const RateModel& model, std::span<const RateEstimate> estimates, const RigConstants& rig);
   /// Adds the last step, scaled so that no angular rate changes by more than step_max. Returns the largest change of an
-  /// angular rate before scaling.
+  /// angular rate in the unscaled step.
   double apply(const RateModel& model, double step_max, std::span<RateEstimate> estimates, RigConstants& rig) const;
 
-  /// Calls use(k, conditional) for each sample k from last to first, with the conditional distribution of the sample's
-  /// unknowns.
+  /// Calls use(k, conditional) for each sample k from last to first, with the distribution of its rate and angular
+  /// acceleration for known calibration constants.
   template <typename Use>
   void for_each_conditional(Use use) const {
     arrow::Conditional conditional;
@@ -41,8 +41,7 @@ class RateIteration {
                                            const RigConstants& rig) const;
 
   const RigConstants::Matrix& rig_covariance() const { return rig_covariance_; }
-  /// Returns twice the predicted decrease of the cost: the largest squared change of a linear combination of unknowns,
-  /// divided by its variance.
+  /// Returns the squared length of the step, in standard deviations of the estimate: rate_smoother.md (R30).
   double newton_decrement() const;
 
  private:

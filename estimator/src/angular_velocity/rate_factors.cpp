@@ -29,7 +29,7 @@ struct Jerk {
   Vector3d Jw, Ja, value;
 };
 
-// See rate_smoother.md (R11): J j = -(alpha x J w + w x J alpha).
+// Returns the angular jerk of a body without torque: rate_smoother.md (R11).
 Jerk jerk_of(const RateKnot& knot, const RigConstants& rig) {
   const Vector3d &w = knot.rate_rad_s, &alpha = knot.acceleration_rad_s2;
   Jerk out;

@@ -8,8 +8,8 @@
 
 namespace tumble {
 
-/// Computes initial rates with Saave and a smoother. Clipped readings are lower bounds of the rates. The samples must
-/// be valid.
+/// Computes initial rates with a smoother and the published rate recovery (Saave). Clipped readings are lower bounds of
+/// the rates. The samples must be valid.
 std::vector<RateEstimate> first_guess(std::span<const RateObservation> observations, const RateModelParams& model,
                                       const RateModel& derived, double gap_max_s);
 

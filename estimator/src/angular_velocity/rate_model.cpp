@@ -46,7 +46,7 @@ RigConstants::Matrix covariance_of(const RateModelParams& p) {
   return variance.cwiseAbs2().asDiagonal();
 }
 
-// additional standard deviation [rad/s] of the saturation deficit of a partly saturated reading in contact
+// additional standard deviation [rad/s] of a partly saturated gyro reading during ground contact
 constexpr double kSubsampleInContact = 0.25;
 
 // indices in RigConstants::vector()
@@ -189,7 +189,7 @@ double RateModel::jump(const RateKnot& from, const RateKnot& to, double dt_s) co
 double RateModel::gyro_information(const RateObservation& observation, const RateEstimate& estimate, int axis) const {
   if (observation.gyro_repeats) return 0.0;
   if (observation.gyro_age_s > 0.0) {
-    // In contact, the rate changes between the gyro reading and the sample: rate_smoother.md (R7).
+    // A contact force may change the rate between a gyro reading and its time stamp: rate_smoother.md (R7).
     const double change =
         params_.expert.contact.gain_rad_m * estimate.contact_force_m_s2.norm() * observation.gyro_age_s;
     const double lost =
@@ -295,7 +295,8 @@ void RateModel::add_step(const RateEstimate& from, const RateEstimate& to, doubl
   const double change =
       params_.expert.contact.gain_rad_m * std::max(from.contact_force_m_s2.norm(), to.contact_force_m_s2.norm());
   const double psd = params_.expert.flight.jerk_psd_rad2_s5 + share_ * change * change / dt_s;
-  // inverse of the scaled process noise covariance Q = psd [dt^3/3, dt^2 h/2; dt^2 h/2, dt h^2]: rate_smoother.md (R4)
+  // The process noise of rate and scaled angular acceleration has the information matrix [a, b; b, c]: rate_smoother.md
+  // (R4).
   const double a = 12.0 / (psd * dt_s * dt_s * dt_s), b = -6.0 / (psd * dt_s * dt_s * h),
                c = 4.0 / (psd * dt_s * h * h);
   for (int j = 0; j < 3; ++j) {
@@ -303,7 +304,6 @@ void RateModel::add_step(const RateEstimate& from, const RateEstimate& to, doubl
     const double e1 = (from.knot.acceleration_rad_s2[j] - to.knot.acceleration_rad_s2[j]) * h;
     const double g0 = a * e0 + b * e1, g1 = b * e0 + c * e1;
     const int i = 3 + j;
-    // state transition matrix F = [1, ratio; 0, 1]
     block.diagonal(j, j) += a;
     block.diagonal(j, i) += ratio * a + b;
     block.diagonal(i, j) += ratio * a + b;

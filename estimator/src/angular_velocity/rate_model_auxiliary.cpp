@@ -9,7 +9,7 @@ namespace tumble {
 namespace {
 
 using Eigen::Vector3d;
-// derivative of a residual with respect to the rate and the scaled angular acceleration
+// derivative of a reading by the rate and by the angular acceleration times time_scale_s_
 using AuxiliaryRow = Eigen::Matrix<double, 1, 6>;
 
 void add_row(const AuxiliaryRow& row, double residual, double sigma, arrow::Block& block) {
@@ -35,8 +35,8 @@ Eigen::Matrix3d axes_of_auxiliary(const Eigen::Matrix3d& R_CI, const SensingDire
   return is_element_clipped ? Eigen::Matrix3d(elements.rows * R_CI) : R_CI;
 }
 
-// Returns the standard deviation [m/s^2] of a reading due to an uncertain sensing direction. `most` is the largest
-// possible saturation deficit of the other sensing elements.
+// Returns the standard deviation of a reading due to an uncertain sensing direction. `most` is an upper bound of the
+// rate or force along the other axes.
 double sensing_direction_sigma(const SensingDirections& elements, bool is_element_clipped, int j, double most) {
   return is_element_clipped ? elements.slope_sigma[j] * most : 0.0;
 }

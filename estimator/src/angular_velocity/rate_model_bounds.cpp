@@ -30,7 +30,7 @@ void RateModel::search_flight(const RateObservation& observation, const RigConst
   const Vector3d reading = corrected_rate(observation, estimate);
   RateEstimate flight_estimate = estimate;
   const Eigen::Matrix3d J = rig.inertia_matrix();
-  // The saturation deficit of one sensing element changes the readings of all axes by a column of M^-1: rails.md (R51).
+  // The device compensates misalignment, so the saturation deficit of one element changes all axes: rails.md (R51).
   Eigen::Matrix3d rows;
   for (int j = 0; j < 3; ++j) rows.row(j) = rig.sensing_direction(j);
   const Eigen::Matrix3d deficit_directions = rows.inverse();

@@ -9,9 +9,9 @@ namespace {
 
 constexpr int kGyroBias = 3;
 
-// Adds the residual of one sensing element, m_j' (rate - age * acceleration + bias - reading), to the normal equations.
-// `age` is in units of the acceleration's time scale. If `rig_spread` is set, the residual does not update the sensing
-// direction m_j: rate_smoother.md (R8), rate_stream.md (R92).
+// Adds the residual of one sensing element to the normal equations: rate_smoother.md (R8). `age` is the age of the gyro
+// reading divided by time_scale_s_. If `rig_spread` is set, the sensing direction stays fixed, with this covariance:
+// rate_stream.md (R92).
 void add_row(const RateFactor& gyro, int j, double age, double information, double pull,
              const RigConstants::Matrix* rig_spread, arrow::Block& block, arrow::Corner& corner) {
   const int first = RigConstants::kElements + 2 * j;

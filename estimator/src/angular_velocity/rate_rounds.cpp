@@ -54,10 +54,10 @@ bool differ_significantly(const SensorErrors& a, const SensorErrors& b) {
          std::abs(a.accel_filter_time_variance_s2 - b.accel_filter_time_variance_s2) > kFilterTimeVariance_s2;
 }
 
-// One correct device in a thousand exceeds kDeviceMahalanobisMax, the Mahalanobis distance of three constants.
+// The lever arm of one correct device in a thousand has a larger Mahalanobis distance from its prior.
 constexpr double kDeviceMahalanobisMax = 2.33;
 
-// The gyro's sensing directions remain free, because contact cannot falsify them.
+// All calibration constants except the gyro's sensing directions are held at their prior.
 RateModelParams fixed_calibration(const RateModelParams& params, const RateModel& model) {
   constexpr int kFirst = RigConstants::kElements, kCount = RigConstants::kSize - kFirst;
   RateModelParams out = params;
@@ -81,7 +81,7 @@ double mahalanobis_of(const RateModelParams& known, const RateModel& model, doub
   return RateModel(wider, period_s).calibration_mahalanobis(solution.rig);
 }
 
-// If the result classifies contact as flight, a second optimisation fixes the calibration.
+// If the estimated calibration is implausible, a second optimisation holds the calibration at its prior.
 Status optimise_or_fix_prior(const RateSmoother::Params& params, const RateModelParams& known, double period_s,
                              std::span<const RateObservation> observations, bool struck, RateFit& fit,
                              RateReport& health) {
@@ -113,7 +113,7 @@ Status optimise_or_fix_prior(const RateSmoother::Params& params, const RateModel
 
 constexpr double kGuessSigmasMax = 2.0;
 
-// See rate_smoother.md (R38). The flight model uses no impacts, so the two estimates of the delay are independent.
+// See rate_smoother.md (R38). The delay from impacts is independent of the free-flight equations, which use no impacts.
 void add_guess(const TriadDelay& guess, SensorErrorEvidence& evidence) {
   if (!(guess.sigma_s > 0.0)) return;
   const double information = 1.0 / (guess.sigma_s * guess.sigma_s);
@@ -123,7 +123,7 @@ void add_guess(const TriadDelay& guess, SensorErrorEvidence& evidence) {
 
 constexpr double kContradictionOdds = 0.05;
 
-// A wrong scale also makes the sampling times of the data sheet unreliable, and vice versa.
+// A device with a wrong scale may also have an unstated accelerometer delay, and vice versa.
 bool contradicts_data_sheet(const SensorErrorFit& device, const SensorErrorPriors& sizes, bool triads_asynchronous) {
   const SensorErrorFit before = fit_sensor_errors({}, sizes);
   const auto odds = [](double p) { return std::max(p, 1e-12) / std::max(1.0 - p, 1e-12); };
@@ -187,8 +187,8 @@ Rounds make_rounds(const RateSmoother::Params& params, const RateModelParams& kn
   return out;
 }
 
-// A second optimisation uses `other_delay_s` as accelerometer delay if the first optimisation had to fix the
-// calibration.
+// If the first optimisation finds an implausible calibration, a second optimisation uses the accelerometer delay
+// `other_delay_s`.
 struct Start {
   SensorErrors errors;
   double other_delay_s = 0.0;
@@ -251,7 +251,7 @@ Status optimise_rounds(const Rounds& rounds, std::span<RateObservation> observat
     if (Status status = optimise_corrected(rounds, rounds_state.errors, observations, fit, health); !status.ok())
       return status;
     if (health.calibration_at_prior && has_calibration) {
-      // The earlier run may have used a different device.
+      // The loaded calibration may belong to a different device.
       has_calibration = false;
       rounds_state.learnt = {};
       start = start_from(given, rounds);
@@ -313,7 +313,7 @@ Status fit_rounds(const RateSmoother::Params& params, const RateModelParams& kno
   const SensorErrorPriors sizes = open_priors(rounds, fit, rounds_state, health);
   const SensorErrorPriors stated = data_sheet_priors(rounds.stated());
   if (health.calibration_at_prior || !rounds_state.is_plausible || !rounds.estimated) {
-    // With a fixed calibration or implausible errors, the run contains no information about the device.
+    // If calibration or sensor errors are implausible, the sensor errors keep their prior covariance.
     rounds_state.found = fit_sensor_errors({}, rounds.estimated ? sizes : stated);
     rounds_state.found.known.errors = rounds_state.errors;
   } else {
@@ -322,7 +322,7 @@ Status fit_rounds(const RateSmoother::Params& params, const RateModelParams& kno
   health.sensor_errors = rounds_state.found.known;
   if (health.calibration_at_prior) return {};
   health.calibration.constants = fit.solution.rig;
-  // The next run uses the same device, so the stored covariance includes the uncertainty of the sensor errors.
+  // The estimated calibration depends on the uncertain sensor errors, so its covariance includes their uncertainty.
   const SensorErrors::Matrix device_covariance = fit_sensor_errors({}, stated).known.covariance;
   health.calibration.covariance +=
       fit.moved.calibration_by_errors * device_covariance * fit.moved.calibration_by_errors.transpose();

@@ -16,9 +16,9 @@ struct RateFit {
   RateIteration::SensorErrorDerivatives moved;
 };
 
-/// Optimises repeatedly, each time with readings corrected by the last estimated sensor errors. A calibration that
-/// changes by more than its standard deviations indicates that contact was classified as flight. If contact was
-/// classified as flight, the optimisation restarts with another accelerometer delay, and finally fixes the calibration.
+/// Optimises repeatedly, each time with readings corrected by the last estimated sensor errors. If the calibration
+/// changes by more than its standard deviations, contact was classified as flight, and the optimisation restarts with
+/// another accelerometer delay. If the restart also fails, the calibration is held at its prior.
 Status fit_rounds(const RateSmoother::Params& params, const RateModelParams& known, std::span<const ImuSample> samples,
                   std::span<const Clipping> clippings, std::span<RateObservation> observations, RateFit& fit,
                   RateReport& health);

@@ -35,7 +35,7 @@ Eigen::Matrix3d sensor_error_covariance(const arrow::ErrorMatrix& moved, const S
   return std::min(1.0, most / std::max(out.trace(), 1e-300)) * out;
 }
 
-// If readings may be saturated, the contact force determines the rate of change.
+// If a gyro reading may be saturated, the contact force determines the angular acceleration.
 double rate_change_rad_s2(const RateModelParams& params, std::span<const RateObservation> observations,
                           std::span<const RateEstimate> estimates, std::size_t k) {
   const RateObservation &from = observations[k], &to = observations[k + 1];
@@ -47,8 +47,8 @@ double rate_change_rad_s2(const RateModelParams& params, std::span<const RateObs
   return (estimates[k + 1].knot.rate_rad_s - estimates[k].knot.rate_rad_s).norm() / dt_s;
 }
 
-// Returns the covariance of a rate due to an unknown delay that gyro and accelerometer have in common. The search for
-// the steepest slope includes neighbouring samples, because the delay may shift an impact.
+// Returns the covariance of a rate due to an unknown delay that gyro and accelerometer have in common. The largest rate
+// change within the possible delay is used, because the delay may shift an impact.
 Eigen::Matrix3d common_delay_covariance(double variance_s2, const RateModelParams& params,
                                         std::span<const RateObservation> observations,
                                         std::span<const RateEstimate> estimates, std::size_t k) {

@@ -9,10 +9,9 @@
 
 namespace tumble {
 
-/// Computes angular rates and covariances at the times of the gyro's readings. Cost: O(N n) for n samples within the
-/// common delay of gyro and accelerometer. The covariances include the uncertainty of sensor errors, calibration and
-/// common delay (rate_smoother.md). If the gyro is slower than its log, interpolated readings replace less accurate
-/// estimates.
+/// Computes angular rates and covariances at the times of the gyro's readings. The covariances include the uncertainty
+/// of sensor errors, calibration, and the common delay of gyro and accelerometer (rate_smoother.md). If the gyro is
+/// slower than its log, interpolated readings replace less accurate estimates.
 std::vector<RateState> rate_states(const RateSmoother::Params& params, std::span<const ImuSample> samples,
                                    const RateReadings& readings, const RateFit& fit, RateReport& health);
 

@@ -153,11 +153,10 @@ void RateStream::marginalise(std::size_t first, State& state) const {
   arrow::Block block, after;
   arrow::Corner corner;
   add_prior(state, model_, oldest.estimate.knot, block, corner);
-  // The final flight weight of a sample assumes an exact calibration.
   const double after_it = model_.jump(oldest.estimate.knot, next.estimate.knot, seconds_between(oldest, next));
   const double jump = std::min(change_before_window(oldest, state), after_it);
   model_.compute_flight_weight(oldest.observation, state.rig, RigConstants::Matrix::Zero(), 1.0, jump, oldest.estimate);
-  // The 20 calibration constants can explain any short contact as flight.
+  // Short flights do not update the calibration, because 20 free calibration constants can fit any short contact.
   std::size_t run = state.flight_run;
   const auto needed = static_cast<std::size_t>(params_.expert.flight_run_min);
   const auto flies = [](const Knot& knot) { return knot.estimate.flight_weight >= 0.5; };
@@ -228,7 +227,8 @@ void RateStream::append(const ImuSample& sample, std::span<const AuxiliaryReadin
   mark_possible_saturation(state);
 }
 
-// The initial rate is the predicted rate or the rate from the centripetal force, whichever agrees better with flight.
+// The initial rate is the predicted rate or the rate from the centripetal force, whichever gives the larger flight
+// weight.
 void RateStream::guess(Knot& knot, const Knot& previous, const State& state) const {
   const double dt_s = seconds_between(previous, knot);
   const RateKnot& before = previous.estimate.knot;
@@ -262,7 +262,7 @@ void RateStream::guess(Knot& knot, const Knot& previous, const State& state) con
   centripetal.estimate.knot.rate_rad_s = rate.cwiseMin(largest).cwiseMax(-largest);
   model_.compute_flight_weight(knot.observation, state.rig, state.rig_covariance, 1.0, 0.0, knot.estimate);
   model_.compute_flight_weight(knot.observation, state.rig, state.rig_covariance, 1.0, 0.0, centripetal.estimate);
-  // The angular acceleration of an impact does not continue, because the body then rotates without torque.
+  // After an impact, the body rotates without torque, so the angular acceleration does not continue.
   model_.search_flight(knot.observation, state.rig, centripetal.estimate);
   model_.compute_flight_weight(knot.observation, state.rig, state.rig_covariance, 1.0, 0.0, centripetal.estimate);
   if (centripetal.estimate.flight_weight > knot.estimate.flight_weight) knot.estimate = centripetal.estimate;
@@ -347,7 +347,7 @@ RigConstants::Matrix RateStream::inflated(const State& state) const {
   const double largest = std::sqrt(1.0 + params_.expert.inflation.covariance / (1.0 + samples));
   RigConstants::Vector factor;
   for (int i = 0; i < RigConstants::kSize; ++i) {
-    // The gyro's bias keeps its variance, because rest determines the bias.
+    // The variance of the gyro bias is not inflated, because readings at rest determine this bias.
     const bool of_gyro = i >= 3 && i < 6;
     const double before = std::sqrt(model_.prior_covariance()(i, i) / state.rig_covariance(i, i));
     factor[i] = of_gyro ? 1.0 : std::clamp(before, 1.0, largest);

@@ -10,14 +10,14 @@ namespace tumble {
 namespace {
 
 constexpr int kBeside = ImpactSums::kDelayMax_samples;
-// time constant, in intervals between readings, with which the sums over impacts decay
+// number of gyro intervals in which the weight of an impact decays to 1/e
 constexpr double kMemory = 2000.0;
 constexpr TimeNs kUpdatePeriod_ns = 50'000'000;
 constexpr double kDelayChangeMin_s = 3e-4;
 constexpr double kContradictionOdds = 0.05, kGuessSigmasMax = 3.0;
 // The first few impacts may correlate with the rate change by chance.
 constexpr double kIntervalsMin = 150.0, kCorrelationGainMin = 0.06;
-// maximum delay, in prior standard deviations of an uncalibrated device
+// maximum accelerometer delay, in prior standard deviations of the delay
 constexpr double kReach = 3.0;
 
 double seconds_to(const RateStream::Knot& a, const RateStream::Knot& b) {

@@ -63,7 +63,7 @@ KnownSensorErrors RateStream::sensor_errors(const State& state) const {
   return out;
 }
 
-// See rate_stream.md (R101). The caller must have factorised the window with the current estimates and calibration.
+// See rate_stream.md (R101). The caller must factorise the normal equations at the current estimates and calibration.
 void RateStream::add_sensor_error_covariance(const arrow::BorderVector& rig_step, State& state) const {
   RateStreamDevice& device = state.device.front();
   const std::size_t count = state.window.size();
@@ -98,7 +98,7 @@ void RateStream::add_sensor_error_covariance(const arrow::BorderVector& rig_step
   RateStreamDelay& delay = device.delay;
   if (delay.found) {
     if (const TriadDelay& guess = delay.guess; guess.sigma_s > 0.0) {
-      // The factor kEvidenceWeight is cancelled, because the delay from impacts has full weight.
+      // The division by kEvidenceWeight gives the delay from impacts full weight.
       const double information = 1.0 / (DeviceUncertainty::kEvidenceWeight * guess.sigma_s * guess.sigma_s);
       window_evidence.information(SensorErrors::kDelay, SensorErrors::kDelay) += information;
       window_evidence.gradient[SensorErrors::kDelay] += information * (guess.delay_s - delay.applied_delay_s);

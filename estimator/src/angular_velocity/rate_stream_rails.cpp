@@ -15,8 +15,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-// For a rounded maximum of n readings, the height predicted from the slopes is at most (n/(n - 1))^2 <= 2.25 times the
-// measured height.
+// At an unsaturated parabolic maximum, the slopes predict at most 2.25 times the measured difference between largest
+// and smallest reading.
 constexpr double kSlopeSigmasMax = 3.0, kHeightRatioMin = 4.0, kHeightNoiseSigmas = 5.0;
 constexpr std::ptrdiff_t kPlateauReadingsMin = 3;
 
@@ -29,7 +29,7 @@ bool is_near_other_rails(const RailPlanes& planes, double peak_rad_s) {
   });
 }
 
-// Returns nothing if the previous reading begins before the window.
+// Returns nothing if `window` does not contain the previous reading.
 std::optional<std::size_t> reading_before(std::size_t k, const std::vector<RateStream::Knot>& window) {
   while (k > 0 && window[k].repeats) --k;
   if (k == 0) return std::nullopt;
@@ -75,7 +75,7 @@ void RateStream::reclassify_window(State& state) const {
   for (std::size_t k = 0; force_shift(state) != 0 && k < state.window.size(); ++k) pair_force(k, state);
 }
 
-// The classification of a sample depends on neighbouring readings.
+// A new reading may show whether the previous reading is clipped.
 void RateStream::classify_from(std::size_t changed, State& state) const {
   const std::size_t first = reading_before(changed, state.window).value_or(0);
   const SaturationLevels& rails = state.rails.known;
@@ -139,7 +139,7 @@ void RateStream::mark_undetected_clipping(std::size_t k, State& state) const {
                               now, after);
 }
 
-// A larger reading or a newly detected saturation level shows that marked readings are unsaturated.
+// A later, larger reading or a newly detected saturation level may show that suspect readings are unsaturated.
 void RateStream::clear_suspects(State& state) const {
   for (std::size_t k = 0; k < state.window.size(); ++k) {
     if (state.window[k].observation.possibly_saturated_axes() == 0) continue;
@@ -169,7 +169,7 @@ void RateStream::mark_possible_saturation(State& state) const {
 }
 
 // Returns the slope of the readings per sample at the ends of a run of possibly saturated readings. Each slope is the
-// smaller of two consecutive steps, because an impact causes a single large step.
+// smaller of two consecutive rate changes, because an impact causes a single large change.
 double RateStream::run_slope(int axis, std::size_t first, std::size_t last, const State& state) {
   const auto size = [&](std::size_t k) {
     return std::abs(state.window[k].observation.sample.angular_velocity_rad_s[axis]);
@@ -184,8 +184,7 @@ double RateStream::run_slope(int axis, std::size_t first, std::size_t last, cons
   return std::max({in, out, 0.0});
 }
 
-// The saturation deficit follows from a smooth motion that continues with the slopes at the ends of the run:
-// rate_stream.md (R94).
+// Estimates the saturation deficit from the slopes before and after the suspect readings: rate_stream.md (R94).
 void RateStream::mark_suspect_run(int axis, std::size_t first, std::size_t last, State& state) const {
   const auto size = [&](std::size_t k) {
     return std::abs(state.window[k].observation.sample.angular_velocity_rad_s[axis]);
@@ -211,7 +210,7 @@ void RateStream::mark_suspect_run(int axis, std::size_t first, std::size_t last,
   }
 }
 
-// Returns the smaller of two consecutive increases of the gyro's reading, because an impact causes a single large step.
+// Returns the smaller of two consecutive increases of the gyro reading, because an impact causes one large increase.
 Vector3d RateStream::reading_growth(const std::vector<Knot>& window) {
   const std::optional<std::size_t> one = reading_before(window.size() - 1, window);
   const std::optional<std::size_t> two = one ? reading_before(*one, window) : std::nullopt;
@@ -225,8 +224,7 @@ Vector3d RateStream::reading_growth(const std::vector<Knot>& window) {
   return now.cwiseMin(before).cwiseMax(0.0);
 }
 
-// The saturation deficit of a clipped run depends on the slope before the run, even after that slope has left the
-// window.
+// Stores the slope of the gyro readings before a saturation when these readings leave the window of RateStream.
 void RateStream::store_slope_before_clipping(const Knot& leaving, const Knot& next, State& state) {
   const auto hidden = [](const Knot& knot, int j) {
     return ((knot.observation.clipping.gyro | knot.observation.partly_saturated_axes()) >> j & 1) != 0;

@@ -63,7 +63,7 @@ bool RestDetector::observe_mean(const Eigen::Vector3d& rate_rad_s, const Eigen::
     state.rate_sum_rad_s.setZero();
     state.force_sum_m_s2.setZero();
   } else if (seconds(to_ns - state.first_ns) > params_.memory_s) {
-    // Exponential weights limit the memory of the sums to one time constant.
+    // Exponential weights average rate and force over about memory_s seconds.
     const double keep = 1.0 - std::min(1.0, step_s / params_.memory_s);
     state.weight *= keep;
     state.rate_sum_rad_s *= keep;

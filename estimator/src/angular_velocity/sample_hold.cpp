@@ -55,7 +55,7 @@ PhaseRun best_phases(double period, std::span<const std::size_t> moving, const s
     misses[p] = count_misses(clock, moving, repeats, std::min(most, out.misses));
     out.misses = std::min(out.misses, misses[p]);
   }
-  // Two turns around the circle of phases also find a run of phases that crosses phase 0.
+  // The clock phase is periodic, so a run of equally good phases may cross phase 0.
   int run = 0;
   for (int p = 0; p < 2 * kPhases; ++p) {
     run = misses[static_cast<std::size_t>(p % kPhases)] == out.misses ? std::min(run + 1, kPhases) : 0;

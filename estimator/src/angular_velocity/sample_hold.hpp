@@ -22,20 +22,20 @@ struct RepeatedReadings {
   double window_lag_s = 0.0;
 
   bool steady() const { return agreement >= sample_hold::kAgreementMin; }
-  /// Returns the time between the middles of the averaging windows of a sample and its reading.
+  /// Returns the time from the middle of the sensor's averaging window to the middle of the sample period.
   double reading_age_s(std::size_t sample) const { return age_s[sample] + window_lag_s; }
 };
 
-/// Detects repeated readings by fitting a regular clock of the sensor. Cost: O(N), plus tests of about 5000 clocks on
-/// at most 1000 samples. Returns nothing if fewer than 30 samples exceed 0.3 rad/s, or if less than a twentieth of
-/// these samples are repetitions. Ages are zero if the best clock predicts more than 10 % of the samples wrongly.
+/// Detects repeated readings by fitting a regular clock of the sensor. Cost: O(N), plus about 5000 tested clocks on at
+/// most 1000 samples. Returns nothing if fewer than 30 samples exceed 0.3 rad/s, or if less than a twentieth of these
+/// samples are repetitions. `age_s` is zero if no regular clock predicts 90 % of the samples.
 std::optional<RepeatedReadings> find_repeated(std::span<const ImuSample> samples, Triad triad);
 
 struct Neighbours {
   const ImuSample *before = nullptr, *after = nullptr;
 };
-/// Returns the nearest samples with a different reading. Cost: O(N). All samples of a run of equal readings
-/// (repetition, rest, saturation) have the same neighbours.
+/// Returns for each sample the nearest earlier and later samples with a different reading. All samples of a run of
+/// equal readings (repetition, rest, saturation) have the same neighbours.
 std::vector<Neighbours> other_readings(std::span<const ImuSample> samples, Triad triad);
 
 }  // namespace tumble

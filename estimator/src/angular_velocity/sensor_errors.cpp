@@ -55,7 +55,7 @@ Vector deviations(const SensorErrorPriors& s, const Shares& shares) {
 
 constexpr double kPlain = 0.05;
 
-// Errors of the flight model last longer than a sample, so the information of the readings is reduced.
+// Errors of the free-flight equations last longer than a sample, so the information of the readings is reduced.
 constexpr double kEvidenceWeight = 0.03;
 
 struct Hypothesis {
@@ -79,8 +79,7 @@ Hypothesis posterior(const Matrix& information, const Matrix& earlier_runs, cons
   Vector sharpened = scaled_h;
   all.solve_vector(sharpened);
   out.log_odds = log_prior + 0.5 * scaled_h.dot(sharpened) - all.half_log_determinant();
-  // Errors of the flight model look like errors of scale and misalignment, so estimates of scale and misalignment stay
-  // zero.
+  // The estimated scale and misalignment stay zero, because errors of the free-flight equations have the same effect.
   Vector mean = Vector::Zero();
   mean.tail<kRest>() = scaled_h.tail<kRest>();
   dense::Cholesky(sharp.bottomRightCorner<kRest, kRest>()).solve_vector(mean.tail<kRest>());
@@ -153,8 +152,8 @@ void discount_unobservable(double share, SensorErrorEvidence& evidence) {
     unobservable(3 * j + k, 2 + i) = unobservable(SensorErrors::kAccel + 3 * j + k, 2 + i) = 0.5;
     unobservable(3 * k + j, 2 + i) = unobservable(SensorErrors::kAccel + 3 * k + j, 2 + i) = -0.5;
   }
-  // Multiplies the information matrix by (I - d U U') on both sides. Only the five columns of U are stored, because the
-  // thread of a RateStream may have a small stack.
+  // Reduces the information along the unobservable directions. No full matrix is stored, because the thread of a
+  // RateStream may have a small stack.
   Eigen::Matrix<double, 5, SensorErrors::kSize> said = unobservable.transpose().lazyProduct(evidence.information);
   evidence.information.noalias() -= (1.0 - share) * unobservable.lazyProduct(said);
   said = unobservable.transpose().lazyProduct(evidence.information.transpose());
@@ -221,8 +220,7 @@ SensorErrorEvidence calibration_evidence(const KnownSensorErrors& earlier_runs, 
   Vector values;
   Matrix vectors;
   dense::decompose(scaled, values, vectors);
-  // If the variance along a direction equals the prior variance, the earlier run contains no information about the
-  // direction.
+  // The loaded calibration contains no information along directions in which its variance equals the prior variance.
   const Vector precision_ratio = values.cwiseMax(1e-12).cwiseInverse();
   const Vector of_mean = (precision_ratio.array() > 1.0).select(precision_ratio, Vector::Zero());
   const auto in_units = [&](const Vector& kept_values) -> Matrix {

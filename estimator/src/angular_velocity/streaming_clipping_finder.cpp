@@ -19,10 +19,10 @@ constexpr double kNearExtremeRatio = 0.9, kStoreRatio = 0.85;
 constexpr std::size_t kBeside = 4;
 // The first readings of a run determine the gyro's noise.
 constexpr std::size_t kLatestReadings = 48;
-// The search for saturation repeats when the number of readings near the extremes has grown by the fraction 1 /
+// The search for saturation repeats when the number of large readings has grown by the fraction 1 /
 // kSearchGrowthDivisor.
 constexpr std::size_t kSearchGrowthDivisor = 8;
-// Gravity requires a larger fraction for the accelerometer than for the gyro.
+// minimum reading of gyro and accelerometer near saturation, as a fraction of the smallest possible saturation level
 constexpr double kLowReadingRatios[] = {0.5, 0.9};
 
 std::array<std::optional<double>, 6> rails_of(const RailDetector& axis_aligned_rails,
@@ -60,7 +60,7 @@ bool StreamingClippingFinder::is_near(const Vector3d& reading, Triad triad, cons
   return false;
 }
 
-// A full memory first drops readings far from the extremes, then the oldest readings.
+// Above readings_max_ readings, those far from the largest readings are dropped first, then the oldest.
 void StreamingClippingFinder::store(const Vector3d& reading, Triad triad, Memory& memory) const {
   std::vector<Vector3d>& readings = memory.readings;
   if (readings.size() == readings_max_) {

@@ -8,7 +8,7 @@ namespace tumble {
 
 namespace {
 
-// If a larger fraction of the averaging window is saturated, the reading does not determine the slope of the rate.
+// Above this saturated fraction of the averaging window, a reading does not determine the slope of the rate.
 constexpr double kSaturatedFractionMax = 0.85;
 constexpr double kDeficitSigmaRatio = 0.5, kDepthSigmaRatio = 0.25, kDepthMax = 1.0;
 
@@ -20,7 +20,7 @@ SubsampleSaturation subsample_saturation(double reading_rad_s, double neighbour_
   const double depth = rail_rad_s - reading_rad_s, slope = reading_rad_s - neighbour_rad_s;
   // Noise that is added before clipping lowers a fully saturated reading by less than a tenth of the noise.
   if (!(depth > 0.1 * noise_rad_s)) return {};
-  // Saturated readings on a slightly tilted plane may change slowly.
+  // Fully saturated readings on a tilted saturation plane may change slowly.
   if (!(slope > noise_rad_s)) return {};
   double share = 0.0;  // rails.md (R71)
   if (slope > 2.0 * depth) {

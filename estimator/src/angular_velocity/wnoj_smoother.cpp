@@ -11,8 +11,8 @@ namespace {
 constexpr double kVarianceMin = 1e-18;
 constexpr double kVarianceMax = 1e18;
 
-// Represents the equation R x_k + S x_{k+1} = z of one axis: saave.md (S6). The state x is (rate, acceleration *
-// time_scale), R is upper triangular, and z has noise of unit variance.
+// Represents the equation R x_k + S x_{k+1} = z (unit noise) of one axis: saave.md (S6). The state x contains the rate,
+// and the angular acceleration times time_scale.
 struct EliminatedKnot {
   Eigen::Matrix2d R, S;
   Eigen::Vector2d z;
@@ -24,7 +24,7 @@ struct Carried {
   Eigen::Vector2d z = Eigen::Vector2d::Zero();
 };
 
-// columns 0 and 1: sample k; columns 2 and 3: sample k+1; column 4: right-hand side
+// Columns 0 to 3 of a Stack multiply the states of samples k and k + 1, and column 4 is the right-hand side.
 using Stack = Eigen::Matrix<double, 5, 5>;
 
 void triangularise(Stack& a) {

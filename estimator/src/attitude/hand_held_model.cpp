@@ -108,7 +108,7 @@ double add_bound(const ElementSums& e, const GyroRows& rows, double sigma, doubl
   return minus_two_log_phi(u);
 }
 
-// Adds a prior with mean zero and information (inverse variance) `w` for three states.
+// Adds a zero-mean prior with inverse variance `w` to the three state components from index `i`.
 double add_zero_prior(const Vector3d& value, double w, int i, System::Block& block) {
   block.diagonal.diagonal().segment<3>(i).array() += w;
   block.gradient.segment<3>(i) -= w * value;
@@ -293,7 +293,7 @@ double Motion::add_attitude(const Node& from, const Node& to, double jerk, Syste
   return w * error.squaredNorm();
 }
 
-// See carried.md (C2), (C4), (C6), (C7), (C8).
+// Adds the motion model of one time step: carried.md (C2), (C4), (C6), (C7), (C8).
 double Motion::add_step(const Node& from, const Node& to, double hand, System::Block& block, System::Block& next,
                         double jerk) const {
   double cost = add_attitude(from, to, jerk, block, next);

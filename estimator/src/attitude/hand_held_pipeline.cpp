@@ -47,7 +47,7 @@ Status HandHeldPipeline::push(const ImuSample& sample, State& state, std::option
   return status;
 }
 
-/// New saturation levels change the classification of all samples of the window.
+/// After a change of the saturation levels, all samples in the window of HandHeldStream are classified again.
 void HandHeldPipeline::classify_window(const ImuSample& next, State& state) const {
   const std::vector<HandHeldStream::Reading>& window = state.stream.readings;
   RailDetector::State& axis_aligned_rails = state.rails.known.axis_aligned_rails;

@@ -51,8 +51,8 @@ ReadingNoise reading_noise(const HandHeldSmoother::Params& p, double period_s) {
 
 namespace {
 
-// Lower bounds of the rate do not reduce a covariance. The mean rate over a window P differs from the rate at the
-// window's centre with variance q P^3/320 (jerk density q): carried.md (C26).
+// The reported covariance neglects the lower bounds from saturated readings. Mean and middle rate of an averaging
+// window of length P differ with variance q P^3/320 (jerk density q): carried.md (C26).
 ReadingNoise stated_noise(const HandHeldSmoother::Params& params, ReadingNoise noise, double period_s) {
   noise.bound = 0.0;
   noise.window_rate_sigma_rad_s = params.jerk_rad_s3_sqrts * std::sqrt(period_s * period_s * period_s / 320.0);

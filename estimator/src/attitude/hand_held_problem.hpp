@@ -20,7 +20,7 @@ double add_constants_prior(const HandHeldSmoother::Params& params, const Constan
 /// Returns the difference between the states of two nodes, as a step for Node::move.
 System::StateVector moved(const Node& from, const Node& to);
 
-/// Message is a prior on a node that summarises all earlier or all later nodes, relative to the state `about`.
+/// Message replaces all earlier or all later nodes by a prior on one node, linearised at the state `about`.
 struct Message {
   Node about;
   System::StateMatrix information = System::StateMatrix::Zero();

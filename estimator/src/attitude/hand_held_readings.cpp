@@ -148,8 +148,8 @@ void place(double node_s, std::size_t nodes, Windows& windows) {
   }
 }
 
-// A slow accelerometer averages over an unknown part of its period: carried.md (C12). Returns the standard deviations
-// of the forces due to the possible range of the window's centre.
+// Returns the standard deviations of specific forces due to the unknown averaging time of a slow accelerometer:
+// carried.md (C12).
 std::vector<double> window_force_sigmas(TimedReadings& forces, double log_period_s) {
   const std::vector<ImuSample>& samples = forces.samples;
   std::vector<double> out(samples.size(), 0.0);

@@ -47,19 +47,19 @@ NodeData collect(const HandHeldSmoother::Params& params, std::span<const ImuSamp
 
 inline constexpr double kLongest = 1.5;  ///< longest averaging window, in sample periods
 
-/// Estimates the root density of the angular jerk near each node [rad/s^3 sqrt(s)]: carried.md (C24), (C25). Cost:
-/// O(N). The root density is 0 where the readings do not determine the jerk.
+/// Estimates the root of the spectral density of angular jerk [rad/s^3 sqrt(s)] near each node: carried.md (C24),
+/// (C25). Cost: O(N). If the readings near a node do not determine the jerk, the result is 0.
 std::vector<double> estimate_jerk(const GyroReadings& rates, const Eigen::Matrix3d& rows, double noise_rad_s,
                                   double node_s, std::size_t nodes);
 
-/// Returns the gyro's rates, with a cubic in place of each clipped segment of a sensing element. The cubic stays
-/// between 1 and kFillRatioMax times the saturation level.
+/// Returns the gyro's rates, with clipped readings replaced by a cubic polynomial. The cubic polynomial stays between 1
+/// and kFillRatioMax times the saturation level.
 std::vector<Eigen::Vector3d> filled_rates(std::span<const ImuSample> samples, const ClippedElements& clipped);
 
 /// heuristic upper limit of the initial rates, as a multiple of the saturation level
 inline constexpr double kFillRatioMax = 2.5;
 
-/// Without a clipped sample in the window, HandHeldStream makes one optimisation step per kFreeNodes nodes.
+/// Without saturation, HandHeldStream makes one optimisation step per kFreeNodes nodes (time steps).
 inline constexpr int kFreeNodes = 5;
 
 bool clips(const NodeReadings& readings);
@@ -68,7 +68,7 @@ bool clips(const NodeReadings& readings);
 /// periods.
 inline constexpr double kWindowCentreSigmaRatio = 0.144;
 
-/// The reading is `t` seconds later than the node.
+/// Adds a gyro reading that is `t` seconds later than the time step `node`.
 void add_rate(const ImuSample& sample, const Eigen::Matrix3d& rows, const ClipSigns& signs, double t,
               const Eigen::Vector3d& subsample_sigma_rad_s, NodeReadings& node);
 void add_force(const ImuSample& sample, const ClipSigns& signs, double t, NodeReadings& node);

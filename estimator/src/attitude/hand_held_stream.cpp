@@ -147,7 +147,7 @@ void HandHeldStream::append(const ImuSample& sample, const RepeatDetector::State
   ++state.samples;
 }
 
-// Returns whether a sample in the window has changed.
+// Returns whether a sensing direction or the clipping of an earlier sample has changed.
 bool HandHeldStream::reclassify(const ClippedElements& known, State& state) const {
   bool changed = state.rows != known.rows;
   state.rows = known.rows;
@@ -266,7 +266,7 @@ void HandHeldStream::add_prior(const State& state, System::Block& block, System:
   corner.gradient += state.prior_corner.gradient - state.prior_corner.matrix * c - state.prior.border.transpose() * x;
 }
 
-// See carried.md (C17), (C41), in the form of rate_stream.md (R90).
+// Replaces the oldest time step by a prior: carried.md (C17), (C41), rate_stream.md (R90).
 void HandHeldStream::marginalise_oldest(State& state) const {
   store_oldest_rates(state);
   const Knot& oldest = state.window[0];

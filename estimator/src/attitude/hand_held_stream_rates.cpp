@@ -16,7 +16,7 @@ using hand_held::System;
 namespace {
 
 constexpr double kUnknown_rad2_s2 = 1e6;  // variance of a rate if the equations have no solution
-// maximum time from a clipped node for which covariances use the inflated jerk density
+// Near a clipped reading, the covariance is computed with an increased density of the angular jerk.
 constexpr double kNear_s = 0.1;
 
 std::uint8_t clipped_axes(const ClipSigns& signs) {
@@ -45,7 +45,7 @@ std::size_t HandHeldStream::first_unreported(const State& state) const {
   return state.readings.size() - std::min(state.readings.size(), delay_ + 1);
 }
 
-// If samples are sparser than params_.period_s, a node may leave the window before its rate is reported.
+// If the sample rate is lower than stated, a node may leave the window of HandHeldStream before its rate is reported.
 void HandHeldStream::store_oldest_rates(State& state) const {
   const std::size_t first = first_unreported(state);
   for (std::size_t k = first; k < state.readings.size() && state.readings[k].node <= state.first_node; ++k) {

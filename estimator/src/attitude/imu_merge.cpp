@@ -15,7 +15,7 @@ namespace tumble {
 
 namespace {
 
-// Additional difference, as a fraction of the rate.
+// additional tolerance for rate differences between IMUs, as a fraction of the rate
 constexpr double kRateToleranceRatio = 0.03;
 
 constexpr double kBiasSigma_rad_s = 0.01, kScaleSigma = 0.01;
@@ -24,14 +24,14 @@ constexpr double kCertainDeviations = 4.0;
 constexpr int kMinImusForRecovery = 3;          // minimum number of IMUs for recovering a rate from accelerometers
 constexpr double kUnsaturatedForceRatio = 0.8;  // accelerometer errors are estimated up to this fraction of the range
 constexpr int kOffset = ImuMerge::kErrorCount - 1;
-// At 1 m^2/s^3, an accelerometer bias of 0.05 m/s^2 changes lever_arm_agreement() by 0.05.
+// With this lever arm effect, an accelerometer bias of 0.05 m/s^2 changes lever_arm_agreement() by 0.05.
 constexpr double kArmSquareMin_m2_s3 = 1.0;
 constexpr double kRepeated_s = 0.03;
 constexpr double kWindowMax_s = 0.05;  // maximum window for a central difference
 
-// Impacts come in groups, and filters prolong impacts.
+// After an impact, a contradicting accelerometer is excluded for this time, because impacts come in groups.
 constexpr double kSuspect_s = 0.04;
-// standard deviation of an angular acceleration, as a fraction of its change per sample
+// standard deviation of an angular acceleration, as a fraction of its change since the last window
 constexpr double kAccelerationSigmaRatio = 0.3;
 
 }  // namespace
@@ -179,7 +179,6 @@ ImuSample ImuMerge::merge(State& state) const {
 /// Selects unsaturated IMUs that agree with the median of all IMUs: imu_merge.md (I5).
 ImuMerge::UnitMask ImuMerge::select_units(const Readings& readings, const UnitMask& present, const Vectors& rates,
                                           const Vectors& forces, double h, State& state) const {
-  // If the body rotates, IMUs at different positions measure different specific forces.
   const Eigen::Vector3d middle_rate = median(rates, present), middle_force = median(forces, present);
   const auto units = std::count(present.begin(), present.end(), true);
   const double rate_tolerance = params_.expert.outliers.rate_rad_s + kRateToleranceRatio * middle_rate.norm();

@@ -26,7 +26,7 @@ constexpr double kArmShareOff = 0.06;
 constexpr double kAxisContributionMin =
     0.02;  // another axis counts as clipped if a clipped axis contributes more than this fraction to it
 
-/// A repeated force is mostly gravity, whose direction should rotate with the body.
+/// Returns the rotation across a repeated force, which is mostly gravity and should rotate with the body.
 double rotation_across_force_rad(const ImuMerge::Repetition& hold) {
   return hold.turned_rad.cross(hold.reading.stableNormalized()).norm();
 }
@@ -67,8 +67,7 @@ Eigen::Vector3d ImuMerge::median(const Vectors& values, const UnitMask& which) {
   return out;
 }
 
-/// An accelerometer counts as frozen only if the body rotates, so accelerometers that all freeze together are detected
-/// too.
+/// An accelerometer that repeats one reading while the body rotates is frozen, even if all accelerometers do so.
 void ImuMerge::detect_frozen_units(const UnitMask& present, const Vectors& rates, const Vectors& forces, double dt_s,
                                    TimeNs time_ns, State& state) const {
   UnitMask counted = present;

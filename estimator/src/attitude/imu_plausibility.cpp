@@ -16,12 +16,13 @@ constexpr double kForceReading_s = 0.02;  // averaging time of the readings, so 
 constexpr double kWindowGapMax_s = 0.1;   // an unmeasured rotation may hide in a longer gap
 constexpr double kChangeMax = 0.12;       // largest change of a steady force in a window, as a share of the force
 constexpr double kGravityNear = 0.25;     // directions are compared if force and gravity differ by less than this share
-// Pendulums and hand-held wands reach slopes of 0.75 and 1.21 between the rotations of gravity and gyro.
+// On pendulums and hand-held wands, the rotation of the measured gravity is 0.75 to 1.21 times the gyro's rotation.
 constexpr double kSlopeMin = 0.65, kSlopeMax = 1.5;
 constexpr double kRotationMin_rad2 = 0.5, kRotationMin_rad = 0.15;  // minimum rotation in total, and of a window
-// A push, or the centripetal force of a spin in flight, may also rotate the measured force for a few windows.
+// A push, or the centripetal force in flight, may rotate the measured force for a few windows of 0.2 s.
 constexpr double kRotatedWindowsMin = 5.0;
-// Pushes of the body also cause slopes between 0 and 1, so these slopes need a smaller residual.
+// Pushes of the body also cause slopes between 0 and 1, so a slope below 1 indicates a fault only with a smaller
+// residual.
 constexpr double kScaledResidualMax = 0.75, kReducedResidualMax = 0.33;
 constexpr double kFrozen_s = 1.0, kRepetitionRatio = 10.0;
 constexpr double kUnmeasuredMin = 0.5;      // share of gravity's rotation that a gyro without changing readings leaves
@@ -95,8 +96,8 @@ void ImuPlausibility::process_average(State& state) const {
   if (std::abs(force.norm() - params_.gravity_m_s2) > kNonRestForceRatio * params_.gravity_m_s2)
     state.non_rest_force_s += length_s;
   if (state.window_started) {
-    // Each averaged force is valid at the centre of its averaging interval. To first order, the rotation between two
-    // averaged forces is the sum of all rotations except the first.
+    // The rotation from the middle of the first averaging interval to the middle of the last is approximately the
+    // rotation after the first interval.
     state.gyro_rotation = (state.gyro_rotation * so3::exp(turned)).normalized();
     state.length_s += length_s;
     const double start = state.force_start_m_s2.norm();
@@ -178,12 +179,10 @@ double ImuPlausibility::rotation_agreement(const State& state) const {
          std::sqrt(state.force_rotation_rad2 * std::max(state.gyro_rotation_rad2, kStandstillRad2));
 }
 
-/// See imu_merge.md (I21). Pushes of the body also rotate the measured force, but fit no gyro scale better than
-/// another.
+/// See imu_merge.md (I21). Pushes of the body also rotate the measured force, but no gyro scale explains this rotation.
 bool ImuPlausibility::fits_better(const State& state) const {
   const double slope = rotation_slope(state), agreement = rotation_agreement(state);
   const double left = state.force_rotation_rad2 * (1.0 - agreement * agreement);
-  // Pushes of the body often reduce the regression slope, but rarely invert it or increase it by half.
   const bool low = slope > 0.0 && slope < 1.0;
   const double most = low ? kReducedResidualMax : kScaledResidualMax;
   return left < most * state.unexplained_rad2;

@@ -32,7 +32,7 @@ constexpr double kScaleStep = 0.05;
 constexpr std::size_t kHalf = kAxisLabels, kTwice = kAxisLabels + 1;  // indices of the gyro scales 1/2 and 2
 constexpr std::size_t kLower = kAxisLabels + 2, kUpper = kAxisLabels + 3, kReadings = kAxisLabels + 4;
 constexpr std::size_t kCompared = kLower;  // number of hypotheses that differ clearly from the unchanged rates
-// minimum logarithm of the ratio of two squared residuals for a clear decision
+// A segment favours a gyro hypothesis if the logarithm of its squared velocity residual is smaller by this amount.
 constexpr double kClearLogRatio = 0.4;
 
 using Readings = std::array<Eigen::Matrix3d, kReadings>;
@@ -53,7 +53,7 @@ Readings all_readings() {
   return out;
 }
 
-/// `step` is the Newton step from gyro scale 1, and `weight` is the second derivative of the cost.
+/// `step` is the Newton step from gyro scale 1, and `weight` is the second derivative of the squared residual.
 struct ScaleVote {
   double step, weight;
 };
@@ -126,7 +126,7 @@ class Segments {
   double length_s_ = 0.0, rotated_rad_ = 0.0;
 };
 
-/// See imu_merge.md (I30), with a heteroscedasticity-consistent standard deviation (White, 1980).
+/// Computes the gyro scale, with a heteroscedasticity-consistent standard deviation (White, 1980): imu_merge.md (I30).
 void conclude_scale(const std::vector<ScaleVote>& votes, PivotCheck& found) {
   double weight = 0.0, sum = 0.0, spread = 0.0;
   for (const ScaleVote& vote : votes) weight += vote.weight, sum += vote.weight * vote.step;
@@ -146,8 +146,7 @@ void conclude_scale(const std::vector<ScaleVote>& votes, PivotCheck& found) {
 PivotCheck PivotCheck::of(std::span<const ImuSample> samples, double gravity_m_s2, double gyro_range_rad_s,
                           double accel_range_m_s2) {
   static const Readings readings = all_readings();
-  // An event at the boundary between two segments is inside a segment of the second series, which is shifted by half a
-  // segment.
+  // The second series is shifted by half a segment, so that an impact between two segments is inside another segment.
   std::array<Segments, 2> series = {Segments(gravity_m_s2, readings), Segments(gravity_m_s2, readings)};
   double mean_s = 0.0, since_s = 0.0;
   Eigen::Vector3d turned = Eigen::Vector3d::Zero(), gained = Eigen::Vector3d::Zero();

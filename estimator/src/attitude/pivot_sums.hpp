@@ -10,7 +10,7 @@
 
 namespace tumble {
 
-/// PivotFit is the fit of a rotation about a body point (pivot) with constant velocity: imu_merge.md (I27).
+/// PivotFit is a fitted rotation about a body point (pivot) that moves at constant velocity: imu_merge.md (I27).
 struct PivotFit {
   double residual_m_s = 0.0;  ///< root mean square of the components of the unexplained velocity
   double gravity_m_s2 = 0.0;  ///< magnitude of the constant force in world axes
@@ -19,7 +19,7 @@ struct PivotFit {
 
 class PivotSums {
  public:
-  /// `at_s` is the time from the start of the segment to the middle of the averaging window. Cost: O(1).
+  /// `at_s` is the time from the start of the first reading to the middle of this reading. Cost: O(1).
   void add(double at_s, double dt_s, const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& force_m_s2) {
     const Eigen::Quaterniond half = so3::exp(0.5 * dt_s * rate_rad_s);
     const Eigen::Quaterniond middle = turned_ * half;

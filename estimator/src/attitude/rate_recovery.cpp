@@ -100,7 +100,7 @@ RateRecovery::SaturatedSensors RateRecovery::find_saturated_sensors(std::span<co
     }
     clipped += force;
   }
-  // While all gyros are unsaturated, the unsaturated accelerometers give a better force than the filter.
+  // While all gyros are unsaturated, the mean of the unsaturated accelerometers is more accurate than this filter.
   out.force = clipped > 0 && (out.rate || 2 * clipped > received);
   return out;
 }

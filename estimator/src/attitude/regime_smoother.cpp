@@ -103,7 +103,8 @@ void RegimeSmoother::join_hand_held(std::span<const ImuSample> samples, std::vec
   }
 }
 
-/// HandHeldSmoother replaces the rates between two gaps of the recording. The report describes the last replaced part.
+/// Replaces the rates by the rates of HandHeldSmoother, separately between gaps of the recording. `report` describes
+/// the last part between gaps.
 bool RegimeSmoother::estimate_hand_held(std::span<const ImuSample> samples, const ClippedReadings& known,
                                         std::vector<RateState>& rates, HandHeldSmoother::Report& report) const {
   bool any = false;
@@ -125,8 +126,7 @@ bool RegimeSmoother::estimate_hand_held(std::span<const ImuSample> samples, cons
   return any;
 }
 
-/// See carried.md (C40). Near clipped or suspect readings, the result is the smallest probability of the samples within
-/// `segment_gap_max_s`. Elsewhere, the result is 0.
+/// Returns the probability of hand-held motion near clipped or suspect readings, and 0 elsewhere: carried.md (C40).
 std::vector<double> RegimeSmoother::segment_hand_held_probability(std::span<const RegimeProbabilities> probabilities,
                                                                   const RateReport& report,
                                                                   std::span<const RateState> rates) const {

@@ -17,7 +17,7 @@ HandHeldStream::Params joined(const RegimeStream::Params& params) {
   out.period_s = params.rate.period_s;
   out.lag_s = params.rate.lag_s;
   out.window_s = std::max(out.window_s, out.lag_s + 4.0 * out.body.expert.node_s);
-  // HandHeldStream must report samples before the samples leave the window.
+  // HandHeldStream must report each sample within its window of window_s seconds.
   out.body.expert.gap_max_s = std::min(out.body.expert.gap_max_s, out.window_s - out.lag_s);
   return out;
 }
@@ -41,10 +41,9 @@ RateState mixed_rate(const RateState& rate, const RateState& hand_held, double s
   return out;
 }
 
-// See carried.md (C44). The angular acceleration of RateStream is unsuitable, because RateStream uses the specific
-// force under test.
+// The rates give the angular acceleration, because the value from RateStream depends on the specific force under test:
+// carried.md (C44).
 Eigen::Vector3d angular_acceleration(std::span<const RateStream::Knot> window, std::size_t k) {
-  // Seconds since the epoch as a floating-point number would lose precision.
   const auto between_s = [&](std::size_t from, std::size_t to) {
     return seconds(window[to].observation.sample.time_ns - window[from].observation.sample.time_ns);
   };
@@ -111,7 +110,6 @@ Status RegimeStream::push(const ImuSample& sample, std::span<const AuxiliaryRead
   return {};
 }
 
-// Continues the estimate of the spin up to a reported sample.
 SpinRate RegimeStream::track_spin(const RateState& rate, State& state) const {
   const RateObservation& observation = state.rate.window[index_of(rate, state)].observation;
   const auto saturated = static_cast<std::uint8_t>(observation.unmeasured_axes() | observation.partly_saturated_axes());
@@ -134,7 +132,7 @@ RegimeProbabilities RegimeStream::next(const RegimeProbabilities& before, double
                                        std::span<const RateStream::Knot> window, std::size_t k,
                                        const RigCalibration& rig, bool unstable) const {
   const RateStream::Knot& knot = window[k];
-  // An invalid calibration was fitted to the force, so rate and force agree in any motion.
+  // While the calibration is unstable, it was fitted to contact forces, so rate and force agree in any motion.
   if (unstable && knot.observation.unmeasured_axes() != 0) return before;
   RateState rate;
   rate.w_WI_I_rad_s = knot.estimate.knot.rate_rad_s;
@@ -157,7 +155,7 @@ bool RegimeStream::calibration_is_unstable(const State& state) const {
   return state.resets > kResetFraction * rate.lag_s / std::max(rate.period_s, rate.step_s);
 }
 
-// See the forward pass of carried.md (C38).
+// Updates the probabilities of the motion regimes: forward recursion of carried.md (C38).
 void RegimeStream::update_probabilities(const RateState& rate, State& state) const {
   const double dt_s = state.reported == 0 ? params_.evidence.memory_s : seconds(rate.time_ns - state.reported_ns);
   state.probabilities = next(state.probabilities, dt_s, state.rate.window, index_of(rate, state),
@@ -190,7 +188,7 @@ double RegimeStream::hand_held_weight(const RateState& rate, State& state) const
   if (!after && !before) return 0.0;
   double out = state.near.empty() ? 1.0 : state.near.front().hand_held;
   if (out < params_.hand_held_probability_min || !before) return out;
-  // The forward pass also uses the samples in the window, whose rates are provisional.
+  // Later samples update only a copy of the probabilities, because the rates of these samples are not final.
   RegimeProbabilities probabilities = state.probabilities;
   const RigCalibration rig = rate_.calibration(state.rate);
   const bool unstable = calibration_is_unstable(state);
@@ -215,7 +213,7 @@ void RegimeStream::flush(const State& state, std::vector<RateState>& out) const 
   }
 }
 
-// Combines the last rates with the rates of HandHeldStream.
+// At the end of the data, combines the rates of RateStream with the rates of HandHeldStream.
 void RegimeStream::flush_hand_held(std::span<RateState> out, State& last) const {
   if (!last.hand_held_running || !(last.probabilities.hand_held > params_.hand_held_probability_min)) return;
   std::vector<RateState> hand_held;

@@ -23,15 +23,14 @@ double log_gaussian(double squared_norm, double variance) {
 }
 
 // Returns the log density of a measured force of norm n, if the true force has norm g and any direction: carried.md
-// (C35). For variance v and x = n g / v, the density of the measured force is N(n; 0) exp(-g^2 / 2v) sinh(x) / x.
+// (C35).
 double log_about_gravity(double n, double g, double variance) {
   const double x = n * g / variance;
   const double log_sinh_x = x < 1e-3 ? 0.0 : x - std::log(2.0 * x) + std::log1p(-std::exp(-2.0 * x));
   return log_gaussian(n * n + g * g, variance) + log_sinh_x;
 }
 
-// One in kRoughly samples of hand-held motion is rough, with a kRougher times larger standard deviation of the force:
-// carried.md (C33).
+// One in three samples of hand-held motion has a five times larger standard deviation of the force: carried.md (C33).
 constexpr double kRoughly = 3.0, kRougher = 5.0;
 
 double log_hand_held(double n, double g, double hand_variance, double grip_variance) {
@@ -73,7 +72,7 @@ RegimeEvidence::RegimeEvidence(const Params& params) : params_(params) {
   require_valid_fields(params);
 }
 
-// See carried.md (C31), (C32), (C33), (C34), (C36).
+// Returns the likelihoods of flight, contact and hand-held motion: carried.md (C31), (C32), (C33), (C34), (C36).
 Vector3d RegimeEvidence::likelihood(double dt_s, const ImuSample& sample, const RateState& rate, const Vector3d& alpha,
                                     const Vector3d& lever_arm_m, double lever_arm_variance_m2) const {
   const Vector3d& w = rate.w_WI_I_rad_s;
@@ -141,7 +140,7 @@ Status RegimeEvidence::find(std::span<const ImuSample> samples, std::span<const 
   return {};
 }
 
-// See carried.md (C39). `share` is the probability of the second estimate.
+// See carried.md (C39). `share` is the probability of `second`.
 RateState mix_rate_states(const RateState& first, const RateState& second, double share) {
   RateState out = share > 0.5 ? second : first;
   const Vector3d apart = second.w_WI_I_rad_s - first.w_WI_I_rad_s;

@@ -69,7 +69,7 @@ std::vector<Segment> suspect_segments(const Problem& problem) {
         const Eigen::Matrix3d covariance = problem.covariance(i).block<3, 3>(kRate, kRate);
         angle_rad += problem.node_s() * std::sqrt(std::max(0.0, m.dot(covariance * m.transpose())));
       }
-      // At an end of the recording, no readings on the outer side of a segment determine the number of revolutions.
+      // If the recording starts or ends during a saturation, the number of revolutions is undetermined.
       if (segment.first == 0 || segment.last + 1 >= count) continue;
       const bool against_rail = beyond_rad_s < kBeyondSigmas * problem.rail_sigma_rad_s() * clipped &&
                                 revolution_cost(problem, segment.last + 2 - segment.first) < kRevolutionCost;
@@ -137,8 +137,8 @@ std::vector<Hypothesis> hypotheses(const Problem& whole, const Segment& segment,
   return out;
 }
 
-/// `found` contains the solutions for the nodes from `from` on, best first, and `held` is the index of the current
-/// solution.
+/// `found` contains solutions with different numbers of revolutions, best first. `held` is the index of the solution
+/// with the present number of revolutions.
 struct TestedSegment {
   std::size_t from = 0;
   std::vector<Hypothesis> found;
@@ -159,7 +159,7 @@ AlternativeSolutions alternative_probabilities(const TestedSegment& tested, std:
   return out;
 }
 
-/// `taken` is true if the best solutions have replaced the current solutions.
+/// `taken` is true if each segment now has its most probable number of revolutions.
 std::vector<AlternativeSolutions> remaining_alternatives(const std::vector<TestedSegment>& tested, bool taken) {
   std::vector<AlternativeSolutions> out;
   for (const TestedSegment& each : tested) {
@@ -187,7 +187,7 @@ std::vector<Part> with_surroundings(const Problem& problem, std::span<const Segm
   return out;
 }
 
-/// `fallen` marks segments whose current solution an earlier test has excluded.
+/// `fallen` marks segments whose number of revolutions an earlier round has changed.
 std::vector<TestedSegment> test_segments(const Problem& problem, std::span<const Segment> segments,
                                          std::span<const Part> parts, std::vector<bool>& fallen) {
   std::vector<TestedSegment> out;
@@ -232,7 +232,7 @@ void test_revolutions(Problem& problem, HandHeldSmoother::Report& report, SolveA
   std::vector<Part> parts = with_surroundings(problem, segments);
   std::vector<AlternativeSolutions> open;
   std::vector<bool> fallen(parts.size(), false);
-  // The tests linearise the equations outside a segment, so a changed solution requires new tests.
+  // Each test linearises the motion outside its segment, so a changed number of revolutions requires new tests.
   for (int round = 0; round < kRounds; ++round) {
     if (!problem.condense_rest(parts)) break;
     const std::vector<TestedSegment> tested = test_segments(problem, segments, parts, fallen);

@@ -5,7 +5,8 @@
 
 namespace tumble::hand_held {
 
-/// A clipped segment is tested if the standard deviation of its rotation angle reaches the fraction kAngleShare of pi.
+/// A clipped segment is tested for hidden revolutions if the standard deviation of its rotation angle reaches
+/// kAngleShare times pi.
 inline constexpr double kAngleShare = 1.0 / 3.0;
 inline constexpr double kLogOdds = 6.9;  ///< alternatives with odds below 1 to 1000 are ignored
 
@@ -14,16 +15,15 @@ inline constexpr double kLogOdds = 6.9;  ///< alternatives with odds below 1 to 
 double revolution_cost(double span_s, double jerk_rad_s3_sqrts);
 
 /// Tests for each clipped gyro segment whether the body made one revolution more or less than in the solution. Cost:
-/// two eliminations over all nodes, plus O(N) for N nodes in tested segments.
+/// O(N) for N time steps.
 ///
-/// Data after a clipped segment determine the rotation during the segment only up to whole revolutions. A clipped
-/// segment is tested if the time integral of the rate's standard deviation reaches a third of pi.
+/// Data after a clipped segment determine the rotation during the segment only up to whole revolutions.
 ///
 /// Alternatives with odds above 1 to 1000 enlarge the covariances to those of the mixture of all solutions.
 ///
-/// The caller must have computed the covariances of `problem`. The test neglects correlations between the revolutions
-/// of two segments, and the effect on the calibration constants. The alternative solutions differ only by whole
-/// revolutions about the clipped element's axis.
+/// The caller must have computed the covariances of `problem`. The hypotheses neglect correlations between the
+/// revolutions of two segments, and the effect of revolutions on the calibration constants. The alternative solutions
+/// differ only by whole revolutions about the clipped element's axis.
 void test_revolutions(Problem& problem, HandHeldSmoother::Report& report);
 
 using SolveAgain = Status (*)(Problem& problem, HandHeldSmoother::Report& report);

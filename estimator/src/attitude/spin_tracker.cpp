@@ -97,8 +97,8 @@ bool SpinTracker::select_axis(const ImuSample& sample, std::uint8_t saturated_ax
   return true;
 }
 
-// Predicts the state of a filter: carried.md (C46). In the axes of the body, a vector that is constant in the world
-// turns by minus the angle of the spin. `turning` is 1 for the spin, and 0 for the filter without relation to the spin.
+// Predicts the state of a filter over `dt_s`: carried.md (C46). In the axes of the body, a vector that is constant in
+// the world turns by minus the angle of the spin. `turning` is 1 if the filter assumes a steady spin, and 0 if not.
 SpinTracker::Prediction SpinTracker::predict(const Filter& filter, double turning, double dt_s) const {
   const Vector& x = filter.x;
   const double angle = -turning * dt_s * (x[kRate] + 0.5 * dt_s * x[kAcceleration]);
@@ -146,8 +146,8 @@ double SpinTracker::update(const Prediction& predicted, const ImuSample& sample,
   }
   const double reading = sample.angular_velocity_rad_s[axis], innovation = reading - filter.x[kRate];
   const bool saturated = is_set(saturated_axes, axis);
-  // A saturated reading is a lower bound, which affects only a smaller estimate. After an overflow, the reading has the
-  // wrong sign and no information.
+  // A saturated reading is a lower bound of the rate, so it corrects only a smaller estimate. After an overflow, the
+  // reading has the wrong sign and no information.
   if (!saturated || (innovation * reading > 0.0 && filter.x[kRate] * reading > 0.0)) {
     const double sigma = saturated ? kRailSigma_rad_s : kReadingSigma_rad_s;
     filter.x += component_update<6>(kRate, innovation, squared(sigma), filter.P);
@@ -172,8 +172,8 @@ SpinRate SpinTracker::advance(const ImuSample& sample, std::uint8_t saturated_ax
     ratio = std::exp(std::clamp(std::min(1.0, dt_s / params_.memory_s) * log_ratio, -kLogRatioMax, kLogRatioMax));
     const double spins = state.probability * (1.0 - changed) + (1.0 - state.probability) * changed;
     state.probability = std::min(kProbabilityMax, spins * ratio / (spins * ratio + 1.0 - spins));
-    // The rate of a saturated spin is free, so that any modulation agrees with some rate. Saturated samples can
-    // therefore contradict a spin, but not confirm it.
+    // During saturation, some spin rate explains any rate across the spin axis, so saturated samples can only
+    // contradict a steady spin.
     if (!is_set(saturated_axes, state.axis)) {
       state.measured_probability = state.probability;
     } else if (state.probability > state.measured_probability) {

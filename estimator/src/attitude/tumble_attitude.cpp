@@ -21,7 +21,7 @@ constexpr double kSlipVelocity_m_s = 0.12;
 // Duration of small velocity residuals after which slip ends.
 constexpr double kSlipQuiet_s = 0.2;
 constexpr double kSlipTimeout_s = 3.0;  // maximum duration of a slip
-// A longer time between two samples is a gap.
+// Minimum time between two samples that counts as a gap.
 constexpr double kGapMin_s = 0.05;
 
 constexpr double kTiltSigmaStart_rad = 0.01;
@@ -30,7 +30,7 @@ constexpr double kDisplacementSigmaStart_m = 0.1;
 constexpr double kContradicts_sigma2 = 4.0;
 constexpr int kTilt = 0, kBias = 2, kVelocity = 5, kDisplacement = 7, kHeading = 9;
 
-/// Applies a scalar Kalman update: attitude.md (A4). The variance of the heading remains unchanged: attitude.md (A9).
+/// Applies a scalar Kalman update that does not change the variance of the heading: attitude.md (A4), (A9).
 void update(int index, double innovation, double variance, TumbleAttitude::State& state) {
   const double heading = state.covariance(kHeading, kHeading);
   const Eigen::Matrix<double, TumbleAttitude::State::kStates, 1> correction =
@@ -187,7 +187,7 @@ void TumbleAttitude::bridge_gap(const ImuSample& after, const Eigen::Matrix3d& r
   predict_node(state);
   // A sphere that gripped before the gap is assumed to roll without slip after the gap.
   if (params_.radius_m > 0.0 && !state.slipping) state.v_W_m_s = velocity_from_rotation(state);
-  // The correction changes the tilt variance, so the tilt variance is computed first.
+  // correct_node() changes the tilt variance, so the tilt variance is computed first.
   const double tilt = reported_tilt_rad2(state);
   state.alignment = {};
   correct_node(state);
@@ -216,11 +216,11 @@ double TumbleAttitude::body_velocity_variance_m2_s2(double power_m2_s2, const St
 void TumbleAttitude::align(const Eigen::Quaterniond& corrected, State& state) const {
   CoarseAlignment& alignment = state.alignment;
   alignment.force_W_m_s = corrected * alignment.force_W_m_s;
-  // A wrong tilt falsifies the velocity that the filter estimated since the gap.
+  // The velocity variance is assumed, because a wrong tilt after a data gap falsifies the filtered velocity.
   const double velocity = body_velocity_variance_m2_s2(alignment.velocity_m2_s2, state);
   const double variance = alignment.variance_rad2(velocity, params_.gravity_m_s2);
   if (variance > squared(params_.expert.gap.aligned_tilt_rad)) {
-    // After the body came to rest, the alignment restarts and uses only later data.
+    // When the body comes to rest, the coarse alignment restarts and uses only later data.
     if (state.at_rest && alignment.velocity_m2_s2 > velocity) alignment.begin(velocity, alignment.tilt_rad2());
     return;
   }
@@ -265,7 +265,7 @@ void TumbleAttitude::add_recovered(double dt_s, State& state) const {
   state.recovered_covariance_rad2_s2.setZero();
 }
 
-/// See attitude.md (A6), (A7), (A8), (A9).
+/// Predicts one filter step: attitude.md (A6), (A7), (A8), (A9).
 void TumbleAttitude::predict_node(State& state) const {
   const double h = state.node_s;
   const double keep = std::exp(-h / params_.displacement_tau_s);

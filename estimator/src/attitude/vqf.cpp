@@ -17,14 +17,13 @@ namespace {
 constexpr double kBiasSigmaMotion_rad_s = 1.7453e-3;
 // Standard deviation of the bias at rest: 0.03 deg/s.
 constexpr double kBiasSigmaRest_rad_s = 5.2360e-4;
-// Decay of the unobservable vertical bias to zero.
+// weight of the assumption that the unobservable vertical gyro bias is zero
 constexpr double kVerticalForgetting = 1e-4;
 // Time constant of the low-pass filter for detecting rest.
 constexpr double kRestTau_s = 0.5;
 // Time in which the bias variance grows to (0.1 deg/s)^2.
 constexpr double kBiasForgetting_s = 100.0;
 constexpr double kBiasClip_rad_s = 3.4907e-2;  // largest accepted bias: 2 deg/s
-// Duration of quiet readings after which the sensor is at rest.
 constexpr double kRestTime_s = 1.5;
 // Maximum difference of gyro and low-passed gyro at rest: 2 deg/s.
 constexpr double kRestRate_rad_s = 3.4907e-2;
@@ -83,7 +82,7 @@ void Vqf::detect_rest(const ImuSample& sample, double dt_s, State& state) const 
   state.at_rest = state.rest_s >= kRestTime_s && quiet;
 }
 
-/// Returns the unit vector along the specific force (upwards), in frame W before the correction.
+/// Levels frame W, and returns the unit vector along the specific force (upwards) in the frame before levelling.
 Eigen::Vector3d Vqf::level_inertial_frame(const Eigen::Vector3d& f_I_m_s2, double dt_s, State& state) const {
   // See attitude.md (A3).
   state.f_N_m_s2.advance(state.q_NI * f_I_m_s2, params_.tau_s, dt_s, low_pass_prewarp(params_.tau_s, dt_s));
@@ -116,7 +115,7 @@ void Vqf::estimate_bias(const Eigen::Vector3d& up_W, double dt_s, State& state) 
     noise.setConstant(steady_noise(kBiasSigmaRest_rad_s, growth));
   } else if (params_.motion_bias_estimation) {
     H = Eigen::Map<const Eigen::Matrix3d>(state.R_WI.value.data());
-    // The correction rate of the vertical contains the remaining gyro bias and the recently corrected gyro bias.
+    // The low-passed bias estimate plus the rate at which levelling corrects the vertical measures the gyro bias.
     const Eigen::Vector2d low_passed = state.bias_W_rad_s.value;
     innovation = Eigen::Vector3d(low_passed.x() - up_W.y() / dt_s, low_passed.y() + up_W.x() / dt_s, 0.0) - H * b;
     const double motion = steady_noise(kBiasSigmaMotion_rad_s, growth);

@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// See the section "Thresholds" of docs/maths/outliers.md.
+// docs/maths/outliers.md explains these thresholds.
 constexpr double kRateMin_rad_s = 1.0;                // smallest jump of a gyro reading that is an outlier
 constexpr double kForceMin_m_s2 = 30.0;               // smallest jump of an accelerometer reading that is an outlier
 constexpr double kOutlierRatio = 3.0;                 // minimum ratio of an outlier to the difference of its neighbours
@@ -22,7 +22,7 @@ constexpr double kLever_m = 10.0;                     // largest force of a robo
 constexpr double kRateJumpMax_rad_s = 50.0;           // largest plausible jump of the rate in a single sample
 constexpr double kVelocityJumpMax_m_s = 20.0;         // largest plausible jump of the velocity in a single sample
 constexpr double kNear_s = 0.1;                       // maximum time between compared neighbours
-// After a longer step between stamps, the filter delays the sample, because the next stamp may be earlier.
+// After a longer step between time stamps, a sample waits for the next time stamp, which may be earlier.
 constexpr double kStampStepMax_periods = 1.75;
 
 // A reading may be saturated if it exceeds kAtRange times the stated range, or if it is large and repeated.
@@ -81,7 +81,7 @@ Sequence recent_sequence(const OutlierFilter::State& state) {
   return out;
 }
 
-/// See outliers.md (O3). Returns kUnknown if saturation may hide a change.
+/// See outliers.md (O3). Returns kUnknown if saturation may hide a change of the reading.
 double largest_step(const Sequence& sequence, const Triad& triad) {
   double out = 0.0;
   for (std::size_t k = 1; k < sequence.count; ++k) {
@@ -172,7 +172,7 @@ bool OutlierFilter::must_delay(const ImuSample& sample, State& state) const {
   return true;
 }
 
-/// Returns infinity if no nominal period is stated.
+/// Returns the sample period; infinity if no nominal period is stated.
 double OutlierFilter::period_s(const State& state) const {
   if (!(device_.period_s > 0.0)) return kUnknown;
   if (state.count < 2) return device_.period_s;

@@ -13,7 +13,7 @@
 
 namespace tumble::precompiled {
 
-/// `known` is always true; it instantiates the classes and evaluators of the given Eigen expressions.
+/// Using `known` instantiates the classes and evaluators of the given Eigen expressions. `known` is always true.
 template <class... Expressions>
 constexpr bool known = (... && (sizeof(std::remove_cvref_t<Expressions>) > 0 &&
                                 sizeof(Eigen::internal::evaluator<std::remove_cvref_t<Expressions>>) > 0));
@@ -26,7 +26,7 @@ constexpr bool known_squares = known_matrices<Matrices...>&& known<decltype(Matr
 template <int rows, int columns = 1>
 using Real = Eigen::Matrix<double, rows, columns>;
 
-// The operands have no definition, because the expressions are never evaluated.
+// These vectors and matrices are only declared, because the expressions below are never evaluated.
 extern const Eigen::Vector3d a, b;
 extern Eigen::Vector3d c;
 extern const Eigen::Matrix3d R;

@@ -15,7 +15,7 @@ constexpr double kOutlier = 4.0;  // largest error of an accepted stamp, in stan
 constexpr double kStray = 0.4;    // error of a stamp, in periods, above which the sample number is uncertain
 constexpr std::size_t kConsecutiveOutliersMax = 8;
 constexpr double kPeriodJitterMax = 0.25;  // maximum jitter in periods; random stamps have 0.29
-// If successive residuals correlate more strongly, the fitted line does not follow the sensor's clock.
+// With a larger correlation of successive residuals, the line fitted to the time stamps does not follow the clock.
 constexpr double kErrorCorrelationMax = 0.5;
 constexpr double kStepMin_periods = 0.25;      // minimum time between two samples, in periods
 constexpr double kSampleNumberSigmaMax = 0.1;  // maximum uncertainty of the sample number after a gap, in periods
@@ -145,7 +145,7 @@ void SampleClock::begin(State& state) const {
   state.outliers = 0;
 }
 
-/// See sample_clock.md (S1), (S2), (S3). An uncertain sample number restarts the fit.
+/// See sample_clock.md (S1), (S2), (S3). The line fit restarts if the number of samples in a step is uncertain.
 void SampleClock::update_line(double step_ns, TimeNs stamp_ns, State& state) const {
   const double passed_ns = step_ns - state.fit_residual_ns;
   const double number = std::max(1.0, std::round(passed_ns / state.period_ns));
@@ -170,7 +170,6 @@ void SampleClock::update_line(double step_ns, TimeNs stamp_ns, State& state) con
       forget_fraction * (limited_ns * state.prediction_error_ns - state.lag_one_error_product_ns2);
   state.prediction_error_ns = limited_ns;
 
-  // Sample numbers count from the current sample, so that only the current sample has a residual about the fitted line.
   const double keep = 1.0 - forget_fraction;
   state.weighted_number_squared_sum = keep * (state.weighted_number_squared_sum -
                                               2.0 * number * state.weighted_number_sum + number * number * state.sum);

@@ -79,8 +79,7 @@ Eigen::Matrix3d left_jacobian_inverse(const Eigen::Vector3d& phi) {
 }
 
 Eigen::Quaterniond shortest_arc(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
-  // With h = from + to, the rotation is the quaternion (|h| / 2, (from x h) / |h|). For nearly opposite vectors, h is
-  // exact to rounding, so the formula is accurate up to a half turn.
+  // The quaternion (|h| / 2, (from x h) / |h|) with h = from + to is accurate even for nearly opposite vectors.
   const Eigen::Vector3d h = from + to;
   const double length = h.norm();
   if (length < 1e-15) {

@@ -8,8 +8,8 @@ namespace tumble::mapping {
 
 namespace {
 
-// Stages of a registration: iterations with all points, further iterations with a subsample, and a coarse stage for
-// starting poses far from the prior. The iterations with the subsample decide whether a starting pose converges.
+// Stages of a registration: all points of the sweep, every n-th point until convergence, and a coarse stage for
+// starting poses far from the prior.
 constexpr int kFullIterations = 8, kCoarseIterations = 15;
 constexpr std::size_t kSubsamplePoints = 1000, kCoarsePoints = 300, kCoarseMatchesMin = 50;
 constexpr double kCoarseKernelMin_m = 0.5;  // minimum width of the robust kernel

@@ -45,8 +45,8 @@ Motion frame_jacobian(const Eigen::Matrix3d& turn, const Eigen::Vector3d& v_WI_m
   return T;
 }
 
-/// Applies a Kalman update with the measured velocity 0; the gain follows from C, and E is the covariance of the actual
-/// errors.
+/// Applies a Kalman update with the measured velocity 0. C is the covariance that weights the prediction, and E the
+/// covariance of its actual errors.
 void bound_speed(double sigma_m_s, MotionState& state, Motion& C, Motion& E) {
   const Eigen::Matrix3d R = sigma_m_s * sigma_m_s * Eigen::Matrix3d::Identity();
   const Eigen::Matrix3d S = u::block(C, u::velocity) + R;
@@ -127,15 +127,15 @@ StateEstimate reset_origin_and_yaw(const StateEstimate& reckoned, double step_s)
   return of_motion(state, reckoned.mean.calibration, T * C * T.transpose(), T * E * T.transpose());
 }
 
-/// In the map frame, the attitude has no error, because the frame is rotated by the tilt error φ. Velocity v and
-/// gravity g have the errors δv + v × φ and g × φ.
+/// The tilt error φ of the first sweep rotates the map frame. The rotation adds v × φ to the error of velocity v, and g
+/// × φ to the error of gravity g.
 StateEstimate estimate_at_first_sweep(const Params& params, const StateEstimate& reckoned) {
   MotionState start = reckoned.mean.state;
   start.covariance.setZero();
   u::variances(start.covariance, u::tilt)
       .setConstant(params.expert.start.level_sigma_rad * params.expert.start.level_sigma_rad);
   StateEstimate out = estimate_at_start(params, start);
-  // derivative of velocity and gravity with respect to the errors of the motion
+  // rows: errors of velocity and gravity in the map frame; columns: errors of position, attitude and velocity before
   Eigen::Matrix<double, 6, 9> T = Eigen::Matrix<double, 6, 9>::Zero();
   T.block<3, 3>(0, 3) = so3::hat(start.v_WI_m_s);
   T.block<3, 3>(0, 6).setIdentity();

@@ -17,18 +17,18 @@ void widen_for_motion(MotionState& levelled);
 MotionState moved_to(const Eigen::Isometry3d& T_WI, const MotionState& motion);
 StateEstimate moved_to(const Eigen::Isometry3d& T_WI, const StateEstimate& estimate);
 
-/// The errors of the new tilt are independent of all other errors.
+/// Replaces roll and pitch by `tilt`, whose errors are independent of all other errors.
 StateEstimate with_tilt(const LidarInertialOdometry::StartTilt& tilt, const StateEstimate& estimate);
 
 /// Returns the dead-reckoned state in a frame with origin and yaw of the IMU, `step_s` after the last call. A weak
 /// prior on the speed limits the errors of tilt and velocity over minutes of motion.
 StateEstimate reset_origin_and_yaw(const StateEstimate& reckoned, double step_s);
 
-/// The lidar's pose at the start of the first sweep defines the map frame, and is therefore exact. The tilt error of
-/// dead reckoning therefore becomes an error of gravity's direction.
+/// The lidar's pose at the start of the first sweep defines the map frame, and is therefore exact. In the map frame,
+/// the tilt error of dead reckoning is an error of gravity's direction.
 StateEstimate estimate_at_first_sweep(const LidarInertialOdometry::Params& params, const StateEstimate& reckoned);
 
-/// The map's vertical is as uncertain as the tilt of `reckoned`.
+/// The map's vertical has the tilt uncertainty of the dead-reckoned state.
 WorldCovariance world_at_first_sweep(const LidarInertialOdometry::Params& params, const StateEstimate& reckoned);
 
 }  // namespace tumble::mapping

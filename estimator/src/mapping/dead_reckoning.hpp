@@ -9,8 +9,8 @@
 
 namespace tumble::mapping {
 
-/// While a relocalisation is unconfirmed, DeadReckoning predicts the pose without the relocalisation from the IMU. If
-/// later sweeps contradict the relocalisation, DeadReckoning predicts the relocalised pose.
+/// DeadReckoning predicts the pose from the IMU, without an unconfirmed relocalisation. If later sweeps contradict the
+/// relocalisation, DeadReckoning predicts the rejected pose, which remains a starting pose of the search.
 struct DeadReckoning {
   SweepBoundary boundary;
   LagWindow window;

@@ -22,7 +22,7 @@ constexpr double kStartSpeedSigma_m_s = 0.05;
 
 namespace u = unknowns;
 
-/// See mapping.md (R39), (R40), (R41), (R43).
+/// Computes the process noise: mapping.md (R39), (R40), (R41), (R43).
 Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& params,
                                            const SweepTrajectory& trajectory, std::span<const MotionSample> samples,
                                            unsigned deficit_axes) {

@@ -10,8 +10,8 @@
 namespace tumble::mapping {
 
 /// Returns the covariance that inertial integration over one sweep adds to the errors of position, attitude and
-/// velocity. Rate errors come mainly from saturation, so rate errors are assumed constant over the sweep. The axes in
-/// `deficit_axes` (bits) are excluded, because the registration estimates their saturation deficit.
+/// velocity. Rate errors come mainly from saturation, so rate errors are assumed constant over the sweep. Clipped axes
+/// in the bit mask `deficit_axes` add no noise, because the registration estimates their missing rate.
 Eigen::Matrix<double, 9, 9> inertial_noise(const LidarInertialOdometry::Params& params,
                                            const SweepTrajectory& trajectory, std::span<const MotionSample> samples,
                                            unsigned deficit_axes);
@@ -28,7 +28,7 @@ Status start_at_rest(const LidarInertialOdometry::Params& params, std::span<cons
 Status level_at_rest(const LidarInertialOdometry::Params& params, const Eigen::Vector3d& force_I_m_s2,
                      MotionState& state);
 
-/// The standard deviation is limited to the mapper's rate_sigma_max_rad_s.
+/// Returns the standard deviation of the rate, at most the mapper's rate_sigma_max_rad_s.
 Eigen::Vector3d assumed_rate_sigma(const LidarInertialOdometry::Params& params, const RateState& rate);
 
 }  // namespace tumble::mapping

@@ -16,7 +16,7 @@ using Params = LidarInertialOdometry::Params;
 
 constexpr TimeNs kArcStep_ns = 5'000'000;
 constexpr TimeNs kArcMost_ns = 10'000'000'000;  // longest bridged flight; no flight lasts longer
-// additional tolerance of the rate [rad/s] after a flight; impacts change the rate by more
+// If the rate after a data gap differs from the free-flight prediction by more, an impact occurred in the gap.
 constexpr double kArcOff_rad_s = 0.5;
 
 WindowRate rate_of(const MotionSample& sample) {
@@ -94,7 +94,7 @@ void InertialTrack::fill_gap(const Params& params, bool in_flight) {
     pending_rates_rad_s_.insert(pending_rates_rad_s_.end() - 1, part.w_WI_I_rad_s);
 }
 
-/// Returns false if the rate predicted for free flight contradicts the reading after the gap: flight_arc.md (A12).
+/// Returns false if the rate after a data gap contradicts the prediction for free flight: flight_arc.md (A12).
 bool InertialTrack::bridge_flight(const Params& params, const WindowRate& before, const WindowRate& after) {
   if (after.from_ns - before.time_ns > kArcMost_ns) return false;
   const std::size_t first = samples_.size();
@@ -142,7 +142,7 @@ void InertialTrack::update_rest(const Params& params, const ImuSample& sample, c
   if (!clipped && rest_detector_.observe(received, rest_, bias)) next.rest_start_ns = rest_.first_ns;
   if (initial_.lasts) {
     if (!initial_.first_ns) initial_.first_ns = initial_.run_ns = sample.time_ns;
-    // The mean at the start of a rest is as noisy as single readings, so noise may interrupt the detected rest.
+    // The mean reading at the start of a rest is as noisy as single readings, so noise may interrupt the detected rest.
     if (next.rest_start_ns && seconds(*next.rest_start_ns - *initial_.first_ns) < params.expert.start.bias_rest_s)
       initial_.run_ns = next.rest_start_ns;
     initial_.lasts = next.rest_start_ns == initial_.run_ns;
@@ -174,7 +174,7 @@ bool InertialTrack::starts_at_rest(double lasted_s) const {
   const auto rests = [&](const MotionSample& sample) {
     return sample.at_rest || seconds(sample.from_ns - samples_.front().from_ns) >= lasted_s;
   };
-  // The gyro bias shows that a long enough rest occurred, although its first samples may have been deleted.
+  // A gyro bias exists only after a long enough initial rest, whose first samples may have been deleted.
   return !initial_.gyro_bias_rad_s.isZero(0.0) || std::all_of(samples_.begin(), samples_.end(), rests);
 }
 

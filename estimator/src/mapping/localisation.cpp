@@ -11,8 +11,8 @@ namespace tumble {
 
 namespace {
 
-// The probability of a chi-square value (nine degrees of freedom) above 32.9 is 1.4e-4. Two of 1000 sweeps with correct
-// covariances exceed the limit with a probability of 1 %.
+// A chi-square value (nine degrees of freedom) exceeds 32.9 with a probability of 1.4e-4. In 1000 sweeps with correct
+// covariances, two or more values exceed 32.9 with a probability of 1 %.
 constexpr double kContradictionChi2Min = 32.9;
 
 double innovation_max() {

@@ -16,13 +16,13 @@ struct RangeNoise {
 
 /// LoneReturns detects returns that no neighbouring beam confirms, for example from dust, rain, snow, grass or birds.
 ///
-/// A neighbouring return on the same ring confirms a return in one of three ways: mapping.md (R13), (R14), (R15). The
-/// return has the same range as a neighbour, forms a surface with a neighbour, or lies on the line between two
-/// neighbours. LoneReturns keeps all returns of a sweep that has no more lone returns than clear air causes.
+/// Neighbours on the same ring confirm a return with the same range, on a common surface, or on the line between two
+/// neighbours: mapping.md (R13), (R14), (R15). LoneReturns keeps all returns of a sweep that has no more lone returns
+/// than clear air causes.
 class LoneReturns {
  public:
-  /// Removes the lone returns from `points`, and returns their number. Cost: O(points). The remaining points are
-  /// ordered by ring, and within each ring by firing time.
+  /// Removes the lone returns from `points`, and returns their number. Cost: O(points). The order of the remaining
+  /// points does not change.
   std::size_t drop(const RangeNoise& noise, std::vector<SweepPoint>& points);
 
  private:

@@ -86,8 +86,7 @@ void MapLocaliser::propose(const std::vector<SurfacePoint>& points, const Eigen:
   chance_ = std::max(kChanceAgreementMax, second + kChanceMargin * (1.0 - second));
 }
 
-/// The test uses the Chernoff bound of the binomial distribution, with Bonferroni's correction for the number of
-/// compared poses.
+/// Returns whether the agreement with the prior map at `pose` is improbable by chance: mapping.md (R74).
 bool MapLocaliser::passes(const FramePose& pose) const {
   if (pose.ratio() <= chance_ || chance_ >= 1.0) return false;
   return double(pose.covered) * relative_entropy(pose.ratio(), chance_) >= std::log(compared_poses_ / kFalseAcceptance);

@@ -38,7 +38,7 @@ inline void apply_velocity_prior(const MotionPrior& prior, Prediction& predictio
 }
 
 /// Updates the prediction of a sweep with an odometer reading from within the sweep: mapping.md (R34) to (R37).
-/// Readings outside of the motion window have no effect.
+/// Odometer readings outside of the sweep have no effect.
 void fuse_reading(const OdometerReading& reading, const SweepBoundary& boundary, const MotionWindow& window,
                   const MotionNoise& within, Prediction& prediction);
 inline void weigh(const MotionPrior& prior, const SweepBoundary& boundary, const MotionWindow& window,

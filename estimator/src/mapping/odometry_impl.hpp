@@ -21,7 +21,7 @@ namespace mapping {
 
 void require_params(const LidarInertialOdometry::Params& params);
 
-/// predicted and updated unknowns at the start of a sweep, and the updated motion
+/// predicted and updated state at the start of a sweep, and the updated trajectory of the sweep
 struct UpdatedSweep {
   const Prediction& prediction;
   const StateEstimate& start;
@@ -55,7 +55,7 @@ struct LidarInertialOdometry::Impl {
   Status dead_reckon(TimeNs end_ns);
   bool rests(const mapping::InertialTrack& inertial, const SweepTrajectory& motion, TimeNs end_ns) const;
   /// On entry, `trajectory` is the motion that the IMU predicts. On return, `trajectory` is the registered motion, or
-  /// the motion of a failed attempt.
+  /// the last motion of a failed registration.
   void register_to_map(const mapping::Prediction& prediction, const mapping::MotionWindow& motion,
                        mapping::SweepPoints& points, SweepTrajectory& trajectory, SweepReport& report,
                        mapping::Placed& placed);
@@ -73,8 +73,8 @@ struct LidarInertialOdometry::Impl {
   Status continue_by_inertia(const mapping::MotionWindow& motion, bool rests, mapping::SweepBoundary& at,
                              mapping::LagWindow* into) const;
   void revert_to_inertia();
-  /// Returns the state according to a relocalisation that later sweeps contradicted, or null. The search after a
-  /// tracking failure uses the state of the contradicted relocalisation as an initial pose.
+  /// Returns the state of a relocalisation that later sweeps contradicted, or null. The search after a tracking failure
+  /// also starts from this state.
   const MotionState* rejected_relocalisation() const;
   void add_map_drift(const mapping::UpdatedSweep& sweep, const SweepReport& report);
   void prune_until(TimeNs end_ns);
@@ -84,8 +84,8 @@ struct LidarInertialOdometry::Impl {
   bool extends_map() const { return !localiser.is_localised() || localiser.map().extend; }
 
   PoseState pose_along(const SweepTrajectory& motion, double t_s, const Registration::Matrix& errors) const;
-  /// Returns the poses at the ends of the IMU's averaging windows. `errors` is the covariance of the unknowns at the
-  /// start of the sweep.
+  /// Returns the poses at the ends of the IMU's averaging windows. `errors` is the covariance of the registration's
+  /// unknowns at the start of the sweep.
   std::vector<PoseState> poses_along(const SweepTrajectory& motion, TimeNs end_ns,
                                      const Registration::Matrix& errors) const;
   std::vector<PoseState> poses_of(const mapping::WindowSweep& sweep) const;

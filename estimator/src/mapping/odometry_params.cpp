@@ -7,7 +7,7 @@ namespace tumble {
 
 namespace {
 
-/// Eigen's empty box means that no box is set.
+/// An empty box means that no own-body box is set.
 template <class Visitor>
 void visit_corners_in_order(const Eigen::AlignedBox3d& box, Visitor& visit) {
   const Eigen::AlignedBox3d none;

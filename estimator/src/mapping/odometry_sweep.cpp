@@ -213,8 +213,7 @@ void LidarInertialOdometry::Impl::register_to_map(const Prediction& prediction, 
   mapping::judge(params, tracking, scene.points.size(), prior_certain, attempt, placed);
 }
 
-/// At rest after a tracking failure, the function also corrects `prediction`, because the lag window uses the
-/// prediction.
+/// At rest after a tracking failure, update() also corrects `prediction`, because the lag window uses `prediction`.
 StateEstimate LidarInertialOdometry::Impl::update(const MotionWindow& motion, const Placed& placed,
                                                   Prediction& prediction) const {
   if (placed.alignment) return mapping::posterior(prediction, *placed.alignment);
@@ -245,7 +244,7 @@ std::vector<InsertedPoint> LidarInertialOdometry::Impl::insert(const UpdatedSwee
   return inserted;
 }
 
-/// The lag window needs the boundary to the previous sweep, which boundary_after() replaces.
+/// enter_window() needs the state at the end of the previous sweep, which boundary_after() replaces.
 void LidarInertialOdometry::Impl::propagate(const UpdatedSweep& sweep, const Placed& placed, const MotionWindow& motion,
                                             std::vector<InsertedPoint> inserted, SweepReport& report) {
   const Registration::Result* aligned = placed.alignment ? &*placed.alignment : nullptr;
@@ -277,7 +276,6 @@ void LidarInertialOdometry::Impl::propagate(const UpdatedSweep& sweep, const Pla
   prune_until(motion.end_ns);
 }
 
-/// All points inserted from a sweep share the pose error of the sweep.
 void LidarInertialOdometry::Impl::add_map_drift(const UpdatedSweep& sweep, const SweepReport& report) {
   const double inserted_fraction =
       report.points_used == 0 ? 0.0 : double(report.map_points_added) / double(report.points_used);
@@ -310,7 +308,8 @@ void LidarInertialOdometry::Impl::propagate_alternative(const MotionWindow& moti
   if (!continue_by_inertia(motion, rests, other->boundary, &other->window).ok()) other.reset();
 }
 
-/// The points of the sweep are not used. If `into` is not null, the sweep also enters the lag window `into`.
+/// Propagates the state over a sweep without using lidar points. If `into` is not null, the sweep also enters the lag
+/// window `into`.
 Status LidarInertialOdometry::Impl::continue_by_inertia(const MotionWindow& motion, bool rests,
                                                         mapping::SweepBoundary& at, mapping::LagWindow* into) const {
   const Registration::Estimate& before = at.state_estimate.mean;
@@ -331,8 +330,8 @@ Status LidarInertialOdometry::Impl::continue_by_inertia(const MotionWindow& moti
   return {};
 }
 
-/// Removes the map points inserted since a relocalisation that later sweeps contradict. After a contradiction, the
-/// relocalised pose remains an initial pose of the search.
+/// Removes the map points that were inserted since a wrong relocalisation, and continues from the inertial pose. The
+/// wrong pose remains a starting pose of the search after a tracking failure.
 void LidarInertialOdometry::Impl::revert_to_inertia() {
   map.remove_sweeps_since(std::exchange(other->inserted_from, 0));  // 0, because pruning changes sweep numbers
   std::swap(boundary, other->boundary);

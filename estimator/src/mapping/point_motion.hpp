@@ -16,8 +16,8 @@ class PointMotion {
   PointMotion(const SweepTrajectory& trajectory, const SweepCalibration& calibration, const SweepPoint& point,
               std::size_t& hint);
 
-  /// Computes the derivative of the point's world position along `direction_W` with respect to all unknowns: mapping.md
-  /// (R17).
+  /// Computes the derivative of the lidar point's position along `direction_W` by the 28 unknowns of the registration:
+  /// mapping.md (R17).
   void along(const Eigen::Vector3d& direction_W, SweepUnknowns::Vector& derivative) const;
 
   /// Returns the lever arm vector u of SweepTrajectory::common_position_m, in W.

@@ -16,16 +16,16 @@ namespace tumble::mapping {
 
 namespace {
 
-// Maximum standard deviation of the attitude of a sweep with too few matches that still extends the map.
+// A sweep with too few matches extends the map if the standard deviation of its attitude is below this limit.
 constexpr double kExtendSigmaMax_rad = 0.1;
 // Minimum prior standard deviation of the saturation deficit of a clipped axis.
 constexpr double kDeficitSigmaMin_rad_s = 1.0;
 // Correlation time of the saturation deficit.
 constexpr double kDeficitTime_s = 0.3;
-// Maximum growth factor of the saturation deficit at a sweep boundary.
+// Maximum growth factor of the missing gyro rate (saturation deficit) from one sweep to the next.
 constexpr double kDeficitCarryMax = 3.0;
-// Standard deviation of the change between adjacent knots, relative to the standard deviation of the saturation
-// deficit.
+// Independent standard deviation at each of the three times of the saturation deficit, relative to its total standard
+// deviation.
 constexpr double kKnotSigmaRatio = 0.05;
 // Standard deviation of the velocity during the initial rest.
 constexpr double kStartSigma_m_s = 0.01;
@@ -35,7 +35,7 @@ constexpr int kRestingSweepsMin = 3;
 namespace u = unknowns;
 using Params = LidarInertialOdometry::Params;
 
-/// See mapping.md (R48). The saturation deficit at the boundary between two sweeps decays exponentially with time.
+/// The missing gyro rate at the end of a sweep continues in the next sweep, and decays exponentially: mapping.md (R48).
 void carry_deficit(const Params& params, const SweepBoundary& boundary, const SweepTrajectory& trajectory,
                    Prediction& next) {
   constexpr int kLast = SweepTrajectory::kKnots - 1;
@@ -54,8 +54,8 @@ void carry_deficit(const Params& params, const SweepBoundary& boundary, const Sw
   }
 }
 
-/// Returns the largest reported standard deviation of the rate among samples of a sweep with clipped `axis`. The result
-/// is at least kDeficitSigmaMin_rad_s.
+/// Returns the largest reported standard deviation of the rate among samples with clipped `axis`, at least
+/// kDeficitSigmaMin_rad_s.
 double deficit_sigma(const MotionWindow& window, const SweepTrajectory& trajectory, int axis) {
   double sigma = kDeficitSigmaMin_rad_s;
   for (const MotionSample& sample : window.samples) {
@@ -65,8 +65,8 @@ double deficit_sigma(const MotionWindow& window, const SweepTrajectory& trajecto
   return sigma;
 }
 
-/// The saturation deficit is a first-order Gauss-Markov process: mapping.md (R46), (R47). If the saturation deficit
-/// continues from the last sweep, its covariance follows from mapping.md (R49).
+/// The missing gyro rate is a first-order Gauss-Markov process: mapping.md (R46), (R47). If the saturation continues
+/// from the last sweep, mapping.md (R49) gives the covariance.
 void add_deficit_noise(const Params& params, const MotionWindow& window, const SweepTrajectory& trajectory,
                        Prediction& next) {
   if (!params.expert.rails.estimate_deficit) return;
@@ -133,7 +133,7 @@ Prediction predict(const Params& params, const SweepBoundary& boundary, const Mo
   MotionNoise within = inertial_noise(params, trajectory, window.samples, axes);
   const Eigen::Matrix3d clipped_force_m2_s2 = clipped_velocity_variance(trajectory, window.samples);
   u::block(next.noise, u::motion) += within;
-  // A force that saturates late in a sweep hardly affects the registration of the sweep, but changes the velocity in
+  // Accelerometer saturation late in a sweep hardly affects the registration of this sweep, but changes the velocity in
   // the next sweep.
   u::block(next.noise, u::velocity) += boundary.clipped_velocity_m2_s2 + clipped_force_m2_s2;
   u::block(within, u::velocity) += clipped_force_m2_s2;

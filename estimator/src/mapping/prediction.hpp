@@ -10,9 +10,9 @@ namespace tumble::mapping {
 
 struct SweepBoundary {
   StateEstimate state_estimate;
-  /// derivative of the unknowns at the boundary with respect to the unknowns at the start of the last sweep
+  /// derivative of the unknowns at the end of the last sweep with respect to the unknowns at its start
   Registration::Matrix end_start_jacobian = Registration::Matrix::Identity();
-  /// magnitude |s_j| of the saturation deficit's factor at the end of the last sweep: mapping.md (R8)
+  /// standard deviation of each rate at the end of the last sweep, relative to the maximum: mapping.md (R8)
   Eigen::Vector3d deficit_factor = Eigen::Vector3d::Zero();
   Eigen::Matrix3d clipped_velocity_m2_s2 =
       Eigen::Matrix3d::Zero();  ///< variance of the velocity due to the accelerometer's saturation, in W
@@ -29,7 +29,7 @@ struct MotionWindow {
 
 struct Prediction {
   Registration::Prior prior;
-  /// derivative of the predicted unknowns with respect to the unknowns at the boundary
+  /// derivative of the predicted unknowns with respect to the unknowns at the end of the last sweep
   Registration::Matrix jacobian_boundary = Registration::Matrix::Identity();
   Registration::Matrix noise = Registration::Matrix::Zero();   ///< process noise
   Registration::Matrix errors = Registration::Matrix::Zero();  ///< covariance of the actual errors of the mean

@@ -108,7 +108,7 @@ PriorScene::PriorScene(PriorMap map) : map_(std::move(map)), voxels_(kVoxels) {
   build_grid();
 }
 
-/// The grid has a margin, so the search needs no range checks.
+/// The grid of prior map points has a margin, so best_candidates() needs no range checks.
 void PriorScene::build_grid() {
   Eigen::AlignedBox3f box;
   for (std::uint32_t index = 0; index < voxels_.index_end(); ++index)

@@ -45,8 +45,8 @@ class PriorScene {
   /// Returns at most two distinct poses of the local frame in the prior map, best first. Cost of a search in the whole
   /// map: O(surface area of the map), about a second for a map of 100 m.
   ///
-  /// @param sensor_W_m  sensor position, about which poses are refined
-  /// @param attempt     number of the search; each search uses another surface point as anchor
+  /// @param sensor_W_m  sensor position in the local frame
+  /// @param attempt     number of the search; determines the surface point that is moved to surfaces of the prior map
   /// @param region      limits of the search; null: the whole map
   /// @param tried       receives the number of poses that the search compared
   std::vector<FramePose> search(const std::vector<SurfacePoint>& points, const Eigen::Vector3d& sensor_W_m,
@@ -83,7 +83,7 @@ class PriorScene {
   std::vector<SurfaceCell> cells_;
 };
 
-/// radius around the sensor within which surface points are compared
+/// radius around the sensor within which surface points are compared with the prior map
 inline constexpr float kQueryRadius_m = 20.0f;
 
 }  // namespace tumble::mapping

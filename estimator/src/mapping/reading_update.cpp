@@ -55,8 +55,7 @@ class Sweep {
     return time_ns >= predicted_.state.time_ns - beyond_ns && time_ns <= window_.end_ns + beyond_ns;
   }
 
-  /// See mapping.md (R34). The standard deviation of the process noise is proportional to the time since the sweep
-  /// boundary.
+  /// The effect of the process noise grows linearly with the time in the sweep: mapping.md (R34).
   MotionInstant at(TimeNs time_ns, const Offsets& offsets) const {
     MotionInstant out;
     const double t_s = seconds(time_ns - predicted_.state.time_ns);
@@ -68,7 +67,7 @@ class Sweep {
     Registration::Estimate start = predicted_;
     start.add(moved);
     SweepTrajectory trajectory;
-    // add_sweep() ensures that the IMU samples cover the window, so build() cannot fail.
+    // add_sweep() ensures that the IMU samples cover the sweep, so build() cannot fail.
     (void)trajectory.build(start.state, window_.samples, window_.end_ns, start.calibration.gravity_W_m_s2,
                            start.deficit_rad_s);
     std::size_t hint = 0;
@@ -89,8 +88,7 @@ class Sweep {
   const MotionWindow& window_;
 };
 
-/// `by_moment` is the derivative of the predicted odometer reading with respect to the motion at the time of the
-/// reading.
+/// `by_moment` is the derivative of the predicted odometer reading by position, attitude and velocity at its time.
 template <int Size>
 void add(const MotionJacobian<Size>& by_moment, const MotionInstant& moment, Expected& out) {
   const Eigen::Matrix<double, Size, kUnknowns> jacobian_start = by_moment * moment.jacobian_start;
@@ -149,7 +147,7 @@ bool holds(const Sweep& sweep, const OdometerReading& reading) {
 template <int Size>
 using Gain = Eigen::Matrix<double, Size, Eigen::Dynamic, 0, Size, kMost>;
 
-/// The buffers are on the heap, because propagate_covariance() uses much of the stack.
+/// The matrices of Work are on the heap, because propagate_covariance() needs 32 KiB of stack.
 struct Work {
   Matrix at_start, before, left;  ///< covariance at the start; its part due to noise; factor of the remaining errors
   Offsets offsets;
@@ -172,7 +170,7 @@ bool compute_gains(const MotionNoise& within, Work& work) {
   return true;
 }
 
-/// Returns false if the equations have no solution.
+/// Returns false if the Kalman gain is undefined.
 [[gnu::noinline]] bool iterate_to_convergence(const OdometerReading& reading, const Sweep& sweep,
                                               const MotionNoise& within, Work& work) {
   for (int iteration = 0; iteration < kIterations; ++iteration) {
@@ -221,7 +219,7 @@ void fuse_reading(const OdometerReading& reading, const SweepBoundary& boundary,
   const Sweep sweep(prediction.prior.mean, window);
   if (!holds(sweep, reading)) return;
   const auto work = std::make_unique<Work>();
-  // The gains follow from the covariance C, as in the registration: mapping.md (R37).
+  // The Kalman gains follow from the covariance that weights the prediction: mapping.md (R37).
   propagate_covariance(prediction.jacobian_boundary, boundary.state_estimate.weight, work->at_start);
   Matrix& before = work->before;  // noise at the start: saturation deficit, earlier saturation
   before = prediction.noise;

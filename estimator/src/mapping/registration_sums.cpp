@@ -14,7 +14,7 @@ namespace tumble {
 
 namespace {
 
-// Edge of a cube whose points have correlated errors.
+// Edge of a cube whose lidar returns are assumed to have correlated residuals.
 constexpr double kCluster_m = 1.0;
 
 constexpr int kRigid = Registration::kMotionSize;
@@ -76,7 +76,7 @@ void Registration::Sums::add(const Sums& other) {
   inliers += other.inliers;
 }
 
-/// See the first part of mapping.md (R18).
+/// Returns the variance from range noise and deskewing: first terms of mapping.md (R18).
 double Registration::point_variance_m2(const SweepPoint& point) const {
   const double range = std::max(params_.range_sigma_m, params_.range_sigma_ratio * point.range_m);
   const double skew = params_.skew_sigma_m_s * point.sweep_time_s;
@@ -114,11 +114,11 @@ void Registration::find_match(const VoxelMap& map, std::size_t point, Neighbours
     const float sigma = map.sigma_m(found.index[k]);
     variance += sigma * sigma;
   }
-  // See the last part of mapping.md (R18).
+  // variance of the map: last terms of mapping.md (R18)
   match.map_variance_m2 = variance / static_cast<float>(found.count) + match.plane.thickness_variance_m2;
 }
 
-/// The weight is the inverse variance times the robust weight (Geman, McClure, 1987): mapping.md (R19), (R21).
+/// Returns inverse variance times robust weight (Geman, McClure, 1987) of a residual: mapping.md (R19), (R21).
 Registration::Weight Registration::compute_weight(const SweepPoint& point, const Match& match, double distance_m,
                                                   double kernel_m) const {
   const double variance = point_variance_m2(point) + match.map_variance_m2;
@@ -216,8 +216,8 @@ void Registration::accumulate(std::span<const SweepPoint> points, const SweepTra
   sum.H = lower.selfadjointView<Eigen::Lower>();
 }
 
-/// NormalNoise is the part of the normal matrix due to noise of the surface normals: mapping.md (R28), (R29). All free
-/// unknowns must be covered, because noise would otherwise seem to determine combinations that surfaces cannot
+/// NormalNoise is the part of the normal matrix due to noise of the surface normals: mapping.md (R28), (R29).
+/// NormalNoise covers all free unknowns, because noise would seem to determine combinations that surfaces cannot
 /// determine.
 struct Registration::NormalNoise {
   const Unknowns& unknowns;

@@ -12,22 +12,21 @@ namespace tumble::mapping {
 
 namespace {
 
-// Minimum fraction of a sweep's matches within three standard deviations that confirms a relocalisation. The expected
-// fraction for normal errors is 0.997. A smaller fraction contradicts the relocalisation.
+// A relocalisation is confirmed if at least this fraction of the sweep's residuals is within three standard deviations,
+// and contradicted if not. Normally distributed residuals give 0.997.
 constexpr double kConfirmInlierRatio = 0.9;
-// Number of larger saturation deficits tried per sweep, on all axes together.
+// Maximum number of repeated registrations with a larger missing gyro rate, per sweep.
 constexpr int kDeficitTriesMax = 5;
-// Smallest tried saturation deficit; two, three and five times this value follow.
+// Smallest increase of the missing gyro rate (saturation deficit) in a repeated registration.
 constexpr double kDeficitTry_rad_s = 3.0;
-// Number of starting poses after tracking failure, including the prior.
+// Number of starting poses per sweep after a tracking failure, including the predicted pose.
 constexpr int kStartsPerSweep = 3;
 
 using Params = LidarInertialOdometry::Params;
 
-// kDeficitTries lists the saturation deficits that are tried, as multiples of kDeficitTry_rad_s. Small deficits are the
-// most frequent, so most values are small.
+// Repeated registrations start from these increases of the missing gyro rate, as multiples of kDeficitTry_rad_s.
 constexpr double kDeficitTries[] = {1.0, 2.0, 3.0, 5.0};
-constexpr double kDeficitSigmas = 5.0;  // largest tried deficit, in standard deviations
+constexpr double kDeficitSigmas = 5.0;  // largest tried increase, in standard deviations
 
 constexpr int kStartsPerRound = 12;  // number of initial poses per round: six axes, two directions
 constexpr double kStartSigmas = 1.5;
@@ -41,13 +40,14 @@ bool fits(const Registration::Result& found) {
   return double(found.inliers) >= kConfirmInlierRatio * double(found.matches);
 }
 
-/// If the registration fails and a gyro axis is clipped, larger saturation deficits are tried. Saturation within one
-/// sweep may rotate the initial pose by a radian.
+/// If the registration fails and a gyro axis is clipped, the registration is repeated with larger missing gyro rates.
+/// Saturation within one sweep may rotate the initial pose by a radian.
 void track(const Params& params, const Registration::Prior& prior, const Scene& scene, Aligner& aligner,
            SweepTrajectory& trajectory, Registration::Result& found) {
   aligner.align_with_all_points(prior, scene, trajectory, found);
   int iterations = found.iterations, tries = 0;
-  // If one attempt exceeds the correction limit, further attempts would also exceed the limit.
+  // If the first registration exceeds the limits of the pose correction, further iterations would also exceed these
+  // limits.
   const bool out_of_bounds = found.correction_m > params.expert.matching.correction_max_m ||
                              found.correction_rad > params.expert.matching.correction_max_rad;
   if (found.verdict == RegistrationVerdict::diverged && !out_of_bounds) {

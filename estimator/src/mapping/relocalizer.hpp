@@ -18,11 +18,11 @@ struct Attempt {
 struct SearchContext {
   const TrackingState& tracking;
   const Registration::Prior& prior;
-  /// state according to a contradicted relocalisation, as an initial pose of the search; otherwise null
+  /// state of a relocalisation that later sweeps contradicted, as an additional starting pose; or null
   const MotionState* contradicted = nullptr;
 };
 
-/// `trajectory` receives the registered motion, or the motion of a failed attempt. `alignment` is empty if no
+/// `trajectory` receives the registered motion, or the last motion of a failed registration. `alignment` is empty if no
 /// registration succeeded.
 Attempt attempt(const LidarInertialOdometry::Params& params, const SearchContext& from, const Scene& scene,
                 Aligner& aligner, SweepTrajectory& trajectory, std::optional<Registration::Result>& alignment);

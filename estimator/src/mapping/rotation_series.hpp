@@ -3,9 +3,8 @@
 
 #include <utility>
 
-/// Computes cosine and sine of half a small angle by power series. Let x be half the angle, h = x^2, and initially c =
-/// s = 1. Each pair of ratios (a, b) updates c to 1 - h a c and s to 1 - h b s, so that finally c = cos(x) and s =
-/// sin(x) / x.
+/// Horner's method computes c = cos(x) and s = sin(x) / x, where x is half of a small rotation angle. Starting from c =
+/// s = 1, each pair of ratios (a, b) replaces c by 1 - a c x^2, and s by 1 - b s x^2.
 namespace tumble::rotation_series {
 
 /// square of the largest full angle for which the series is accurate

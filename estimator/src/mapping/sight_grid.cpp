@@ -10,7 +10,7 @@ namespace tumble::mapping {
 namespace {
 
 // Returns are sorted by direction from one position, although the sensor moves during the sweep. For ranges above ten
-// times the sensor's motion, the direction error is below 0.1 rad, the size of the checked bins.
+// times the sensor's motion in the sweep, the direction error is below 0.1 rad, about three bins.
 constexpr float kMinRangePerMotion = 10.0f;
 constexpr int kEmptyBinsMax = 4;  // maximum number of empty bins out of nine; rings may be further apart than bins
 // The margin of the range covers the relative pose error of two sweeps, range noise, and the slope of the ground within

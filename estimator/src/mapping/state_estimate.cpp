@@ -73,8 +73,8 @@ Eigen::Matrix3d velocity_covariance_I(const MotionState& state, const MotionErro
   return J * errors * J.transpose();
 }
 
-/// The blocks have the size of whole SIMD packets, so sums have the same order as in the full matrix product. The rows
-/// of the transition matrix F for mounting and other constants are rows of the identity: mapping.md (R11).
+/// All matrix products have blocks of whole SIMD packets, so sums have the same order as in propagate_covariance(). The
+/// rows of the transition matrix F for mounting and other constants are rows of the identity: mapping.md (R11).
 Matrix propagate_pose_and_mounting(const Matrix& F, const Matrix& errors) {
   constexpr int kSize = 8, kMounting = 16;
   static_assert(kMounting >= Registration::kMotionSize && kMounting <= Registration::kCalibrationStart &&

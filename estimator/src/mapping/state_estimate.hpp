@@ -7,12 +7,12 @@
 
 namespace tumble::mapping {
 
-/// The covariances `weight` and `error` are C and E of mapping.md (section 6).
+/// The covariances `weight` and `error` are C and E of mapping.md, "Two covariances".
 struct StateEstimate {
   Registration::Estimate mean;  ///< mean; the covariance of its state is the motion block of `weight`
   /// For robustness, `weight` assigns less information to the points than independent points would have.
   Registration::Matrix weight = Registration::Matrix::Zero();
-  /// covariance of the actual errors of the mean
+  /// covariance of the errors of `mean`
   Registration::Matrix error = Registration::Matrix::Zero();
 };
 
@@ -23,18 +23,18 @@ StateEstimate estimate_at_start(const LidarInertialOdometry::Params& params, con
 /// start.
 Registration::Matrix unknowns_at(const SweepTrajectory& trajectory, double t_s);
 
-/// Computes F P F^T into `out`, which must not be P. The function needs 32 KiB of stack, so callers should keep
-/// matrices on the heap.
+/// Computes F P F^T into `out`, which must not be P. propagate_covariance() needs 32 KiB of stack, so callers should
+/// keep matrices on the heap.
 void propagate_covariance(const Registration::Matrix& F, const Registration::Matrix& P, Registration::Matrix& out);
 
-/// Returns the blocks of F errors F^T that involve the pose or the mounting; all other blocks are zero. The blocks
-/// equal those of the full product bit for bit, at a third of the cost.
+/// Returns the blocks of pose and mounting of the covariance `errors`, propagated by the transition matrix F. These
+/// blocks equal propagate_covariance() bit for bit, at a third of the cost.
 Registration::Matrix propagate_pose_and_mounting(const Registration::Matrix& F, const Registration::Matrix& errors);
 
 /// covariance of the errors of position, attitude and velocity in frame W
 using MotionErrors = Eigen::Matrix<double, Registration::kMotionSize, Registration::kMotionSize>;
 
-/// Returns the block of F errors F^T for position, attitude and velocity.
+/// Returns the block of position, attitude and velocity of `errors`, propagated by the transition matrix F.
 MotionErrors motion_errors(const Registration::Matrix& F, const Registration::Matrix& errors);
 
 /// Returns the covariance of the velocity in IMU axes, R_IW v_WI_W, including the attitude error.

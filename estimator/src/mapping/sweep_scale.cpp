@@ -16,8 +16,7 @@ namespace {
 
 constexpr double kLeast = 0.02, kScaleDeviations = 5.0;
 // Over short time spans, the IMU's weight in the mapping hides errors of the lidar's scale. If ranges are 10 % too
-// long, the estimated scale is 1.02 to 1.03 over 0.1 s, and 1.08 over 0.4 s. If ranges are correct, the estimated scale
-// is 0.998 to 1.006.
+// long, velocity changes over 0.4 s give the scale 1.08, but changes over 0.1 s only 1.02 to 1.03.
 constexpr double kSpan_s = 0.4;
 constexpr double kChange_m_s = 0.5;  // minimum change of velocity; noise dominates smaller changes
 constexpr std::size_t kChangesMin = 5, kChangesMax = 1000;
@@ -26,7 +25,7 @@ constexpr std::size_t kSpanMax = 64;  // maximum number of buffered sweeps
 constexpr int kIterations = 10;
 constexpr double kBias_m_s2 = 0.05;  // constant error of the acceleration, from accelerometer bias and tilt
 constexpr double kMemory_s = 60.0;   // age up to which a change is compared, so that a finding ends
-// width of the robust kernel in standard deviations; ratio of standard deviation to median absolute deviation
+// width of the Huber kernel in standard deviations; ratio of standard deviation to median absolute deviation
 constexpr double kHuber = 1.5, kPerMedian = 1.4826;
 
 using Change = SweepScaleEstimator::Change;
@@ -120,7 +119,8 @@ int disjoint_changes(const Changes& changes) {
   return count;
 }
 
-/// Returns the variance of Σ w D·e with correlated residuals e (Newey and West, 1987).
+/// Returns the variance of the sum of weighted residuals times velocity changes, for correlated residuals (Newey and
+/// West, 1987).
 template <class Changes>
 double score_variance(const Changes& changes, const std::vector<Eigen::Vector3d>& weighted) {
   double variance = 0.0;
@@ -163,7 +163,7 @@ SweepScale fit(const Changes& changes) {
     }
     out.scale = together / squared;
     if (i + 1 < kIterations) continue;
-    // The factor disjoint / (disjoint - 1) corrects for the estimated scale.
+    // The factor n / (n - 1) for n disjoint velocity changes corrects the variance for the estimated scale.
     const double residual = score_variance(changes, residuals) * disjoint / (disjoint - 1.0);
     out.sigma = std::sqrt(residual + kBias_m_s2 * kBias_m_s2 * by_bias.squaredNorm()) / squared;
   }

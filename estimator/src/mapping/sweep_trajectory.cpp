@@ -12,7 +12,7 @@ namespace tumble {
 
 namespace {
 
-/// Only samples up to `end_ns` in which the axis is clipped count.
+/// Returns for each axis the largest standard deviation of a clipped rate before `end_ns`.
 Eigen::Vector3d max_rate_sigma(std::span<const MotionSample> samples, TimeNs end_ns) {
   Eigen::Vector3d sigma = Eigen::Vector3d::Zero();
   for (const MotionSample& sample : samples) {
@@ -83,7 +83,7 @@ Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSa
     return {ErrorCode::too_few, "imu time_ns", samples.empty() ? 0.0 : double(samples.back().time_ns), double(end_ns)};
   }
   if (samples.front().from_ns > start.time_ns) {
-    // All errors with code `gap` contain seconds.
+    // Each `gap` error reports a duration in seconds.
     return {ErrorCode::gap, "imu window start", seconds(samples.front().from_ns - start.time_ns), 0.0};
   }
 
@@ -107,7 +107,7 @@ Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSa
     now.length_s = dt;
     now.deficit_factor = share;
     now.knot_weight = knot_weights(duration_s_ > 0.0 ? (now.start_s + 0.5 * dt) / duration_s_ : 0.0);
-    // See mapping.md (R7), (R5), (R4), (R6).
+    // Integrates one IMU sample: mapping.md (R7), (R5), (R4), (R6).
     now.rate_I_rad_s = sample.w_WI_I_rad_s + share.cwiseProduct(deficit_rad_s * now.knot_weight);
     const Eigen::Matrix3d R = now.q_WI.toRotationMatrix();
     const Eigen::Matrix3d mean_rotation = R * so3::left_jacobian(now.rate_I_rad_s * dt);
@@ -121,7 +121,7 @@ Status SweepTrajectory::build(const MotionState& start, std::span<const MotionSa
     if (clipped_axes_ == 0) continue;
     now.acceleration_jacobian = -so3::hat(now.specific_force_W_m_s2) * now.attitude_jacobian;
     next.attitude_jacobian = now.attitude_jacobian + deficit_jacobian_within(now, dt);
-    // The mean attitude error of the interval rotates the specific force: mapping.md (R10).
+    // The mean attitude error during an IMU sample rotates the specific force: mapping.md (R10).
     const DeficitJacobian turn =
         -so3::hat(now.specific_force_W_m_s2) * (0.5 * (now.attitude_jacobian + next.attitude_jacobian));
     next.velocity_jacobian = now.velocity_jacobian + turn * dt;

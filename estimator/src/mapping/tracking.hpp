@@ -9,7 +9,7 @@ namespace tumble::mapping {
 
 struct WaitingForStart {};
 
-/// While tracking, a sweep may remain without registration if its prior is certain, or if the search was abandoned.
+/// Sweeps in the state Tracking may be unregistered, with a certain prediction or after too many failed searches.
 struct Tracking {
   int failed_searches = 0;  ///< consecutive sweeps with points but without registration
 };

@@ -3,7 +3,7 @@
 
 #include "tumble/mapping/detail/registration.hpp"
 
-/// The blocks name the unknowns of docs/maths/mapping.md, as in `rows(F, velocity)` and `segment(step, velocity)`.
+/// Names the registration's unknowns (docs/maths/mapping.md), as in `rows(F, velocity)` and `segment(step, velocity)`.
 namespace tumble::mapping::unknowns {
 
 template <int First, int Size>

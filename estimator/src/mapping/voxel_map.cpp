@@ -39,11 +39,11 @@ void axis_distances2(float fraction, float voxel_m, int reach, float* distance2)
   }
 }
 
-// Compilers do not vectorise the comparisons of a chunk, so the code uses explicit SIMD vectors.
+// Compilers do not vectorise the comparison of squared distances, so within() uses explicit SIMD vectors.
 using Floats [[gnu::vector_size(16)]] = float;
 using Ints [[gnu::vector_size(16)]] = std::int32_t;
 
-/// The bit mask is computed without branches.
+/// Returns a bit mask of the values up to `limit`, without branches.
 inline std::uint32_t within(float limit, const Floats (&values)[4]) {
   constexpr Ints kFirst = {1, 2, 4, 8};
   const Floats limits = {limit, limit, limit, limit};
@@ -87,7 +87,7 @@ class VoxelMap::Rows {
     groups_.fill(kNotSearched);
   }
 
-  /// The lowest bit of the mask belongs to the cell with the smallest x.
+  /// Returns the occupied cells of a row as bits; the lowest bit has the smallest x.
   std::uint32_t occupied(int y, int z) {
     const Eigen::Vector3i away = Group::of({first_x_, y, z}) - low_;
     std::uint32_t bits = 0;

@@ -23,17 +23,17 @@ class WorldCovariance {
   /// The prior map is assumed exact.
   static WorldCovariance of_prior_map(const WorldCovarianceParams& params, const Eigen::Vector3d& p_WI_m);
 
-  /// `joint` is the covariance of all unknowns in the map at the time of the pose.
+  /// `joint` is the covariance of the registration's unknowns, relative to the map, at the position `p_WI_m`.
   Pose in_world(const Registration::Matrix& joint, const Eigen::Vector3d& p_WI_m) const;
 
-  /// The standard deviation is relative to the nearby part of the map.
+  /// Returns the standard deviation of the IMU's position relative to the nearby part of the map.
   double sigma_in_map_m(const Registration::Matrix& joint, const Eigen::Vector3d& p_WI_m) const;
 
   /// `least_constrained_direction` is the direction of motion (position, scaled attitude) that surfaces constrain
   /// least.
   void add_drift(double least_constrained_sigma_m, const Eigen::Matrix<double, 6, 1>& least_constrained_direction);
   /// `inserted_fraction` is the fraction of the sweep's points that were inserted into the map. `errors` is the
-  /// covariance of the unknowns at the start of the sweep.
+  /// covariance of the registration's unknowns at the start of the sweep.
   void add_insertion(double inserted_fraction, const SweepTrajectory& trajectory, const Registration::Matrix& errors,
                      const Eigen::Vector3d& p_IL_m);
 

@@ -19,9 +19,9 @@ using Kind = HealthFinding::Kind;
 
 constexpr const char* kImu = "imu";
 constexpr double kSlopeTolerance = 0.02, kSlopeAgreementMin = 0.99;
-// A body counts as hand-held if at least this fraction of its samples is classified as hand-held. The fraction of
-// hand-held samples was at least 0.91 for hand-held motion. For thrown bodies, the fraction of hand-held samples was at
-// most 0.25 with correct axes, and mostly below 0.6 with wrong axes.
+// A body counts as hand-held if at least this fraction of its samples is classified as hand-held. In recordings of
+// hand-held motion, this fraction was at least 0.91. In recordings of throws, this fraction was at most 0.25 with
+// correct axes, and mostly below 0.6 with wrong axes.
 constexpr double kRepeatedFraction = 0.8;
 
 double rate_max_so_far_rad_s(std::span<const ImuSample> samples) {
@@ -34,7 +34,7 @@ RestGravity rest_gravity(const CheckedImu& imu) {
   return RestGravity({.gravity_m_s2 = imu.gravity_m_s2, .accel_range_m_s2 = imu.accel_range_m_s2});
 }
 
-/// Returns whether the rotation of gravity confirms the gyro.
+/// Returns whether the gyro agrees with the measured rotation of gravity.
 bool check_readings(const CheckedImu& imu, std::span<const ImuSample> samples, SensorHealth& health) {
   const RestGravity gravity = rest_gravity(imu);
   RestGravity::MagnitudeState at_rest;

@@ -14,8 +14,8 @@ namespace {
 constexpr int kExtraPassesMax = 3;
 constexpr std::size_t kSweepsPerRejection = 5;
 
-/// Cuts the last sweep at the end of the IMU data, if at least half of the sweep remains. A small clock offset between
-/// lidar and IMU would make the whole sweep unusable.
+/// Cuts the last sweep at the end of the IMU data, if at least half of the sweep remains. Without this cut, a small
+/// clock offset between lidar and IMU would make the last sweep unusable.
 bool shorten(TimeNs end_ns, WaitingSweep& sweep) {
   if (end_ns >= sweep.end_ns) return true;
   const TimeNs last_marginalised_ns = end_ns - sweep.start_ns, length_ns = sweep.end_ns - sweep.start_ns;

@@ -98,7 +98,7 @@ void set_units(const Units& units, ImuMerge::Params& params) {
   std::copy(units.accel_elements.begin(), units.accel_elements.end(), params.accel_elements.begin());
 }
 
-/// Time stamps without gaps keep the calibration of ImuMerge across a gap.
+/// TimeWithoutGaps removes gaps from time stamps, so that ImuMerge keeps its calibration.
 class TimeWithoutGaps {
  public:
   explicit TimeWithoutGaps(double gap_max_s) : gap_max_s_(gap_max_s) {}

@@ -33,7 +33,7 @@ class OdometryPass {
   /// Throws InvalidParams if a parameter is out of bounds.
   OdometryPass(const RegimeStream::Params& rate, const LidarInertialOdometry::Params& mapping);
 
-  /// The rate that becomes available is passed to the mapper.
+  /// Passes the newest smoothed rate to the mapper. This rate is lag_s older than `sample`.
   Status add_imu(const ImuSample& sample);
   /// See LidarInertialOdometry::set_start_pose().
   void set_start_pose(const Eigen::Isometry3d& T_WI) { mapper_.set_start_pose(T_WI); }
@@ -54,12 +54,12 @@ class OdometryPass {
 
   /// Converts a time from the lidar's clock to the IMU's clock.
   TimeNs oldest_needed_ns(TimeNs lidar_ns) const;
-  /// Passes all rates up to the first sample at or after `time_ns` to the mapper, even if the lag is not full.
+  /// Passes all rates up to the first sample at or after `time_ns` to the mapper, without waiting for later samples.
   void flush_until(TimeNs time_ns);
   /// Restarts the rate estimation with other parameters; the mapper continues.
   void start_rate_estimation(const RegimeStream::Params& rate);
-  /// Replaces the map, the state that depends on the map, and the sample buffers by those of `other`. The rate
-  /// estimation continues after the last sample of `other`, which must not be used afterwards.
+  /// Replaces the mapper by the mapper of `other`. The rate estimation of this pass continues. Do not use `other`
+  /// afterwards.
   void adopt_map(OdometryPass&& other);
 
   const RegimeStream& rates() const { return rates_; }

@@ -16,7 +16,7 @@ namespace tumble {
 /// Estimates PositionFrame from position readings, causally, by a weighted least-squares fit of heading and translation
 /// to the last 64 distinct positions. Readings whose positions are within half a standard deviation of each other are
 /// averaged. The weight of earlier positions decreases with the drift of the poses. A chi-square test (99.9 %) rejects
-/// up to a fifth of the positions as outliers. The poses and the map in W do not change.
+/// up to a fifth of the positions as outliers. PositionAlignment does not change the poses and the map in W.
 class PositionAlignment {
  public:
   static constexpr std::size_t kReadingsMax = 1024, kPairsMax = 64;
@@ -28,12 +28,12 @@ class PositionAlignment {
   /// A reading waits until the sweep at its time is registered. Readings may arrive in any order. See
   /// TumblingOdometry::add_position().
   Status add(const PositionReading& reading, TimeNs done_ns, TimeNs latest_ns, std::size_t most);
-  /// Processes a registered sweep and the readings up to its end. Cost: O(64^2) per sweep with readings.
+  /// Processes a registered sweep and the readings up to its end. Cost: O(n^2) for n stored positions.
   void observe(const SweepReport& report);
-  /// Discards the processed readings, because the world of the poses has changed.
+  /// Discards the processed readings after a change of the world frame W.
   void restart_fit();
-  /// Returns the frame at the end of the last sweep. The result is empty until the readings determine the heading
-  /// within 0.1 rad, and while the readings contradict each other.
+  /// Returns the frame of the position readings relative to W, at the end of the last sweep. The result is empty until
+  /// the readings determine the heading within 0.1 rad, and while the readings contradict each other.
   const std::optional<PositionFrame>& frame() const { return frame_; }
 
  private:

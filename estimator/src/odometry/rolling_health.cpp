@@ -13,8 +13,8 @@ using Kind = HealthFinding::Kind;
 
 constexpr double kUnitSilent_s = 0.5;  // time without readings after which an IMU counts as silent
 
-/// If the forces of all IMUs contradict gravity at rest, the finding concerns the merged IMU. Otherwise each
-/// contradicting IMU gets the finding `unit_disagrees`.
+/// If the forces of all IMUs contradict gravity at rest, the finding concerns the merged IMU. If only some IMUs
+/// contradict gravity, these IMUs get the finding `unit_disagrees`.
 void add_forces_at_rest(const MergedChecks& checks, std::size_t count, SensorHealth& health) {
   const auto verdict = [&](std::size_t unit) {
     return checks.rest_gravity.magnitude_verdict(checks.rest_gravity_state[unit]);

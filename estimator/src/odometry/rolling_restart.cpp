@@ -14,7 +14,7 @@ namespace {
 // standard deviations of the motion in a gap: speed, rate about the vertical, heading after a long gap
 constexpr double kGapSpeed_m_s = 0.5, kGapTurn_rad_s = 1.0, kUnknownHeading_rad = 1.8;
 
-/// A restart levels the attitude, so the covariance of the tilt is omitted.
+/// Removes the tilt from a pose covariance, because a restart levels the attitude.
 Eigen::Matrix<double, 6, 6> position_and_heading(Eigen::Matrix<double, 6, 6> covariance) {
   covariance.middleRows<2>(3).setZero();
   covariance.middleCols<2>(3).setZero();

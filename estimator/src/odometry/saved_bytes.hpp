@@ -72,7 +72,7 @@ class SavedReader {
  public:
   SavedReader(SavedKind kind, std::span<const std::byte> bytes);
 
-  /// All numbers of a matrix must be within the bounds.
+  /// All numbers of a matrix must be between `low` and `high`.
   template <class T>
   void operator()(const char* name, T& value, double low = -kUnbounded, double high = kUnbounded) {
     if constexpr (std::is_arithmetic_v<T>) {

@@ -29,7 +29,7 @@ void visit_rails(Visit& visit, Rails& rails) {
 
 }  // namespace
 
-/// Saturation planes of a sensor that clips after its compensation are not saved, because its limits suffice.
+/// Saturation planes of a sensor with upright rails are not saved, because its saturation limits suffice.
 void write_rails(const SaturationLevels& rails, SavedWriter& out) {
   SaturationLevels kept = rails;
   if (rails.gyro_clips_after_compensation) kept.planes = {};

@@ -151,8 +151,7 @@ void SecondPass::complete(OdometryPass& first) {
 }
 
 void SecondPass::run(OdometryPass& first, std::size_t sweeps) {
-  // Near the end of the buffer, fewer samples remain than the lag of the rate estimation needs. The second pass then
-  // reports the last rates before the lag is full.
+  // At the end of the buffered samples, the second pass reports the last rates without waiting for later samples.
   bool tail = false;
   for (std::size_t taken = 0; tail || taken < sweeps; ++taken) {
     if (next_sweep_ == sweeps_.size()) {

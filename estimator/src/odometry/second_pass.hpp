@@ -16,15 +16,15 @@ namespace tumble {
 
 /// Processes the first seconds of motion again with the calibration estimated so far, while the first pass continues.
 ///
-/// The first pass maps the start of a tumble while lever arm, mounting and time offset are still uncertain. Samples and
-/// sweeps are therefore buffered from the end of the initial rest. After `after_s` of motion, the buffer is processed
-/// with the current calibration, and with rates smoothed with a lag of `lag_s`. The second pass processes `sweeps`
-/// buffered sweeps per new sweep. When the second pass ends, its map and pose replace those of the first pass. The
-/// result is discarded if tracking failed in the second pass, or if the second pass rejected clearly more sweeps.
+/// The first pass maps the start of a tumble while lever arm, mounting and time offset are still uncertain. SecondPass
+/// buffers samples and sweeps from the end of the initial rest. After `after_s` of motion, the buffer is processed with
+/// the current calibration, and with rates smoothed with a lag of `lag_s`. The second pass processes `sweeps` buffered
+/// sweeps per new sweep. When the second pass ends, its map and pose replace those of the first pass. The result is
+/// discarded if tracking failed in the second pass, or if the second pass rejected clearly more sweeps.
 ///
-/// If tracking of the first pass has failed for `lost_s`, the whole buffer is processed immediately, once. The regular
-/// second pass still follows after `after_s`. SecondPass does not change earlier poses: the reported pose jumps by the
-/// error of the first pass.
+/// If tracking of the first pass has failed for `lost_s`, the whole buffer is processed immediately, once. Another
+/// second pass still follows after `after_s` of motion. SecondPass does not change earlier poses: the reported pose
+/// jumps by the error of the first pass.
 ///
 /// SecondPass stores samples and sweeps of `rest_s` at rest and of at most 10 s of motion. The second pass
 /// also needs memory for a second map. If a jolt ends the rest long before the tumble, the second pass starts too
@@ -39,14 +39,14 @@ class SecondPass {
   /// Sets the gyro's zero offset, before the first sample.
   void set_gyro_offset(const Eigen::Vector3d& offset_rad_s) { rate_.rate.model.nominal.gyro_bias_rad_s = offset_rad_s; }
 
-  /// The first pass must have processed the sample. No memory is allocated.
+  /// Buffers a sample that the first pass has processed. No memory is allocated.
   void store(const ImuSample& sample);
-  /// The first pass must have registered the sweep.
+  /// Buffers a sweep that the first pass has processed.
   void store(TimeNs start_ns, TimeNs end_ns, std::vector<LidarPoint> points,
              const std::optional<OdometerReading>& reading, SweepVerdict verdict);
 
   /// Continues the second pass after each sweep of the first pass. When the second pass has processed all buffered
-  /// sweeps, `first` receives the map of the second pass.
+  /// sweeps, its map replaces the map of `first`.
   void advance(OdometryPass& first);
   /// Runs a started second pass to its end.
   void complete(OdometryPass& first);
@@ -63,8 +63,8 @@ class SecondPass {
     SweepVerdict verdict = SweepVerdict::first;
   };
 
-  /// Returns the time from which motion is counted: the start of the motion, or the start of the sweeps if the lidar
-  /// starts later. The motion must have started.
+  /// Returns the time from which `after_s` counts: the start of the motion, or the start of the sweeps if later. The
+  /// motion must have started.
   TimeNs buffer_start_ns() const;
   bool is_due() const;
   bool first_pass_lost() const;

@@ -17,9 +17,9 @@ struct RejectedStamps {
 /// is not later than the last accepted time stamp is rejected with `time_order`. A time stamp more than `gap_max_s`
 /// after the last accepted time stamp is rejected with `gap`. The run restarts after a gap when the next time stamp
 /// confirms the rejected time stamp. After a backward step of the clock, the run restarts when rejected time stamps
-/// have increased for kStepBack_s. If the run consists of one sample, one confirming time stamp is enough, because the
-/// first sample may have the wrong time stamp. A single wrong time stamp causes the loss of one sample. OutlierFilter
-/// detects time stamps that are ahead by less than a gap.
+/// have increased for kStepBack_s. After only one accepted sample, one further time stamp is enough for a restart,
+/// because the accepted time stamp may be wrong. A single wrong time stamp causes the loss of one sample. OutlierFilter
+/// detects time stamps that are too late by less than `gap_max_s`.
 class StampOrder {
  public:
   static constexpr double kStepBack_s = 0.2;
@@ -33,8 +33,8 @@ class StampOrder {
 
   explicit StampOrder(double gap_max_s) : gap_max_s_(gap_max_s) {}
 
-  /// Returns `out_of_range` (beyond kStampMax_ns), `time_order` or `gap` if the sample must not be used. With `ok`,
-  /// `verdict` states whether the run must restart with this sample.
+  /// Returns `out_of_range` (beyond kStampMax_ns), `time_order` or `gap` if the sample must not be used. If the status
+  /// is `ok`, `verdict` states whether the run must restart with this sample.
   Status classify_stamp(TimeNs stamp_ns, State& state, Verdict& verdict) const;
 
   static void accept(TimeNs stamp_ns, State& state);

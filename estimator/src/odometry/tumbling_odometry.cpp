@@ -207,8 +207,8 @@ void TumblingOdometry::Impl::register_sweep(TimeNs start_ns, TimeNs end_ns, std:
 }
 
 /// Returns whether a sweep that ends at `end_ns` must be registered now, because its latency would exceed lag_s when
-/// the next sample arrives. In addition, newest sample - end of sweep > lag_s - 1.5 periods must hold, which delays a
-/// sweep after a gap.
+/// the next sample arrives. After a data gap, a sweep waits until its covering sample is older than lag_s - 1.5 sample
+/// periods.
 bool TumblingOdometry::Impl::is_due(TimeNs end_ns) const {
   const std::optional<TimeNs> covering_ns = pass_.covering_ns(end_ns);
   if (!covering_ns) return false;
@@ -220,8 +220,8 @@ bool TumblingOdometry::Impl::is_due(TimeNs end_ns) const {
 void TumblingOdometry::Impl::register_covered_sweeps() {
   while (!waiting_.empty()) {
     const TimeNs end_ns = waiting_.front().end_ns;
-    // The sample that covers the end of a sweep may be up to one period later than the end. The rate of the sample that
-    // covers the end of a sweep is therefore reported one period before the lag is full.
+    // The sample that covers the end of a sweep may be up to one sample period later than the end. flush_until()
+    // reports the rate of this sample before lag_s has passed.
     if (!pass_.covers(end_ns) && is_due(end_ns)) pass_.flush_until(pass_.oldest_needed_ns(end_ns));
     if (!pass_.covers(end_ns)) break;
     WaitingSweep sweep = std::move(waiting_.front());
@@ -251,8 +251,8 @@ void TumblingOdometry::Impl::restart_rates() {
   start_rate_estimation();
 }
 
-/// Restarts the run at its newest pose after the clock has stepped back. The sweeps with IMU samples are registered
-/// before the restart.
+/// Restarts the run at its newest pose after the clock has stepped back. Before the run restarts, all sweeps that IMU
+/// samples cover are registered.
 void TumblingOdometry::Impl::restart_at_newest() {
   ++restart_count_;
   PoseState pose;

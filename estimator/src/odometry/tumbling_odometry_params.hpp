@@ -12,7 +12,7 @@ namespace tumble::odometry {
 /// Throws InvalidParams if a parameter of TumblingOdometry is out of bounds.
 RegimeStream::Params rate_params(const TumblingOdometry::Params& params);
 
-/// The prior standard deviations of accelerometer bias and inertia are larger than for RegimeStream (see
+/// For a whole recording, the prior standard deviations of accelerometer bias and inertia are larger than online (see
 /// RateStreamParams::model).
 RegimeSmoother::Params recording_rate_params(const TumblingOdometry::Params& params);
 

@@ -13,7 +13,7 @@ namespace tumble {
 
 namespace {
 
-/// In a saved TumblingOdometry, the map follows in the format of save_map().
+/// A saved TumblingOdometry contains a SavedTumbling, followed by the map in the format of save_map().
 struct SavedTumbling {
   Eigen::Vector3d lever_arm_I_m = Eigen::Vector3d::Zero();        ///< stated lever arm
   Eigen::Isometry3d stated_T_IL = Eigen::Isometry3d::Identity();  ///< stated mounting of the lidar
@@ -69,7 +69,7 @@ std::vector<std::byte> write(const SavedTumbling& saved, std::span<const MapPoin
   return std::move(out).finish(odometry::SavedKind::tumbling);
 }
 
-/// The stated lever arm and mounting must equal those of the object that loads the run.
+/// The lever arm and lidar mounting that the user stated for the saved run must equal `lever_arm_I_m` and `T_IL`.
 Status read(std::span<const std::byte> bytes, const Eigen::Vector3d& lever_arm_I_m, const Eigen::Isometry3d& T_IL,
             SavedTumbling& saved, std::vector<MapPoint>& map) {
   odometry::SavedReader in(odometry::SavedKind::tumbling, bytes);
@@ -104,7 +104,7 @@ void set_search(const PoseState& pose, PriorMap& map) {
   map.sigma_rad = std::sqrt(pose.covariance(5, 5));
 }
 
-/// Returns the pose to save. While a run is not localised in its prior map, its start pose relates it to this map.
+/// Returns the pose to save. Without localisation, the covariance includes the uncertainty of the start pose.
 std::optional<PoseState> newest_or_start(const TumblingOdometry::Impl& odometry) {
   const LidarInertialOdometry& mapper = odometry.mapper();
   const std::optional<Eigen::Isometry3d>& start = mapper.start();

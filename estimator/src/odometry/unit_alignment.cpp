@@ -17,7 +17,7 @@ ImuSample absent(TimeNs time_ns) {
   return sample;
 }
 
-/// Returns the time of the first reading of any IMU for an IMU without readings.
+/// Returns the newest time stamp of an IMU, or without readings the first time stamp of all IMUs.
 TimeNs newest_ns(std::size_t unit, const UnitAlignment::State& state) {
   const std::vector<ImuSample>& readings = state.readings[unit];
   return readings.empty() ? *state.first_ns : readings.back().time_ns;

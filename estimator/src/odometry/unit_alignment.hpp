@@ -42,7 +42,7 @@ class UnitAlignment {
   Status push(std::size_t unit, const ImuSample& sample, State& state) const;
 
   /// `out` receives the readings of all IMUs at the next common time; the rates of an absent IMU are NaN. Returns false
-  /// if the next common time is not yet complete. `ended` states that no more readings follow.
+  /// while an IMU may still send a reading before the next common time. `ended` states that no more readings follow.
   bool next(State& state, Readings& out, bool ended = false) const;
 
  private:

@@ -9,7 +9,7 @@ namespace tumble {
 
 namespace {
 
-// A sensor stores enough readings for some seconds near its largest readings.
+// number of stored readings per sensor, enough for some seconds of readings near the largest readings
 constexpr int kReadings = 512;
 constexpr double kStatedMax_rad_s = 1000.0;  // maximum stated range that RailDetector uses
 

@@ -18,7 +18,7 @@ namespace tumble {
 /// Detects the saturation limits of several IMUs on one body from their readings, causally. Only confirmed saturation
 /// limits count, as defined by ConfirmedSaturation.
 ///
-/// Earlier samples reveal the saturation limits, so the first two to ten samples at a limit are not flagged.
+/// UnitRails detects a saturation limit from the first two to ten samples at the limit, which are not flagged.
 class UnitRails {
  public:
   struct Unit {
@@ -41,7 +41,7 @@ class UnitRails {
   /// finite are copied unchanged.
   void flag_clipped(std::span<const ImuSample> samples, const State& state, Samples& out) const;
 
-  /// The samples must be unflagged. Cost: O(1), sometimes a search; no allocation.
+  /// The samples must be unflagged. Cost: O(1), except for rare searches for saturation planes. No memory is allocated.
   void observe(std::span<const ImuSample> samples, State& state) const;
 
  private:

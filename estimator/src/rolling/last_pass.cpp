@@ -35,7 +35,7 @@ void LastPass::run(const Checkpoint& start, std::size_t cut) {
   }
 }
 
-/// After the call, `at` is the start of the next segment.
+/// Filters one segment. On return, `at` is the start of the next segment.
 void LastPass::forward(std::size_t segment, Checkpoint& at) {
   const std::size_t first = first_of(segment), end = std::min(first + length_, path_.size());
   loaded_ = segment;

@@ -36,12 +36,12 @@ class LastPass {
     std::size_t index;
   };
 
-  /// All arguments must outlive the pass. A known `distance` acts as a measurement after the last sample. `segment` is
-  /// the number of nodes whose records are stored at a time.
+  /// All arguments must outlive the pass. A known `distance` from the start acts as a measurement after the last
+  /// sample. `segment` is the number of nodes whose records are stored at a time.
   LastPass(const RollingParams& params, std::span<const ImuSample> samples, std::span<const PathNode> path,
            std::optional<Distance> distance, std::size_t segment = kSegment);
 
-  /// cut() returns the filter after `cut` nodes.
+  /// After run(), cut() returns the filter after the first `cut` nodes.
   void run(const Checkpoint& start, std::size_t cut);
 
   std::size_t nodes() const { return horizontal_variance_m2_.size(); }
@@ -77,12 +77,12 @@ class LastPass {
   Checkpoint cut_, end_;
   Checkpoint again_;  ///< filter for a segment that is recomputed
   Adjoint adjoint_;   ///< state of the backward pass
-  // index of the segment whose data are in memory
+  // segment whose node records are in memory
   std::size_t loaded_ = 0;
   std::vector<NodeRecord> records_;
   std::vector<SamplePoint> points_;
   Reported smoothed_start_ = Reported::Zero();
-  /// correction of the nominal trajectory due to the measured distance
+  /// correction of the nominal trajectory due to the known distance from the start
   Reported distance_correction_ = Reported::Zero();
 };
 

@@ -14,7 +14,7 @@ namespace tumble::rolling {
 template <class EstimateCallback>
 void contact_rows(const RollingParams& params, const Contact& c, RollingMode mode, double node_s,
                   const Eigen::Vector3d& v_WI_m_s, const Vector& x, const Covariance& P, EstimateCallback&& take) {
-  // The nonlinear part of the contact velocity is subtracted, because this part is not an error of the state.
+  // The part of the contact velocity that is not linear in the error state is subtracted from the measurement.
   const Eigen::Vector3d u = c.velocity(x) - c.H * x, variance = contact_variance(params, c, mode);
   if (!may_slip(mode)) {
     for (int axis = 0; axis < 2; ++axis) take(Row(c.H.row(axis)), -u[axis], variance[axis]);

@@ -28,14 +28,14 @@ constexpr double kPruneLogWeight = -120.0;  // minimum log weight of a hypothesi
 constexpr double kRestLogLikelihoodMin =
     -60.0;                             // smallest log likelihood at rest; limits the effect of a single bad node
 constexpr double kModeAgeMax_s = 1.0;  // maximum age of a mode; older modes count as equally old
-// During slip, the change of the contact velocity per node is a mixture of three Gaussians. If the smallest standard
-// deviation exceeded that of grip, each phase of constant slip velocity would count as grip.
+// During slip, the change of the contact velocity per node is a mixture of three Gaussians. The narrowest Gaussian is
+// narrower than the noise of grip, so that slip at constant velocity does not count as grip.
 constexpr double kPlateau_m_s = 0.004, kSteady_m_s = 0.01, kJump_m_s = 0.08, kPlateauFraction = 0.4,
                  kSteadyFraction = 0.35;
 constexpr double kRollOverSigma_m_s = 0.03, kHitSigma_m_s = 0.3, kRollOverFraction = 0.7;
 constexpr std::int64_t kAgesApart = 4;
 // A slip with constant spin looks like grip until its end, when a hundred hypotheses have higher weights than the
-// correct one. Some kept hypotheses therefore do not share the last mode change of the best hypothesis.
+// correct one. This number of places is reserved for hypotheses without the last mode change of the best hypothesis.
 constexpr std::size_t kMinDissentingHypotheses = 6;
 constexpr double kRoughCost = 0.2;
 // The foot of a ramp is a bump, so a slope is more probable after a bump.
@@ -89,7 +89,7 @@ double log_stationary(const rolling::Contact& c, const RollingFilter::Hypothesis
   Eigen::LLT<Eigen::Matrix3d> factor;
   double log_det = 0.0, cost = 0.0;
   if (mode == RollingMode::rough) {
-    // Normalisation with the smaller standard deviation of grip avoids a penalty for a rough floor in each node.
+    // The likelihood is normalised with the smaller variance of grip, so that a rough floor has no penalty per node.
     log_det = log_det_with(rolling::contact_variance(params, c, RollingMode::grip), factor);
     cost = kRoughCost;
   }
@@ -168,8 +168,8 @@ std::span<const Candidate> propose(const RollingParams& params, const rolling::C
   return {out.data(), total};
 }
 
-/// The start node of a mode is rounded more coarsely with age, so that hypotheses with similar starts have equal
-/// results.
+/// Rounds the first node of a contact mode, more coarsely with age, so that hypotheses with similar starts count as
+/// equal.
 std::int64_t beginning(std::int64_t mode_start_node, std::int64_t node, double node_s) {
   const auto mode_age_max_nodes = static_cast<std::int64_t>(kModeAgeMax_s / node_s);
   const std::int64_t age = std::min(node - mode_start_node, mode_age_max_nodes);
@@ -183,7 +183,6 @@ struct Kept {
   std::size_t count = 0;
 };
 
-/// Some places are reserved for candidates that do not share the last mode change of the best candidate.
 Kept keep(std::span<const Candidate> candidates, std::int64_t node, double node_s) {
   Kept kept;
   for (const Candidate& candidate : candidates) {
@@ -210,7 +209,7 @@ void rearrange(const Origins& from, std::size_t count, std::span<RollingFilter::
     waits[k] = from[k] != k;
     readers[from[k]] += waits[k] ? 1 : 0;
   }
-  // A hypothesis can be overwritten if no pending copy reads from it.
+  // Hypothesis k may be overwritten only after hypothesis k has been copied.
   for (std::size_t first = 0; first < count; ++first) {
     for (std::size_t k = first; k < count && waits[k] && readers[k] == 0; k = from[k]) {
       all[k] = all[from[k]];
@@ -218,7 +217,7 @@ void rearrange(const Origins& from, std::size_t count, std::span<RollingFilter::
       --readers[from[k]];
     }
   }
-  // The remaining pending copies form cycles.
+  // The remaining hypotheses replace each other in cycles.
   for (std::size_t first = 0; first < count; ++first) {
     if (!waits[first]) continue;
     const RollingFilter::Hypothesis kept = all[first];

@@ -12,7 +12,7 @@ namespace tumble::rolling {
 
 namespace {
 
-// Random walks: rolling radius on a rough floor, slope, accelerometer bias, and velocity per (rad/s)^2 of the rate.
+// Random walks: rolling radius on a rough floor, slope, accelerometer bias, velocity (grows with the squared rate).
 constexpr double kRoughRadiusWalk_m_sqrts = 1e-4, kSlopeWalk_sqrts = 0.02, kAccelBiasWalk_m_s2_sqrts = 2e-3,
                  kVelocityWalkPerRate2_sqrts = 4e-5;
 constexpr double kImpactSigmaRatio = 0.06;  // timing and direction of an impact, relative to its velocity change
@@ -35,7 +35,7 @@ constexpr double kForceTilt_rad = 0.35;                           // direction e
 constexpr double kLostTilt_rad = kForceTilt_rad;  // a tilt with a larger standard deviation is levelled by the force
 constexpr double kUncertainTilt_rad = 0.1;        // limit of the tilt at rest, where the force is gravity
 constexpr double kRestTilt_rad = 5e-3;
-// A sphere whose force differs more from gravity is pushed or rotates fast.
+// If force and gravity differ by more than this fraction of gravity, the sphere is pushed or rotates fast.
 constexpr double kPushForceRatio = 0.15;
 constexpr double kLostSpeed_m_s = 1.0;
 constexpr double kRecoveredTau_s = 0.1;  // correlation time of the error of a recovered rate
@@ -150,8 +150,8 @@ void integrate(const RollingParams& params, const ImuAverage& reading, RollingNo
   const Eigen::Vector3d w = w_raw - nominal.gyro_bias_rad_s - nominal.gyro_scale * w_raw;
   Eigen::Vector3d f =
       f_raw - nominal.accel_bias_m_s2 - nominal.accel_scale * f_raw - nominal.accel_delay_s * w.cross(f_raw);
-  // A reading is the mean over its window, in which a force that rotates relative to the sensor partly cancels. The
-  // component perpendicular to the rotation axis loses the fraction (|w| dt)^2 / 24: rolling.md (R4).
+  // Averaging over the time dt at the rate w reduces the force across the rotation axis by the fraction (|w| dt)^2 /
+  // 24: rolling.md (R4).
   f -= dt_s * dt_s / 24.0 * w.cross(w.cross(f));
   const Eigen::Quaterniond half = so3::exp(0.5 * dt_s * w);
   const Eigen::Quaterniond q_mid = nominal.q_WI * half;
@@ -232,7 +232,7 @@ ImuAverage gap_step(const RollingParams& params, const ImuSample& before, const 
   sample.device_clip_flags = 0;  // flags of the reading after the gap do not apply within the gap
   const double turning = std::max(before.angular_velocity_rad_s.norm(), after.angular_velocity_rad_s.norm());
   const double acceleration = kGapStill_rad_s2 + kGapAcceleration_rad_s2 * std::min(1.0, turning / kGapRate_rad_s);
-  // A parabola between the rates before and after a gap of duration T has the integral a T^3 / 12: rolling.md (R31).
+  // A parabolic rate deviation with second derivative a over a data gap T is the rotation a T^3 / 12: rolling.md (R31).
   const double mean_force_tilt_rad =
       acceleration * gap_s * gap_s * gap_s / 12.0 + kGapTimeSigmaRatio * change.norm() * gap_s;
   uncertainty.rad2 = mean_force_tilt_rad * mean_force_tilt_rad / pieces;
@@ -301,7 +301,6 @@ Contact contact(const RollingParams& params, const RollingNominal& nominal, cons
   const Eigen::Vector3d arm_W = R * (params.lever_arm_m + nominal.lever_arm_error_m);
   const Eigen::Vector3d n = normal(nominal.slope);
   const double r = params.radius_m + nominal.radius_error_m;
-  // The contact velocity is u = v + w x (-arm - r n), with the IMU's velocity v and rate w.
   const Eigen::Matrix3d reach = so3::hat(arm_W + r * n);
   Contact out;
   out.contact_velocity_W_m_s = nominal.v_WI_m_s + reach * w_W;

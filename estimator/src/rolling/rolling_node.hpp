@@ -40,7 +40,7 @@ struct Contact {
   Eigen::Vector3d velocity(const Vector& x) const;
 };
 
-/// For slip, only the vertical component of the variance is valid.
+/// Returns the variance of the contact velocity. In the mode `slip`, only the vertical component is valid.
 Eigen::Vector3d contact_variance(const RollingParams& params, const Contact& c, RollingMode mode);
 
 bool starts_in_motion(const Eigen::Vector3d& rate_I_rad_s);
@@ -70,7 +70,7 @@ ImuAverage gap_step(const RollingParams& params, const ImuSample& before, const 
 void integrate_gap(const RollingParams& params, const ImuAverage& piece, const GapUncertainty& uncertainty,
                    RollingNominal& nominal, RollingIntegrals& sums);
 
-/// Returns the transition matrix B of the error state over a node: B x is added to the first components of x.
+/// Returns the matrix B: over a node, errors of attitude, velocity and position increase by B times the error state.
 Moving transition(const RollingIntegrals& sums);
 void predict(const RollingParams& params, const RollingIntegrals& sums, const Moving& B, Vector& x, Covariance& P);
 
@@ -79,8 +79,8 @@ void predict(const RollingParams& params, const RollingIntegrals& sums, const Mo
 Contact contact(const RollingParams& params, const RollingNominal& nominal, const Eigen::Vector3d& rate_I_rad_s,
                 const RollingIntegrals& sums);
 
-/// While a contact mode lasts, the slope is a random walk. When the contact point comes to rest, the slope is reset to
-/// level or unknown.
+/// In the mode `incline`, the slope of the floor is a random walk. A change to a mode with resting contact point resets
+/// the slope.
 void update_slope_for_mode(const RollingParams& params, RollingMode from, RollingMode to, double h_s,
                            const RollingNominal& nominal, Vector& x, Covariance& P);
 
@@ -89,8 +89,8 @@ std::optional<double> lost_velocity_variance(double node_s, const Covariance& P)
 
 bool resets_slope(RollingMode from, RollingMode to);
 
-/// Aligns an uncertain tilt with the mean specific force of the node, and resets the velocity. Returns false if the
-/// tilt is certain enough, or if the specific force is unusable.
+/// Aligns an uncertain tilt with the mean specific force of the node, and resets the velocity. Returns false without a
+/// reset if the tilt is certain enough, or if the specific force is unusable.
 bool reset_tilt(const RollingParams& params, const RollingIntegrals& sums, bool at_rest, RollingNominal& nominal,
                 Covariance& P);
 
@@ -99,7 +99,7 @@ void update(const Row& row, double measured, double variance, Vector& x, Covaria
 
 void update(int index, double measured, double variance, Vector& x, Covariance& P);
 
-/// Returns the constants of a nominal state, in the order of the error state from the gyro bias on.
+/// Returns the calibration constants of a nominal state, in the order of rolling.md (R1).
 Eigen::Matrix<double, RollingCalibration::kSize, 1> constants_of(const RollingNominal& nominal);
 
 /// Adds the estimated error `x` to the nominal trajectory and constants.

@@ -13,7 +13,7 @@ namespace tumble {
 
 namespace {
 
-// With a longer lag of the smoother, the memory grows during the run.
+// maximum number of preallocated samples; with a longer lag of the smoother, the memory grows during the run
 constexpr std::size_t kPreallocatedMax = 1'000'000;
 
 RollingParams scale_noise(RollingParams params, double share) {
@@ -37,7 +37,7 @@ bool equal(const ImuSample& a, const ImuSample& b) {
          a.specific_force_m_s2 == b.specific_force_m_s2;
 }
 
-/// Returns the ratio of the reported variance to the variance of the final pass, which uses a reduced process noise.
+/// Returns the factor from the variance of the final pass, which uses reduced noise, to the reported variance.
 double stated(const RollingSmoother::Params& params) {
   return 1.0 / (params.final_pass_noise_ratio * params.final_pass_noise_ratio);
 }

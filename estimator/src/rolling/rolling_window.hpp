@@ -52,11 +52,11 @@ struct Reading {
   TimeNs end_ns = 0;
 };
 
-/// Readings iterates over stored samples, and returns the inputs that the live filter received. Each step of the
-/// iteration costs O(1) without allocation.
+/// Readings iterates over stored samples, and returns the inputs that the live filter received. next() costs O(1)
+/// without allocation.
 class Readings {
  public:
-  /// Cursor is the position of an iteration over stored samples, before the next reading.
+  /// Cursor is the position in the stored samples from which next() continues.
   struct Cursor {
     TimeNs time_ns = 0;  ///< end of the last reading
     Eigen::Vector3d last_rate_rad_s = Eigen::Vector3d::Zero();
@@ -109,7 +109,7 @@ void complete_node(const RollingParams& params, const RollingIntegrals& sums, co
 Reported error_before_update(const NodeRecord& node);
 
 /// Applies the known horizontal distance of the sphere's centre from the start. Returns the correction of the nominal
-/// trajectory, or zero if start and end are too close to define a direction.
+/// trajectory, or zero if the first and last positions are too close to define a direction.
 Reported measure_distance(const RollingParams& params, double distance_m, double sigma_m, NodeRecord& last,
                           PathFilter& filter);
 
@@ -119,8 +119,8 @@ struct Adjoint {
   Covariance Lambda = Covariance::Zero();
 };
 
-/// Smooths the states of consecutive nodes by the modified Bryson-Fraser smoother. `adjoint` refers to the time after
-/// the last node on entry, and before the first node on return.
+/// Smooths the states of consecutive nodes by the modified Bryson-Frazier smoother. On entry, `adjoint` contains the
+/// information of all measurements after the last node; on return, also of the measurements at these nodes.
 void backward_pass(Adjoint& adjoint, std::span<NodeRecord> nodes);
 
 }  // namespace tumble::rolling
