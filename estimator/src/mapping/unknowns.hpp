@@ -26,7 +26,7 @@ inline constexpr Block<Registration::kCalibrationStart + 7, 3> gravity;
 
 /// A prior variance above 0 keeps the prior covariance invertible.
 inline constexpr double kMinVariance = 1e-12;
-/// 95 % quantile of the chi-square distribution with nine degrees of freedom, used in mapping.md (R25), (R71)
+/// 95 % quantile of the chi-square distribution with nine degrees of freedom, used in mapping.md (R25), (R67)
 inline constexpr double kAgreementChi2Max = 16.9;
 static_assert(SweepUnknowns::kMotionSize == 9);
 
