@@ -55,8 +55,8 @@ int count_pairs(const mjModel& model) {
   return moving * (all - moving);
 }
 
-/// With a single robot geom, contacts have the same order with and without MuJoCo's bounding-volume tree, which sorts
-/// contacts by the geom of a pair with the lower type number.
+/// Returns true if contacts have the same order with and without MuJoCo's bounding-volume tree. The robot must have one
+/// geom, because the tree sorts the geoms of a contact by type number.
 bool sorts_as_asked(const mjModel& model) {
   int robot = -1;
   for (int i = 0; i < model.ngeom; ++i) {
@@ -90,7 +90,7 @@ void spare_work(mjModel& model) {
   model.opt.enableflags |= mjENBL_SLEEP;
   std::fill(model.tree_sleep_policy, model.tree_sleep_policy + model.ntree, static_cast<int>(mjSLEEP_NEVER));
   model.opt.disableflags |= mjDSBL_ISLAND;  // the robot is a single island
-  // Height fields are below every strut (capsule of the robot's cage), so tests of their bounding boxes are disabled.
+  // A height field is below the whole robot, so a test of the field's bounding box would exclude no contact.
   for (int i = 0; i < model.ngeom; ++i) {
     if (model.geom_type[i] == mjGEOM_HFIELD)
       std::fill(model.geom_aabb + 6 * i + 3, model.geom_aabb + 6 * i + 6, mjMAXVAL);

@@ -11,7 +11,7 @@
 
 namespace tumble::sim {
 
-/// Parameter describes a number that a component of a situation uses; a switch is 0 (off) or 1 (on).
+/// Parameter describes a number that the user can set; a switch is 0 (off) or 1 (on).
 struct Parameter {
   std::string_view name;  ///< ends in its unit: slope_rad
   double default_value;

@@ -23,7 +23,7 @@ struct ContactTruth {
   std::int32_t surface_id = -1;
 };
 
-/// Each entry belongs to the averaging window of one IMU reading.
+/// ImuTruth contains the true motion and the errors in the averaging window of each IMU reading.
 struct ImuTruth {
   std::string name;
   Eigen::Isometry3d T_BI = Eigen::Isometry3d::Identity();  ///< true mounting

@@ -45,13 +45,13 @@ struct Shrunk {
   int runs = 0;
   bool complete = false;    ///< no single complication can be removed
   bool controlled = false;  ///< the control succeeded on all accepted runs
-  /// Input whose true value prevents the failure in the original run and in each simplified run, or an empty string.
+  /// Name of the input that causes the failure (empty: none): if the input has its true value, the method succeeds.
   std::string cure;
 };
 
 /// Simplifies a simulated run by delta debugging and bisection, as long as `method` fails in the same way as in the
-/// original run (same_failure.hpp). If the true value of an input prevents the original failure, the same true value
-/// must prevent the failure of the simplified run.
+/// original run (same_failure.hpp). If a wrong input causes the original failure (Shrunk::cure), the same input must
+/// cause the failure of each simplified run.
 Shrunk shrink(const DataRoot& data, const Scenario& scenario, std::uint64_t seed, const Method& method,
               const ShrinkOptions& options);
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The reference for the simulated saturation consists of saturation planes fitted to recordings of two real gyros,
-// RepoIMU (Szczesna et al., ICCVG 2016).
-// The fit uses readings inside saturated intervals, without repeated readings: tests/bench/rail_measures x 7.3 (or y
-// 7.2, z 10.29) FILE.csv.
+// Saturation planes of two real gyros are the reference for the simulated saturation. The program
+// tests/bench/rail_measures fits the planes to recordings of the data set RepoIMU (Szczesna et al., ICCVG 2016).
 //
-// Hand-held wand, x axis: Test05 trials 1 to 3 and Test10 trials 1 to 3, 100 to 1700 readings each.
+// The plane of the wand's x axis (limit 7.3 rad/s) is fitted to the RepoIMU recordings Test05 and Test10, trials 1 to
+// 3.
 //
-// Hand-held wand, y axis: Test06 trial 1, 39 and 42 readings at the two limits; the accepted interval is three standard
-// errors, because only one recording exists.
+// The plane of the wand's y axis (limit 7.2 rad/s) is fitted to the RepoIMU recording Test06, trial 1. The simulated
+// plane must agree within three standard errors of this single fit.
 //
-// Pendulum, z axis: Test02a (37 readings) and Test07 trial 3 (10 readings).
+// The plane of the pendulum's z axis (limit 10.29 rad/s) is fitted to the RepoIMU recordings Test02a and Test07, trial
+// 3.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -8,8 +8,7 @@
 #include "scenarios/certificate/certificate.hpp"
 #include "sim/trial/trial.hpp"
 
-/// Members named `stated_*` replace a value that the closed form of the law assumes, so that a test can make the check
-/// fail.
+/// A member named `stated_*` changes the expected result of a check, so that a test can make the check fail.
 namespace tumble::scenarios {
 
 /// The free-flight check throws the rig with a rotation near its unstable axis; kinetic energy and angular momentum

@@ -26,9 +26,8 @@ std::vector<double> support_points(const Distribution& distribution);
 
 double draw_number(const Distribution& distribution, std::uint64_t seed, std::string_view place);
 
-/// Returns the value at the probability of a standard normal score: the value is the median for 0 and increases with
-/// `score`. The value has the distribution if `score` is a standard normal random number. Choices have the order of the
-/// list. Throws BadInput if find_problem returns a problem.
+/// Converts the standard normal number `score` to a value of `distribution`. A larger score gives a larger value, or a
+/// later number in a list of choices. Throws BadInput if find_problem returns a problem.
 double number_at(const Distribution& distribution, double score);
 
 }  // namespace tumble::scenarios

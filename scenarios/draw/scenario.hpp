@@ -44,7 +44,7 @@ std::vector<std::string> case_names(const DataRoot& data);
 /// ".yaml".
 Scenario load_scenario(const DataRoot& data, const std::string& name);
 
-/// Draws all random parameters of the scenario with the random seed `seed`, and adds the numbers of the sensors' data
+/// Draws all random parameters of the scenario with the random seed `seed`. Parameters of sensors come from their data
 /// sheets.
 sim::ResolvedSituation draw(const DataRoot& data, const Scenario& scenario, std::uint64_t seed);
 

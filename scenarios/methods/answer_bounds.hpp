@@ -11,16 +11,16 @@
 
 namespace tumble::scenarios {
 
-/// The size of a result file is checked before reading, because the time limit of an external method excludes reading.
+/// AnswerBounds checks the result of an external program. Large files are rejected before they are read.
 class AnswerBounds {
  public:
   using Place = std::function<std::string(std::size_t row)>;
 
   explicit AnswerBounds(const sim::Sensors& sensors);
 
-  /// Limit of a table in bytes: 1 KiB per row, and 10 000 rows plus 4 per IMU sample and per lidar sweep.
+  /// A table may have 10 000 rows plus 4 rows per IMU sample and per lidar sweep, and 1 KiB per row.
   std::uintmax_t table_bytes() const;
-  /// Limit of a float32 map in bytes: 32 bytes per point, and 10 000 points plus 4 per lidar point.
+  /// A map may have 10 000 points plus 4 points per lidar point, and 32 bytes per point.
   std::uintmax_t map_bytes() const;
 
   void require_size(const std::filesystem::path& file, std::uintmax_t bytes) const;

@@ -30,8 +30,8 @@ std::uint8_t clip_flags(std::uint8_t sim_bits) {
   return flags;
 }
 
-// A wrong unit of the time stamps gives a period ratio of 1000 or 1/1000; a device that is read slowly stays below this
-// limit.
+// Largest ratio between the measured and the stated sample period. A wrong unit of the time stamps gives a ratio of
+// 1000 or 1/1000.
 constexpr double kPeriodsMax = 20.0;
 
 Status check_period(const sim::ImuRecord& record, std::span<const ImuSample> samples) {

@@ -19,7 +19,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// A sensor whose driver needs several seconds to boot starts later than this time after the other sensors.
+/// Largest accepted time [s] between the starts of IMU and lidar; a slowly booting driver exceeds this limit.
 constexpr double kApart_s = 0.5;
 /// A single lost reading costs no accuracy; many lost readings indicate a fault of the bus, the driver or the recorder.
 constexpr double kLostShareMax = 0.005;

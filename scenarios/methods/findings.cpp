@@ -20,8 +20,7 @@ using About = HealthFinding::Kind;
 
 bool is_about_readings(const HealthFinding& finding) {
   const About kind = finding.kind;
-  // The rotation of gravity can confirm the scale of the gyro later, so an ended health finding of the gyro scale is
-  // not current.
+  // A health finding about the gyro scale ends if a later rotation of gravity confirms the scale.
   if (kind == About::gyro_scale) return !finding.ended;
   return kind == About::frozen_axis || kind == About::frozen_sensor || kind == About::force_at_rest ||
          kind == About::axes_or_signs || kind == About::flight_forces || kind == About::rotation;

@@ -22,8 +22,8 @@ namespace {
 constexpr std::size_t kSpans = 10, kSweepsOfSpan = 12;
 constexpr double kSlowest_rad_s = 0.1, kFastest_rad_s = 2.0;
 constexpr std::size_t kLeastPairs = 12;
-/// A larger rotation error, relative to the median rotation, indicates that lidar and gyro do not measure the same
-/// motion; correct pairs have about 0.1.
+/// Largest accepted difference between the rotations of lidar and gyro, relative to the median rotation. Correct
+/// recordings have a difference of about 0.1.
 constexpr double kAgrees = 0.3;
 /// A correction of the gyro's units, axes or delay is reported only if the correction reduces the rotation error by
 /// these factors.

@@ -46,7 +46,7 @@ struct Estimate {
   std::vector<std::int64_t> sweep_end_ns;                  ///< parallel to `sweeps`
   std::vector<MapPoint> map;                               ///< for kind slam
   SensorHealth faults;                                     ///< suspected faults of sensors and estimate
-  /// Covariance that failed health checks added to each of `rates`, or an empty vector if no check failed.
+  /// Part of the covariance of each of `rates` that is due to health findings; empty without a health finding.
   std::vector<Eigen::Matrix3d> suspect_rad2_s2;
   std::map<std::string, double> health;      ///< named counters: "rejected_samples", "sweeps_rejected"
   std::map<std::string, double> parameters;  ///< parameters that the user set by name

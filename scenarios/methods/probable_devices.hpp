@@ -14,8 +14,8 @@ struct ProbableDevice {
   std::string device, evidence;
 };
 
-/// A spinning lidar matches a data sheet if each ring is within half a degree of a beam of the data sheet. Another
-/// lidar matches if the name of the sensor contains the name of the device ("livox_mid360").
+/// A spinning lidar matches a data sheet if each ring is within half a degree of a beam of the data sheet. If no data
+/// sheet matches the rings, the name of the lidar must contain the name of the device ("livox_mid360").
 std::optional<ProbableDevice> probable_lidar(const sim::LidarRecord& lidar, std::span<const DataSheet> sheets);
 
 /// An IMU matches a data sheet if its name contains the name of the device, or the maker of a lidar with a built-in IMU

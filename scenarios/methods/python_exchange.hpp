@@ -10,7 +10,7 @@
 /// start of the first array}.
 namespace tumble::scenarios {
 
-/// The arrays have the names of the Python package (python/src/tumble/recordings.py).
+/// Each array of sensor data has the name of its attribute in python/src/tumble/recordings.py.
 void write_sensors(const sim::Sensors& sensors, SharedMemory& memory);
 
 /// Throws NoAnswer with the traceback if the Python function raised an exception.

@@ -19,7 +19,7 @@ Estimate run_rate_oracle(const sim::Sensors& sensors, const sim::Values&, const 
 
 Status unclipped_rates(const sim::Sensors& sensors, const sim::Truth& truth, std::vector<RateState>& out) {
   out.clear();
-  // The clipped readings are checked too, because a method with true input must fail where no method can succeed.
+  // If the clipped readings are invalid, every other method fails, so this oracle must fail too.
   std::vector<ImuSample> samples;
   Status status = bridge::primary_imu_samples(sensors, samples);
   if (!status.ok()) return status;

@@ -28,8 +28,7 @@ struct StartAtRest {
   Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
   Eigen::Vector3d gyro_bias_rad_s = Eigen::Vector3d::Zero();
 };
-/// Attitude and gyro bias come from the first readings, one sample to one second, while the gyro stays below 0.05
-/// rad/s.
+/// Computes attitude and gyro bias from the first readings of a stationary IMU, over at most one second.
 Status start_at_rest(std::span<const ImuSample> samples, StartAtRest& out);
 
 /// Returns one motion sample per IMU averaging window, with constant rate and acceleration (without gravity) in body

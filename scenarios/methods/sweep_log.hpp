@@ -13,7 +13,7 @@ using SweepReport = LidarInertialOdometry::SweepReport;
 
 void count_trouble(const Status& status, Estimate& estimate);
 
-/// Returns false if the sweep has no pose; the error of the sweep is then the status of the estimate.
+/// Returns false if the sweep has no pose, and copies the error `status` of the sweep to `estimate.status`.
 bool append_sweep(const Status& status, TimeNs end_ns, SweepReport report, Estimate& estimate);
 
 /// Consecutive sweeps share the IMU sample at their boundary; the pose of this sample comes from the earlier sweep.

@@ -48,7 +48,7 @@ std::string text_of(const TurningFit& fit, const std::string& frame) {
   return out + (out.empty() ? "the poses" : " and the poses") + " belonged to the frame " + frame;
 }
 
-/// The frame of the estimate is the first candidate, so that it is chosen if two frames have equal mountings.
+/// The frame of the estimate comes first, because check_turning ignores a later frame with an equal mounting.
 std::vector<CandidateFrame> candidates(const Estimate& estimate, const sim::Sensors& sensors) {
   std::vector<CandidateFrame> frames;
   if (sensors.imus.empty()) return frames;

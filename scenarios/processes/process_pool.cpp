@@ -25,7 +25,7 @@ struct Running {
   std::string said;
 };
 
-/// Starts the process of an index. Returns false if another process must end first.
+/// Returns false if the operating system starts no further process until a running process ends.
 bool begin(std::list<Running>& running, std::size_t index, double deadline_s, const std::function<void(int)>& work) {
   try {
     running.push_back({index, deadline_s, Process(work, true), {}});

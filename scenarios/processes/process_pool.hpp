@@ -24,9 +24,9 @@ struct PooledEnd {
   Process::End end;
 };
 
-/// Runs `work(index, write_end)` for each index below `count` in a separate process. Calls `on_end` in this process
-/// after each end, in the order of the ends. After `stop`, running processes are killed without a call. Throws BadInput
-/// if no process can be started.
+/// Runs `work(index, write_end)` for each index below `count` in a separate process. Calls `on_end` in the calling
+/// process whenever a process ends. When `stop` becomes true, the running processes are killed, and `on_end` is not
+/// called for them. Throws BadInput if no process can be started.
 void run_in_processes(std::size_t count, const PoolOptions& options, const std::function<void(std::size_t, int)>& work,
                       const std::function<void(const PooledEnd&)>& on_end);
 

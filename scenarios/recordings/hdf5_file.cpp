@@ -58,7 +58,7 @@ H5FD_file_image_callbacks_t keep_image_in(void** user) {
   return calls;
 }
 
-/// Superblock version 3 of the HDF5 format stores the file length at byte 28; the memory of the driver is longer.
+/// Superblock version 3 of HDF5 stores the file length at byte 28; the memory block of the driver is longer.
 std::uint64_t stated_length(const void* image) {
   std::uint64_t length = 0;
   std::memcpy(&length, static_cast<const char*>(image) + 28, sizeof(length));
@@ -84,7 +84,7 @@ Handle create_in_memory(const std::string& name, void** image) {
   if (H5Pset_fapl_core(access.get(), kGrowth, false) < 0 || H5Pset_file_image_callbacks(access.get(), &calls) < 0) {
     throw BadInput(fmt::format("{}: the file cannot be prepared for writing{}", name, last_error()));
   }
-  // The label must not name an existing file, because HDF5 would read that file into memory.
+  // No file may have this name, because HDF5 would read the file into memory.
   return create_file(name, name + " in memory", access);
 }
 

@@ -27,8 +27,8 @@ class LeftOut {
   /// `cause` completes the note "the import leaves out 1 of 150 readings: 1 with ..."; `error` contains the location of
   /// the faulty reading.
   void add(const std::string& cause, const std::string& error);
-  /// Counts a skipped reading whose cause does not limit the number of skipped readings, such as empty messages in
-  /// place of lost readings.
+  /// Counts a skipped reading that kLeftOutShareMax does not limit, for example an empty message in place of a lost
+  /// reading.
   void add_unlimited(const std::string& cause, const std::string& error);
   template <class Read>
   void guard(Read&& read) {
@@ -58,10 +58,10 @@ class LeftOut {
 /// Selects time stamps such that the kept stamps increase and the fewest possible stamps are dropped (longest
 /// increasing subsequence). With at least ten stamps, a first or last stamp is also dropped if its distance from the
 /// others exceeds their duration. Several stamps at one end are dropped only if their gap to the other stamps also
-/// exceeds a day. The cost is O(N log N), or O(N) if all stamps increase.
+/// exceeds a day. The cost for N stamps is O(N log N), or O(N) if all increase.
 std::vector<bool> stamps_in_order(std::span<const std::int64_t> stamps_ns);
 
-/// A list of another length than `kept` is unchanged, because the sensor lacks these data.
+/// If `rows` and `kept` differ in size, the sensor does not measure this quantity, and `rows` is unchanged.
 template <class Row>
 void keep_rows(const std::vector<bool>& kept, std::vector<Row>& rows) {
   if (rows.size() != kept.size()) return;

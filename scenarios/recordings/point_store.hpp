@@ -10,8 +10,8 @@
 
 namespace tumble::scenarios {
 
-/// PointStore contains the points of one lidar on disk, one file per column of sim::LidarRecord, whose record in memory
-/// has no points.
+/// PointStore contains the points of one lidar on disk, one file per column; the sim::LidarRecord in memory then has no
+/// points.
 struct PointStore {
   PointStore() = default;
   explicit PointStore(const std::filesystem::path& folder)

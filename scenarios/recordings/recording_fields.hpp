@@ -11,14 +11,11 @@
 
 /// Writer, reader and digest visit the same list of fields, so none of them can omit a field.
 ///
-/// A visitor (archive) has the members value(name, text | double | int64), pose(name, isometry), point(name, vector,
-/// unit), rows(name, vector, unit, columns, storage), texts(name, strings), list(name, records, fields) and group(name,
-/// record, fields). A field that a later version added is neither stored nor hashed while it is empty, zero or
-/// "measured", so older files keep their digests.
+/// A field that a later version added is neither stored nor hashed while it is empty, zero or "measured", so older
+/// files keep their digests.
 namespace tumble::scenarios {
 
-/// Rows are compressed by deflate only if measurements showed a smaller file; lidar points are not compressed
-/// (FORMAT.md).
+/// Data are stored as `plain` (without compression) if deflate would save little space (FORMAT.md).
 enum class Storage { plain, deflated };
 
 struct StoredLidar {

@@ -8,8 +8,8 @@
 namespace tumble::scenarios {
 
 /// Returns true if all stamps are whole milliseconds after the first stamp, with steps of n or n + 1 ms, n up to 4.
-/// Each of the two step lengths must occur at least once in fifty steps; longer steps are gaps. Sample periods within
-/// 0.02 ms of a whole millisecond are not detected.
+/// Steps of n ms and steps of n + 1 ms must each be at least 2 % of the steps; longer steps are gaps. If the true
+/// sample period is within 0.02 ms of a whole millisecond, the function returns false.
 bool are_rounded(std::span<const std::int64_t> stamps_ns);
 
 /// Each stamp moves by at most a millisecond, to a line that is fitted to the stamps within half a second, up to the

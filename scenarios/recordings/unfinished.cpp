@@ -21,7 +21,7 @@ namespace {
 constexpr std::size_t kPathBytes = 4096;
 constexpr int kPlaces = 64, kDepthMax = 16;
 
-/// The owner of an entry is written last and cleared first, so a signal handler never sees a partial entry.
+/// A signal handler ignores an entry without `owner`, so `owner` is written last and cleared first.
 struct Entry {
   std::atomic<bool> taken{false};
   std::atomic<pid_t> owner{0};

@@ -15,9 +15,9 @@ inline constexpr std::uint8_t kGyroClipFlags = 0b000111;
 /// ClippingTruth contains the true rates of the primary gyro, and the clipped axes of each sample.
 ///
 /// Axis j of a sample is clipped if its sensing element is saturated. The saturation deficit of sensing element j is
-/// component j of d = M (unclipped reading - delivered reading), with the misalignment matrix M. A sensing element
-/// counts as saturated if its saturation deficit exceeds one standard deviation of the gyro's white noise per sample,
-/// and 1e-6 rad/s.
+/// component j of d = M (unclipped reading - delivered reading), with the misalignment matrix M. A sensing element is
+/// saturated if clipping changes its reading by more than the standard deviation of the gyro noise (at least 1e-6
+/// rad/s).
 ///
 /// A saturated sensing element with a tilted axis also changes the readings of the other output axes
 /// (sim/imu/elements.hpp). An unclipped axis has a cross-axis error if a saturated sensing element of another axis

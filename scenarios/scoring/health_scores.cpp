@@ -16,12 +16,12 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr double kWrongDeviations = 5.0;
-// An estimate is wrong, independent of its covariance, if more than half of the samples during motion exceed this
-// relative rate error or tilt.
+// If the median relative rate error or the median tilt error exceeds its limit, the estimate is wrong, independent of
+// its covariance.
 constexpr double kWrongRateShare = 0.2, kWrongTilt_rad = 0.5;
 constexpr double kMoves_rad_s = 1.0;  // smaller rates do not count
 
-/// `deviations` are errors in standard deviations; `gross` are relative rate errors or tilt errors [rad].
+/// `deviations` are errors divided by their standard deviations; `gross` are relative rate errors or tilt errors [rad].
 struct Errors {
   std::vector<double> deviations, gross;
 };
@@ -35,8 +35,8 @@ bool quantile_exceeds(double limit, std::vector<double> values, double share) {
   return quantile(values, share) > limit;
 }
 
-/// Health findings increase the reported covariances; the increase is subtracted, because otherwise a reported error
-/// would not count as wrong.
+/// Health findings increase the covariances. The score subtracts the increase, because errors that a finding reports
+/// would otherwise be consistent with the covariance.
 Errors rate_errors(const ScoredEstimate& scored) {
   const std::vector<Eigen::Matrix3d>& suspect = scored.estimate().suspect_rad2_s2;
   const std::vector<PairedRate>& pairs = paired_rates(scored);

@@ -103,7 +103,7 @@ bool map_coverage(const ScoredEstimate& scored, double& value) {
   return share.has_value();
 }
 
-// A method without a map fails, except for a trajectory without sweeps, which comes from an external program.
+// A method without a map gets the value 1; an external program that returns only a trajectory gets no value.
 bool failed(const ScoredEstimate& scored, double& value) {
   const Estimate& estimate = scored.estimate();
   if (scored.surface() == nullptr || (estimate.sweeps.empty() && estimate.map.empty())) return false;

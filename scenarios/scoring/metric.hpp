@@ -22,8 +22,8 @@ const char* symbol(Unit unit);
 /// signed values).
 enum class Compared { by_ratio, by_difference };
 
-/// A metric appears only in the full table, also in the comparison with accepted results (gate), or also first in the
-/// report.
+/// The full table contains all metrics. Gates compare metrics of place `held` and `headline`; the report starts with
+/// metrics of place `headline`.
 enum class Place { detail, held, headline };
 
 inline constexpr double kNoTarget = std::numeric_limits<double>::quiet_NaN();

@@ -40,7 +40,7 @@ bool height_error_max(const ScoredEstimate& scored, double& value) {
   value = 0.0;
   for (const PairedPose& pose : poses) {
     const double error = std::abs(pose.estimate.p_WA_m.z() - pose.truth.p_WA_m.z());
-    // Unlike std::max, the negated comparison propagates NaN.
+    // A NaN error also satisfies this condition; std::max would ignore NaN.
     if (!(error <= value)) value = error;
     if (std::isnan(value)) break;
   }

@@ -77,8 +77,8 @@ bool in_contact(const ScoredEstimate& scored, std::int64_t time_ns) {
   return false;
 }
 
-// Squared rate errors divided by their reported variances, for clipped axes (`all`, `flight`, `impact`: contact) and
-// unclipped axes that a clipped sensing element disturbs (`cross_axis`).
+// NormalisedErrors contains squared rate errors divided by their reported variances. Clipped axes are in `all`, and in
+// `flight` or `impact` (contact). Unclipped axes that a clipped sensing element disturbs are in `cross_axis`.
 struct NormalisedErrors {
   std::vector<double> all, flight, impact, cross_axis;
 };

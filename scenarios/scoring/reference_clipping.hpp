@@ -20,14 +20,13 @@ struct ReferenceRail {
 /// Estimates the saturation planes of the three axes for both signs from a reference of the rate, independently of the
 /// estimator.
 ///
-/// A candidate is a sample within 5 % of the extreme reading of the axis and sign. The reference confirms a candidate
-/// if the reference rate exceeds the reading by more than 2 %, and by four times the median difference between reading
-/// and reference. A saturation limit exists if at least five candidates, and at least half of the candidates, are
-/// confirmed.
+/// Gyro readings within 5 % of the largest reading of their axis and sign may be saturated. The reference confirms the
+/// saturation if the reference rate exceeds the gyro reading by 2 % of the largest reading, and by four times the
+/// median difference between gyro and reference. A saturation limit exists if five readings, and half of the possibly
+/// saturated readings, are confirmed.
 ///
-/// The saturation plane is the least-squares fit to the confirmed samples, with a prior of 0 +- 0.03 for the cross-axis
-/// sensitivities and a residual deviation of 0.02 rad/s. A second fit uses only samples within 2 % of the first
-/// saturation plane.
+/// A least-squares fit to the confirmed readings gives the saturation plane. The fit assumes slopes of 0 +- 0.03, and
+/// readings that scatter by 0.02 rad/s. The fit is repeated with the readings within 2 % of the saturation plane.
 std::array<ReferenceRail, 6> reference_rails(std::span<const Eigen::Vector3d> reading,
                                              std::span<const Eigen::Vector3d> reference);
 

@@ -8,8 +8,8 @@
 
 namespace tumble::scenarios {
 
-/// The end error starts at this registered sweep (Deschenes et al.); the count starts at 1 with the sweep that starts
-/// the map.
+/// Number of the registered sweep at which the end error starts (Deschenes et al.); the sweep that starts the map has
+/// the number 1.
 inline constexpr std::size_t kStartSweep = 6;
 
 std::vector<std::size_t> registered_sweeps(const Estimate& estimate);

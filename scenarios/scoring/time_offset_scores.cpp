@@ -28,7 +28,7 @@ class OffsetFit {
   double product_ = 0.0, square_ = 0.0;
 };
 
-// At unclipped samples, the gyro measures the rate, so the error of the estimate is a time offset.
+// Clipped samples are omitted, because their rate errors have other causes than a time offset.
 bool rate_offset(const ScoredEstimate& scored, double& value) {
   const ClippingTruth& truth = clipping_truth(scored);
   const std::int64_t period_ns = scored.sensors().imus.front().period_ns;

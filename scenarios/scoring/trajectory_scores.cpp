@@ -9,8 +9,7 @@ namespace tumble::scenarios {
 namespace {
 
 constexpr double kSegmentM = 1.0;
-// Segments of the path start at this distance from each other, so the poses of a stationary robot do not count many
-// times.
+// Distance [m] between the starts of successive path segments; at most one segment starts while the robot stands still.
 constexpr double kSegmentStepM = 0.05;
 
 bool ate(const ScoredEstimate& scored, double& value) {

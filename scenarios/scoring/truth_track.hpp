@@ -15,7 +15,7 @@ namespace tumble::scenarios {
 /// error is below 13 um and 1 urad.
 class TruthTrack {
  public:
-  /// The body is at rest if its speed and rate are below these limits at all times within kRestWindowS.
+  /// At rest, the body's speed and rate are below kRestSpeedMS and kRestRateRadS, for kRestWindowS before and after.
   static constexpr double kRestWindowS = 0.1;
   static constexpr double kRestSpeedMS = 0.03;
   static constexpr double kRestRateRadS = 0.05;
@@ -26,11 +26,11 @@ class TruthTrack {
   bool covers(std::int64_t time_ns) const;
   bool covers_attitude(std::int64_t time_ns) const;
 
-  /// Pose of the frame in W and velocity of its origin; NaN where the position is unknown.
+  /// Returns pose and velocity of the constructor's `frame` in W; NaN where the position is unknown.
   PoseState pose(std::int64_t time_ns) const;
-  /// Angular rate of the frame, in its axes [rad/s]; NaN where the rate is unknown.
+  /// Returns the rate of the constructor's `frame` in its own axes [rad/s]; NaN where the rate is unknown.
   Eigen::Vector3d rate_rad_s(std::int64_t time_ns) const;
-  /// Path length of the frame's origin since time 0 [m]; the pose must be known at `time_ns`.
+  /// Returns the path length of the constructor's `frame` since time 0 [m]; the pose must be known at `time_ns`.
   double path_m(std::int64_t time_ns) const;
   bool at_rest(std::int64_t time_ns) const;
 

@@ -154,7 +154,7 @@ class Evaluator {
                       index, outcome.message));
   }
 
-  /// Returns the outcome or the rejection that a process wrote. A process without either crashed, was killed, or
+  /// Returns the outcome or the rejection that a process wrote. A process that wrote no result crashed, was killed, or
   /// exceeded its time limit.
   static Message last_message(const DrawTask& task, const PooledEnd& ended) {
     std::size_t begin = 0;
@@ -180,7 +180,6 @@ class Evaluator {
   std::size_t failures_ = 0;
 };
 
-/// Returns the Euclidean norm of the normal scores.
 double distance_of(const ScoredPoint& draw) {
   double squares = 0.0;
   for (const double score : draw.point.normals) squares += score * score;

@@ -37,8 +37,8 @@ struct SearchOptions {
   std::function<void(std::size_t runs, std::size_t failures)> on_runs;
 };
 
-/// FoundFailure is a draw on which the method fails. Its distance is the norm of its normal scores: the draw with the
-/// smallest distance has the largest probability density.
+/// FoundFailure is a draw on which the method fails. `distance` is the norm of the draw's standard normal numbers: the
+/// draw with the smallest distance has the largest probability density.
 struct FoundFailure {
   std::size_t run = 0;  ///< index of the run
   double distance = 0.0;
@@ -56,7 +56,7 @@ struct SearchResult {
   std::vector<InputShift> shifts;  ///< of the failures in the last population, or without failures of all its members
 };
 
-/// Returns the scenario with each random parameter fixed to its value at the normal score.
+/// Replaces each random parameter of the scenario by its value at the standard normal number in `normals` (number_at).
 Scenario scenario_at(const Scenario& scenario, std::span<const DrawnNumber> numbers, std::span<const double> normals);
 
 /// Estimates the probability of a failure by adaptive multilevel splitting over all random parameters of the scenario

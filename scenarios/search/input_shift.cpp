@@ -14,7 +14,7 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Returns the mean over families of their mean normal scores, and the number of families.
+/// Averages a parameter's standard normal numbers within each family, then over all families; also counts families.
 std::pair<double, std::size_t> family_mean(std::span<const ScoredPoint> draws, std::size_t number) {
   std::map<std::size_t, std::vector<double>> families;
   for (const ScoredPoint& draw : draws) families[draw.family].push_back(draw.point.normals[number]);

@@ -21,8 +21,8 @@ struct InputShift {
   double scenario_low = 0.0, scenario_median = 0.0, scenario_high = 0.0;  ///< those of the scenario's distribution
 };
 
-/// Returns the shifts of all parameters, largest first. The mean is over families of draws, because draws of a family
-/// depend on each other, equation (S31) of statistics.md. `draws` must not be empty.
+/// Returns the InputShift of all parameters, largest shift first. Draws with a common ancestor (family) depend on each
+/// other, so `shift` is the mean of the family means, equation (S31) of statistics.md. `draws` must not be empty.
 std::vector<InputShift> input_shifts(std::span<const DrawnNumber> numbers, std::span<const ScoredPoint> draws);
 
 }  // namespace tumble::scenarios

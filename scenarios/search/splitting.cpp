@@ -33,7 +33,7 @@ void require_sound(const SplittingOptions& options) {
     throw BadInput(fmt::format("the bound of the score is {}; it must be finite", std::to_string(options.bound)));
 }
 
-/// MoveRate adapts step and number of moves to the accepted moves of the previous step.
+/// MoveRate adapts the step size and the number of Metropolis moves to the fraction of accepted moves.
 struct MoveRate {
   std::size_t moves = kMovesFirst;
   double step = kStepFirst;
@@ -66,7 +66,7 @@ class Splitting {
   std::vector<ScoredPoint>& draws() { return result_.draws; }
   double score_of(std::size_t member) const { return result_.draws[result_.members[member]].score; }
 
-  /// Scores the points. Returns the index of the first of them in `draws`, or false if the search was stopped.
+  /// Scores the draws `fresh` and appends them to `draws`; returns false if the search was stopped.
   bool add(std::vector<ScoredPoint> fresh) {
     std::vector<SplittingPoint> points;
     for (const ScoredPoint& each : fresh) points.push_back(each.point);
@@ -97,7 +97,7 @@ class Splitting {
     return true;
   }
 
-  /// Returns true if the next step would end at the bound: a quarter of the members at most do not exceed it.
+  /// Returns true if at least three quarters of the population exceed the bound of the score.
   bool is_at_bound() const { return failing().size() + removed_at_once() >= options_.population; }
   std::size_t removed_at_once() const { return std::max<std::size_t>(1, options_.population / kRemovedPart); }
 
@@ -109,7 +109,7 @@ class Splitting {
     return out;
   }
 
-  /// Replaces the members with the lowest scores. Returns false if the budget or the scores do not allow it.
+  /// Replaces the draws with the lowest scores. Returns false if the budget is too small or no higher scores remain.
   bool advance() {
     std::vector<double> scores;
     for (std::size_t i = 0; i < result_.members.size(); ++i) scores.push_back(score_of(i));
@@ -147,7 +147,7 @@ class Splitting {
     for (std::size_t i = values.size(); i > 1; --i) std::swap(values[i - 1], values[stream_.bits() % i]);
   }
 
-  /// Moves the members above the level. Returns false if the search was stopped.
+  /// Makes Metropolis moves of the new copies `moved` to scores above `level`; returns false if the search was stopped.
   bool move(const std::vector<std::size_t>& moved, double level) {
     std::size_t taken = 0, reseeded = 0, taken_reseeded = 0;
     for (std::size_t k = 0; k < rate_.moves; ++k) {

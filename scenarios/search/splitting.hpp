@@ -21,11 +21,11 @@ struct SplittingPoint {
   std::uint64_t seed = 0;
 };
 
-/// Returns the scores of the points. Returns fewer scores to stop the search; these scores are not used.
+/// ScorePoints returns one score per draw. To stop the search, ScorePoints returns fewer scores, which are ignored.
 using ScorePoints = std::function<std::vector<double>(std::span<const SplittingPoint>)>;
 
-/// Move proposes the new normal numbers of a member from its present ones, with the step in (0, 1]. The move must leave
-/// the standard normal distribution invariant.
+/// Move changes the standard normal numbers of a draw at random, by a step size in (0, 1]. If `normals` are standard
+/// normal, the result must be standard normal too.
 using Move = std::function<std::vector<double>(std::span<const double> normals, double step,
                                                const std::function<double()>& normal)>;
 
@@ -42,7 +42,6 @@ struct SplittingOptions {
   Move move = crank_nicolson;
 };
 
-/// ScoredPoint is a scored draw of the search.
 struct ScoredPoint {
   SplittingPoint point;
   double score = 0.0;
@@ -70,15 +69,16 @@ struct SplittingResult {
 
 /// Estimates the probability that the score of a random draw exceeds the bound.
 ///
-/// In each step, the search removes the quarter of the population with the lowest scores. Each removed member is
-/// replaced by a copy of a remaining member, which then makes several Metropolis moves: a move is accepted if its score
-/// exceeds the highest removed score. Half of the moves also draw a new seed. The fractions of remaining members
-/// multiply to the probability. The search ends if at most a quarter of the population does not exceed the bound.
+/// In each step, the search removes the quarter of the draws with the lowest scores. A copy of another draw replaces
+/// each removed draw. Each copy makes several Metropolis moves, and accepts a move if its score exceeds all removed
+/// scores. Half of the Metropolis moves also draw a new seed of noise and terrain. The probability is the product of
+/// the fractions that remain in each step and the final fraction above the bound. The search ends if three quarters of
+/// the draws exceed the bound.
 ///
-/// The step size follows the fraction of accepted moves. The number of moves follows the fraction of accepted moves
-/// with a new seed, so that 90 % of the copies get a new seed. The interval considers common ancestors. Equal options
-/// give equal results for deterministic scores. Scores may be infinite, but not NaN. Throws BadInput for invalid
-/// options or NaN scores.
+/// The step size of the Metropolis moves increases if more than 40 % of the moves are accepted. Each copy makes enough
+/// moves that 90 % of the copies accept a new seed. The 95 % interval considers common ancestors of draws. Equal
+/// options give equal results for deterministic scores. Scores may be infinite, but not NaN. Throws BadInput for
+/// invalid options or NaN scores.
 SplittingResult split(const SplittingOptions& options, const ScorePoints& score);
 
 }  // namespace tumble::scenarios

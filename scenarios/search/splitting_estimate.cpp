@@ -19,7 +19,7 @@ std::map<std::size_t, double> sizes_of(std::span<const std::size_t> families) {
   return sizes;
 }
 
-/// Returns the number of ordered pairs of members of different families.
+/// Returns the number of ordered pairs of draws without a common ancestor.
 double unrelated_pairs(std::span<const std::size_t> families) {
   const auto n = static_cast<double>(families.size());
   double related = 0.0;
@@ -38,12 +38,12 @@ void SplittingEstimate::advance(std::size_t removed, std::span<const std::size_t
   log_probability_ += std::log(left / n);
   double siblings = 0.0;
   for (const std::size_t count : copies) siblings += static_cast<double>(count * count);
-  // If one member remains, all later members are related, and the correction is irrelevant.
+  // If only one draw remains, all later draws descend from it, and interval() returns the limits 0 and 1.
   if (left > 1.0) log_correction_ += std::log((left - 1.0) * n * n / (left * (n * n - siblings)));
 }
 
-/// The estimate is the mean of a log-normal distribution, whose median is smaller by half the variance. The upper limit
-/// considers this distance, and the lower limit does not.
+/// Equation (S30) of statistics.md: only the upper limit contains half of the variance, because the median of a
+/// log-normal distribution is below its mean.
 Interval SplittingEstimate::interval(std::span<const std::size_t> members, double risk) const {
   const auto n = static_cast<double>(population_), own = static_cast<double>(members.size());
   const double share = own / n, log_value = log_probability_ + std::log(share);
@@ -65,8 +65,8 @@ Interval SplittingEstimate::of_failure(std::span<const std::size_t> families,
   if (log_probability_ == 0.0)
     return share_interval(static_cast<std::int64_t>(failing.size()), static_cast<std::int64_t>(population_));
   if (2 * failing.size() >= population_) return interval(failing, kRisk);
-  // Few members fail, so the logarithm is not normal. The risk is divided between the level and the fraction of
-  // failures, whose interval counts related members as one.
+  // If fewer than half of the draws fail, the estimate is not log-normal. Two intervals then share the error risk; the
+  // interval of the failing fraction counts families instead of draws.
   const Interval level = interval(families, 0.5 * kRisk);
   const auto n = static_cast<double>(sizes_of(families).size());
   const double share = static_cast<double>(failing.size()) / static_cast<double>(population_), count = share * n;

@@ -14,15 +14,15 @@ class SplittingEstimate {
  public:
   explicit SplittingEstimate(std::size_t population) : population_(population) {}
 
-  /// Accounts for a step that removed `removed` members; `copies` contains, for each remaining member, the number of
-  /// its copies in the new population, including itself.
+  /// Adds a step that removed `removed` draws of the population; `copies` contains the number of copies of each
+  /// remaining draw, including the draw.
   void advance(std::size_t removed, std::span<const std::size_t> copies);
 
-  /// Returns the probability of the level with its 95 % interval. `families` contains the family of each member.
+  /// Returns the probability that a random draw exceeds the level, with its 95 % interval.
   Interval of_level(std::span<const std::size_t> families) const;
 
-  /// Returns the probability of a failure with its 95 % interval. `families` contains the family of each member, and
-  /// `failing` those of the members that exceed the bound.
+  /// Returns the probability of a failure with its 95 % interval. `families` contains ScoredPoint::family of all draws
+  /// in the population, and `failing` contains the families of the failing draws.
   Interval of_failure(std::span<const std::size_t> families, std::span<const std::size_t> failing) const;
 
  private:

@@ -33,8 +33,8 @@ double sorted_median(std::span<const double> sorted) {
   return middle_of(sorted[(n - 1) / 2], sorted[n / 2]);
 }
 
-/// For an even number of values, the acceleration of the BCa interval, equation (S3) of statistics.md, is zero:
-/// removing one value gives each of two medians equally often.
+/// Returns the acceleration of the BCa interval of the median, equation (S3) of statistics.md. For an even number of
+/// values, the acceleration is zero by symmetry.
 double acceleration(std::span<const double> sorted) {
   const std::size_t n = sorted.size(), m = n / 2;
   if (n % 2 == 0) return 0.0;

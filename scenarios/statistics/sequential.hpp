@@ -13,8 +13,8 @@ double spent_by(double risk, double share);
 
 /// SequentialSignTest is a sign test with interim analyses (Armitage, McPherson, Rowe, JRSS A 132:235, 1969), equations
 /// (S13) to (S15) of statistics.md. Each interim analysis sets a threshold for the number of positive and of negative
-/// signs. If the two methods are equally good, the probability of having reached a threshold is at most the risk that
-/// may be spent so far. The number and times of the interim analyses are free, but must not depend on the results.
+/// signs. If the methods are equally good, each sign has reached its threshold with at most the probability spent_by().
+/// The number and times of the interim analyses are free, but must not depend on the results.
 class SequentialSignTest {
  public:
   enum class Verdict { open, negative, positive };  ///< significantly more frequent sign

@@ -79,7 +79,7 @@ struct Comparison {
   std::vector<FailureComparison> failures;
 };
 
-/// Costs and other unranked metrics are compared only if the caller names them, and without a conclusion.
+/// Metrics without a better direction (costs) are compared only if the caller names them; `finding` remains undecided.
 Comparison compare(const Summary& summary, const ComparisonOptions& options);
 
 }  // namespace tumble::scenarios

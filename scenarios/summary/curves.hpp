@@ -38,8 +38,8 @@ struct Curve {
   std::vector<std::string> bins = {};
 };
 
-/// There is one curve per varied parameter, one per quantity with binned metrics, and one per clipping quantity of
-/// whole runs with at least three bins. A run counts as failed if its status is not `ok` or its map failed.
+/// A curve shows a metric against a varied parameter, the bins of a binned metric, or the clipping of whole runs (at
+/// least three bins). A run counts as failed if its status is not `ok` or its map failed.
 std::vector<Curve> find_curves(const Results& results);
 std::vector<Curve> find_curves(const Results& results, std::span<const DrawValues> draws, Summary& summary);
 

@@ -18,7 +18,7 @@ struct ExampleCandidate {
 struct ExampleDraw {
   std::string scenario;
   std::uint64_t seed = 0;
-  // NOLINTNEXTLINE(modernize-use-nullptr): Clang 14 takes the zero that a defaulted <=> compares with for a pointer
+  // NOLINTNEXTLINE(modernize-use-nullptr): false positive of clang-tidy 14 for a defaulted operator<=>
   auto operator<=>(const ExampleDraw&) const = default;
 };
 

@@ -38,8 +38,8 @@ struct Answer {
 
 void require_sound(const Question& question);
 
-/// Stores the question in the results database before the first simulated run. Throws BadInput if the database contains
-/// another question or any run, because the risk is only valid if the question precedes the results.
+/// Stores the question of a sequential test (is one method better?) in the results database before the first run.
+/// Throws BadInput if the database contains another question, or runs without a question.
 void claim(Results& results, const Question& question, const std::filesystem::path& database);
 
 /// All simulated runs up to the seed `last_seed` must be complete; later runs have no effect.

@@ -12,8 +12,8 @@
 #include "scenarios/scoring/metric.hpp"
 #include "scenarios/sweep/results.hpp"
 
-/// A gate compares new results of a suite with accepted results, separately for each simulated run. New and accepted
-/// results contain the same simulated runs with equal sensor data, so differences between seeds cancel in each pair.
+/// A gate compares new results of a suite with accepted results. Both results contain the same scenarios and seeds with
+/// equal sensor data, so each test compares pairs of values. The gate tests:
 ///
 /// - Outcomes: a run that was ok must be ok again, and a pass-fail metric (`map_failed`) must not change to 1.
 /// - Presence: if the accepted outcome of a run has a metric and the new outcome is ok, the new outcome must have the
@@ -61,7 +61,7 @@ struct Gate {
 };
 
 std::vector<std::string> gate_names(const DataRoot& data);
-/// `described` contains the external methods that may occur in the gate.
+/// The files of the gate may contain results of the external methods in `described`.
 Gate load_gate(const DataRoot& data, const std::string& name, std::span<const MethodPointer> described = {});
 std::string to_yaml(const Gate& gate);
 std::string to_csv(const GateRun& run);

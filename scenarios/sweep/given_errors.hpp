@@ -8,8 +8,8 @@
 
 namespace tumble::scenarios {
 
-/// GivenError is an error of chosen size in the sensor data or the calibration that methods receive. The simulated
-/// motion and measurements are unchanged, so one simulation serves all sizes of the error.
+/// GivenError is an error of chosen size in the sensor data or the calibration that methods receive. A GivenError is
+/// added after the simulation, so one simulation serves all sizes of the error.
 struct GivenError {
   sim::Parameter parameter;  ///< size; the default means no error
   bool needs_lidar = false;

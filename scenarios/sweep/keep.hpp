@@ -33,7 +33,7 @@ std::string to_string(const Keep& keep);
 struct DrawName {
   std::string scenario;
   std::uint64_t seed = 0;
-  // NOLINTNEXTLINE(modernize-use-nullptr): Clang 14 takes the zero that a defaulted <=> compares with for a pointer
+  // NOLINTNEXTLINE(modernize-use-nullptr): false positive of clang-tidy 14 for a defaulted operator<=>
   auto operator<=>(const DrawName&) const = default;
 };
 
@@ -51,8 +51,8 @@ class KeptDraws {
   std::vector<DrawName> found() const;
   void remove(const DrawName& draw) const;
   void discard_unfinished() const;
-  /// Copies a kept run, or only its missing estimates, with hard links where possible; returns false if `from` does not
-  /// contain the run.
+  /// Copies a run from the folder `from`, or only the estimates that the destination lacks. Returns false if `from`
+  /// does not contain the run.
   bool take(const DrawName& draw, const KeptDraws& from) const;
 
  private:

@@ -17,7 +17,7 @@ struct Setting {
   std::string key;
   double value = 0.0;
   bool is_plain() const { return key.empty(); }
-  // NOLINTNEXTLINE(modernize-use-nullptr): Clang 14 takes the zero that a defaulted <=> compares with for a pointer
+  // NOLINTNEXTLINE(modernize-use-nullptr): false positive of clang-tidy 14 for a defaulted operator<=>
   auto operator<=>(const Setting&) const = default;
 };
 

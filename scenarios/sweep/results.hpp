@@ -63,8 +63,8 @@ bool is_method_note(const std::string& key);
 class Results {
  public:
   enum class Mode { create_or_append, join, read_only };
-  /// Throws BadInput for a file that is no results database, an incomplete schema, another build (except read_only), or
-  /// lack of space.
+  /// Throws BadInput if the file is no results database, has an incomplete schema, or was written by another build. The
+  /// mode `read_only` accepts other builds.
   Results(const std::filesystem::path& path, Mode mode);
   ~Results();
   Results(Results&&) noexcept;

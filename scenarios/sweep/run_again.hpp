@@ -21,9 +21,9 @@ std::string description_note(const std::string& kind, const std::string& method)
 std::string recording_note(const std::string& name);
 bool is_place_note(const std::string& key);
 
-/// Returns the command that repeats a run: `tumble run SCENARIO --seed N --method KIND/NAME`, with `--vary KEY=VALUE`
-/// for a point of a curve. Words of the command are quoted for a POSIX shell; placeholders in capitals replace missing
-/// information.
+/// Returns the command that repeats a run: `tumble run SCENARIO --seed N --method KIND/NAME`. If the run has a varied
+/// parameter, the command contains `--vary KEY=VALUE`. The words of the command line are quoted for a POSIX shell; a
+/// word in capitals replaces missing information.
 std::string command_again(const RunKey& run, const std::map<std::string, std::string>& notes);
 
 Setting setting_from(const std::string& text);

@@ -29,8 +29,7 @@ struct RunResult {
   std::vector<Outcome> outcomes;    ///< parallel to methods
 };
 
-/// With a `setting`, the run is one point of a curve, and the recording contains the sensor data that the methods
-/// receive.
+/// A `setting` changes one parameter of the run. The returned recording contains the sensor data that methods receive.
 RunResult run_situation(const DataRoot& data, const Scenario& scenario, std::uint64_t seed,
                         std::span<const MethodPointer> methods, int threads, Lidars lidars = Lidars::simulated,
                         const Setting& setting = {});

@@ -28,7 +28,7 @@ class SweepPlan {
   void note_recordings(Results& results) const;
 
   /// Recordings come first, then scenarios with seeds as the outer loop, so a stopped sweep covers all scenarios and
-  /// curve points.
+  /// all values of varied parameters.
   bool at_end() const { return next_.recording == recordings_.size() && next_.past_seeds; }
   void advance();
   DrawTask next(const Results& results) const;

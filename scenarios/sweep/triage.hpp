@@ -41,7 +41,7 @@ struct TriageOptions {
 };
 
 /// Runs a method on the original sensor data, then with each input replaced by its true value, in separate processes.
-/// If no true input prevents a failure, the cause is the method or the scenario.
+/// If the method fails even with each true input, the cause is the method or the scenario.
 std::vector<TriageRow> triage(const DataRoot& data, const Scenario& scenario, std::uint64_t seed, const Method& method,
                               const TriageOptions& options);
 

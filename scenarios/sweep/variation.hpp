@@ -29,8 +29,8 @@ Reach reach(const Setting& setting);
 
 bool needs_lidar(const Setting& setting);
 
-/// Throws BadInput if a key is unknown, has another form than the other keys, or does not apply to one of the
-/// scenarios.
+/// Throws BadInput if a key is unknown or does not apply to a scenario, or if keys of scenario, `given` errors and
+/// methods are mixed.
 void check(const Variation& variation, const DataRoot& data, std::span<const std::string> scenarios,
            std::uint64_t seed);
 

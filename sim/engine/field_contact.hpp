@@ -10,8 +10,8 @@
 namespace tumble::sim::engine {
 
 /// The computed contacts agree with those of MuJoCo within MuJoCo's tolerance (1e-6 m). A contact is midway between the
-/// two surfaces, and its normal points from the ground to the capsule's axis. Returns nothing if the axis is below the
-/// ground surface, the field is rotated, or the capsule is as low as the field's bottom.
+/// two surfaces, and its normal points from the ground to the capsule's axis. Returns no value if the capsule's axis is
+/// below the ground, the capsule reaches the bottom of the height field, or the field is rotated.
 std::optional<int> field_contacts(const mjModel& model, const mjData& data, int field, int capsule,
                                   mjPreContact* contacts);
 

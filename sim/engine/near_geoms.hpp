@@ -9,8 +9,8 @@
 namespace tumble::sim::engine {
 
 /// NearGeoms restricts MuJoCo's bounding-volume tree of the world to geoms that a free robot may touch soon; the
-/// destructor restores the original tree. MuJoCo tests the remaining pairs of geoms as before and sorts contacts by
-/// geom, so the motion stays bit-identical.
+/// destructor restores the original tree. The restriction changes neither contacts nor their order, so the motion stays
+/// bit-identical.
 class NearGeoms {
  public:
   /// `model` must outlive this object, and must not be copied while this object exists.

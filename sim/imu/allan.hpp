@@ -45,8 +45,8 @@ struct AllanInterval {
 };
 
 /// Returns the confidence interval of the true Allan deviation by the chi-squared distribution, with the quantiles of
-/// Wilson and Hilferty (1931). The confidence equals the probability of `sigmas` standard deviations of a normal
-/// distribution (3: 99.73 %).
+/// Wilson and Hilferty (1931). The confidence level is the probability that a normal number is within `sigmas` standard
+/// deviations (3: 99.73 %).
 AllanInterval confidence_interval(const AllanPoint& point, AllanNoise noise, double sigmas = 3.0);
 
 /// Allan deviation of white noise of density N [unit / sqrt(Hz)].

@@ -14,8 +14,8 @@ namespace {
 // With a ratio of 10 between successive correlation times, the Allan deviation is flat within 2 %.
 constexpr double kRatio = 10.0;
 
-/// Each Gauss-Markov process contributes sigma^2 / (f ln ratio) to the spectrum at frequency f; flicker noise of
-/// spectrum h / f has the Allan variance 2 ln 2 h.
+/// A Gauss-Markov process of standard deviation sigma contributes sigma^2 / (f ln kRatio) to the spectrum at frequency
+/// f. Flicker noise with the Allan deviation `floor` has the spectrum floor^2 / (2 f ln 2).
 double sigma_of_one(double floor) {
   return floor * std::sqrt(std::log(kRatio) / (2.0 * std::numbers::ln2));
 }

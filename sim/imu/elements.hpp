@@ -10,25 +10,24 @@
 namespace tumble::sim {
 
 /// Elements models the sensing elements of a triad (gyroscope or accelerometer), each with its own axis, scale, zero
-/// offset and saturation level. Sensing element i measures s_i = m_i . u + o_i, with the signal u in device axes, the
-/// row m_i of the misalignment matrix M, and the zero offset o_i. The device saturates s to c(s), then subtracts the
-/// offset and inverts the matrix: the reading is y = M^-1 (c(s) - o).
+/// offset and saturation level. The three sensing elements measure s = M u + o, with signal u in device axes,
+/// misalignment matrix M and zero offset o. The device limits s to the saturation levels, c(s), and reports the reading
+/// M^-1 (c(s) - o).
 ///
-/// - While only sensing element j is at its limit r, the readings y lie on one of two tilted planes, m_j . y = +r - o_j
-///   or -r - o_j.
-/// - A saturated sensing element also changes the readings of the other axes, by entries of M^-1 times its saturation
-///   deficit.
+/// - While only one sensing element is saturated, the readings of the triad are on a plane, perpendicular to the axis
+///   of the sensing element.
+/// - A saturated sensing element also changes the readings of the other axes, in proportion to its saturation deficit.
 ///
-/// Measured devices show planes tilted by 0.02 and 0.05, and offsets of 0.05 and 0.14 rad/s
-/// (scenarios/certificate/real_rails.cpp). The model of the sensing elements excludes compensation errors that differ
-/// at saturation, and offsets that drift within a recording.
+/// Saturation planes of two real gyros have slopes of up to 0.05 and offsets of up to 0.14 rad/s
+/// (scenarios/certificate/real_rails.cpp). Elements assumes that the device knows M and o exactly, and that o does not
+/// drift within a recording.
 class Elements {
  public:
   struct Params {
-    /// Standard deviation of each entry off M's diagonal [1], truncated at three standard deviations
+    /// Standard deviation of the off-diagonal entries of the misalignment matrix M, truncated at three deviations
     double misalignment = 0.0;
-    double scale = 0.0;   ///< of the diagonal, about 1
-    double offset = 0.0;  ///< of the offset o [signal unit]
+    double scale = 0.0;   ///< standard deviation of the diagonal of M, around 1
+    double offset = 0.0;  ///< standard deviation of o [signal unit]
   };
   static constexpr double kMisalignmentMax = 0.1;  ///< M is always invertible
 

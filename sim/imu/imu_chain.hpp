@@ -26,8 +26,8 @@ struct TriadReading {
 ///
 /// If a triad rotates, the mean of the readings differs from the increment of the motion (coning, sculling), so
 /// TriadChain adds the mean of the errors to the ideal reading of the window. If a sensing element saturated in the
-/// averaging window, its reading is the plain mean of the error chain's output. A second error chain with equal stages
-/// and noise, but without saturation, computes the unclipped reading.
+/// averaging window, its reading is the mean of the signal after all stages. A second chain with equal stages and
+/// noise, but without saturation, computes the unclipped reading.
 class TriadChain {
  public:
   /// `prefix` and `unit` select the parameters: "gyro" and "rad_s", or "accel" and "m_s2".

@@ -17,8 +17,8 @@ struct GivenElements {
 };
 
 /// The ideal rate of an averaging window is the rotation between the attitudes at the window's ends, divided by the
-/// duration. The ideal specific force is the change of the sensor's velocity minus gravity, in the axes of the attitude
-/// halfway. The integral of the ideal readings is the true motion at any output rate, also through impacts.
+/// duration. The ideal specific force is the mean acceleration of the sensor minus gravity, in the axes halfway between
+/// these attitudes. The integral of the ideal readings is the true motion at any output rate, also through impacts.
 ///
 /// The unclipped readings in ImuTruth have the same noise as the readings, but no saturation. The IMU model excludes
 /// temperature, vibration rectification and bending of the mount.

@@ -50,8 +50,8 @@ class LowPass {
 Eigen::Matrix3d draw_axis_errors(Stream& stream, double scale_sigma, double misalignment_sigma_rad);
 
 /// RangeChoice selects for each axis the precise or the coarse range of a device with two ranges. An axis switches to
-/// the coarse range when the signal exceeds `handover`, and back when the signal is below 90 % of `handover`. A
-/// handover of 0 always selects the coarse range.
+/// the coarse range when the signal exceeds `handover`, and back when the signal is below 90 % of `handover`. If
+/// `handover` is 0, all axes have the coarse range.
 class RangeChoice {
  public:
   explicit RangeChoice(double handover) : handover_(handover) {}

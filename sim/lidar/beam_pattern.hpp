@@ -45,7 +45,7 @@ class BeamPattern {
 
   virtual void fire(std::int64_t sweep, std::int64_t slot, int slots, FiringBlock& block) const = 0;
 
-  /// Returns 0 for a firing pattern that does not repeat.
+  /// Returns the number of azimuth cells; 0 for a firing pattern that does not repeat in each sweep.
   virtual int cells() const { return 0; }
   virtual double cell_half_angle_rad() const { return 0.0; }
   virtual void fire_cells(int /*first*/, FiringBlock& /*block*/) const {}
@@ -93,9 +93,9 @@ class ColumnPattern final : public BeamPattern {
 };
 
 /// RosettePattern is the firing pattern of a rosette lidar with one or several units, in which two prisms that rotate
-/// at constant rates deflect the beam. At the time t since the start of the recording, the direction (x, y, z) of the
-/// beam satisfies y/x + i z/x = A exp(i w1 t) + B exp(i w2 t) + C exp(i (2 w1 - w2) t). The ring number is the number
-/// of the unit, from right (negative yaw) to left.
+/// at constant rates deflect the beam. The lateral deflection of the beam is the sum of three rotating vectors: one per
+/// prism, and one with twice the first minus the second rate. The ring number is the number of the lidar unit, from
+/// right (negative yaw) to left.
 class RosettePattern final : public BeamPattern {
  public:
   explicit RosettePattern(const Values& values);

@@ -150,8 +150,8 @@ double ellipsoid_distance(const Vector3d& size, const Vector3d& point) {
     (outside(middle) > 0.0 ? low : high) = middle;
   }
   Vector3d nearest = a2.cwiseProduct(y).cwiseQuotient(a2 + Vector3d::Constant(high));
-  // For a point on a plane of symmetry near the centre, the ellipsoid's surface determines the coordinate along the
-  // shortest axis.
+  // If `y` is on the plane of symmetry across the shortest axis, the ellipsoid's equation gives the coordinate of
+  // `nearest` along this axis.
   int shortest = 0;
   a.minCoeff(&shortest);
   if (y[shortest] < 1e-12) {

@@ -18,9 +18,8 @@ using Pose34 = Eigen::Matrix<double, 3, 4>;
 /// 3e-8 s^2 times the acceleration a: 13 um at 400 m/s^2.
 class TrackCursor {
  public:
-  /// At the fraction `x` of the interval between two motion samples, the body has rotated by the angle a = x |turn|
-  /// [rad]. The interpolated pose is start + first turned + second rotated_twice + x step_m, with first = x sin(a)/a
-  /// and second = x^2 (1 - cos(a))/a^2 (Rodrigues: exp(x K) = I + first K + second K^2).
+  /// at() interpolates the attitude by Rodrigues' formula. With the cross-product matrix K of the body's rotation over
+  /// the interval, `turned` is R_WB K T_BL, and `rotated_twice` is R_WB K K T_BL.
   struct Interval {
     std::int64_t start_ns = 0, end_ns = 0;
     double per_ns = 0.0, per_s = 0.0;

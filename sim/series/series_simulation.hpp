@@ -48,8 +48,8 @@ struct Measured {
 
 /// A reading is the mean over an averaging window with bias, white noise, range, quantum, time stamps and losses. A
 /// sample that the device loses is also missing in the truth. Throws InvalidSituation if the output period is not a
-/// whole number of physics steps. The model of such sensors excludes temperature errors, drift, and any bandwidth limit
-/// except the averaging window.
+/// whole number of physics steps. The simulation excludes temperature errors, drift, and low-pass filters other than
+/// the averaging window.
 void simulate_series(const SensorContext& context, const std::vector<Measured>& quantities,
                      const std::vector<std::string>& constants, Recording& recording);
 

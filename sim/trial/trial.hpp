@@ -21,7 +21,7 @@ struct TrialOptions {
 };
 
 /// Trial simulates a robot in its world step by step for measurements, with the model and engine of simulate(). The
-/// robot of a Trial starts without settling; the motion and sensors of the situation are ignored.
+/// robot starts at its initial pose, without first coming to rest; the motion and sensors of `built` are ignored.
 class Trial {
  public:
   explicit Trial(const BuiltSituation& built, const TrialOptions& options = {});

@@ -12,8 +12,8 @@ namespace tumble::sim {
 /// Throws SimulationFailure like Physics::step, and if the robot does not come to rest before the start or never moves.
 Truth record_truth(engine::World& world, Motion& motion, double duration_s);
 
-/// Mean specific force at a body-fixed point over one step, in the axes of the attitude halfway: R_mid^T ((v1 - v0)/dt
-/// - g). The sum of R_mid f dt + g dt over all steps is exactly the change of the point's velocity.
+/// Returns the mean specific force at a body-fixed point P over one step, in body axes at half of the rotation. The
+/// integral of specific force and gravity is exactly the velocity change of P.
 Eigen::Vector3d specific_force_B(const BodyState& before, const BodyState& after, const Eigen::Vector3d& p_BP_m,
                                  double gravity_m_s2);
 
@@ -27,8 +27,8 @@ Eigen::Vector3d mean_rate_B(const BodyState& before, const BodyState& after);
 /// - `slip`: the rotation is too fast for the motion of the geometric centre.
 /// - `slide`: the rotation is too slow for the motion of the geometric centre.
 ///
-/// The contact labels show touchdown 10 ms too early and take-off 10 ms too late. For a body other than a sphere, the
-/// labels refer to the centre of mass instead of the geometric centre.
+/// The contact labels show touchdown 10 ms too early and take-off 10 ms too late. For a body other than a sphere,
+/// `slip` and `slide` refer to the motion of the centre of mass.
 std::vector<ContactLabel> label_contacts(const Truth& truth);
 
 }  // namespace tumble::sim

@@ -74,11 +74,11 @@ class TrimmedIcp {
 
   explicit TrimmedIcp(const Params& params);
 
-  /// As in the published chain, a registration that reaches the iteration limit counts as success.
+  /// A registration that reaches `iterations_max` iterations counts as success.
   Result align(std::span<const Point> points, const Eigen::Isometry3d& prior, const VoxelMap& map);
 
-  /// Returns how many of the sorted squared distances between matched points the registration keeps. The kept fraction
-  /// f minimises (sum of the smallest f n distances d^2) / (f n f^(2 lambda)) over n match slots.
+  /// Returns how many of the sorted squared distances between matched points the registration keeps (parameter
+  /// `trim_lambda`).
   static std::size_t trim(std::span<const float> sorted_d2, std::size_t slots, const Params& params);
 
   /// Clears the cached normals of the map points; required after each change of the map.

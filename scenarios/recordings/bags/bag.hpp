@@ -40,7 +40,7 @@ struct BagTrack {
   std::string name;  ///< letters, digits and _
   std::vector<Pose> poses;
   std::vector<std::int64_t> cloud_time_ns = {};  ///< times of point clouds along the track
-  /// The function creates one point cloud at a time, so only one cloud is in memory; clouds without points are omitted.
+  /// Creates the point cloud with this index when it is written; a cloud without points is not written.
   std::function<BagCloud(const BagTrack&, std::size_t)> cloud = {};
 };
 
@@ -66,8 +66,8 @@ struct BagWriting {
 ///   exported name of the sensor (export_names); the topic of the primary IMU is the first topic of its type.
 /// - "/NAME/points" is a sensor_msgs/PointCloud2, stamped at the start of the sweep, with the fields of Velodyne
 ///   drivers: x y z intensity ring time. The field time contains float32 seconds after the stamp (4 ns resolution
-///   within 0.1 s), and offset_ns contains the same time in whole nanoseconds. Points without times have neither of the
-///   two time fields.
+///   within 0.1 s), and offset_ns contains the same time in whole nanoseconds. Points without times have no fields time
+///   and offset_ns.
 /// - "/truth" is a nav_msgs/Odometry of "body" in "world", at most every 5 ms. "/TRACK" and "/TRACK/points" contain
 ///   estimates. Unknown values have the variance -1, as in sensor_msgs/Imu; an unknown twist is zero.
 /// - "/tf_static" contains the pose of each sensor in "body", from the calibration that the estimator uses.
@@ -82,8 +82,7 @@ void export_ros2_mcap(const sim::Sensors& sensors, const BagWriting& writing, co
 /// record stamps, a sweep starts one period before its stamp, because a sweep is recorded at its end.
 enum class StampSource { header, record };
 
-/// ReferenceOf selects the frame of the reference poses; `named` is the frame in the messages, if the bag contains its
-/// transform.
+/// ReferenceOf selects the frame to which the reference poses belong; `named` is the frame that the messages name.
 enum class ReferenceOf { named, body, lidar };
 
 struct BagReading {

@@ -20,7 +20,7 @@ struct BagTopic {
 class BagWriter {
  public:
   virtual ~BagWriter() = default;
-  /// Returns false if a bag of this format declares each topic with its first message, so that the order can differ.
+  /// Declares `topics` in their order; returns false if the bag format declares a topic only with its first message.
   virtual bool begin_with(const std::vector<BagTopic>& topics) = 0;
   /// Messages must be in order of time, and each topic has one message type.
   virtual void write(const std::string& topic, std::int64_t stamp_ns, const ros::Message& message) = 0;

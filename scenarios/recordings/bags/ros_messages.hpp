@@ -109,7 +109,7 @@ inline const char* type_of(const TFMessage&) {
 inline const char* type_of(const Clock&) {
   return "rosgraph_msgs/Clock";
 }
-/// The type name is that of the ROS 2 driver; ROS 1 bags use kLivoxRos1.
+/// A ROS 2 bag has this message type, and a ROS 1 bag has the type kLivoxRos1.
 inline const char* type_of(const LivoxCustomMsg&) {
   return "livox_ros_driver2/CustomMsg";
 }

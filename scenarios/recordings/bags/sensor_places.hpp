@@ -16,9 +16,8 @@ class SensorMountings {
  public:
   SensorMountings(StaticFrames frames, std::string where) : frames_(std::move(frames)), where_(std::move(where)) {}
 
-  /// Sets the mounting T_BA of a sensor A from /tf_static, unless the user has set it; a difference is then reported.
-  /// Without a body frame in the bag, the mounting is relative to the first earlier sensor that /tf_static connects to
-  /// this sensor.
+  /// Sets the mounting T_BA of a sensor A from /tf_static, unless the user has set T_BA; a difference is then reported.
+  /// Without a body frame in the bag, T_BA follows from a sensor of an earlier call that /tf_static connects to A.
   void place(const std::string& topic, const std::string& frame, const char* option, bool given,
              Eigen::Isometry3d& T_BA, std::vector<std::string>& notes);
 

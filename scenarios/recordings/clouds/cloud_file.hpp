@@ -8,7 +8,7 @@
 
 namespace tumble::scenarios {
 
-/// A 64-bit integer keeps 53 bits, so a time stamp in nanoseconds since 1970 is accurate to 256 ns.
+/// All fields are converted to double, so a time stamp in nanoseconds since 1970 is accurate to 256 ns.
 struct Cloud {
   std::vector<std::string> names;            ///< without CloudCompare's prefix "scalar_"
   std::vector<std::vector<double>> columns;  ///< parallel to `names`, one number per point
@@ -24,8 +24,8 @@ inline constexpr std::uint64_t kCloudPointsMax = std::uint64_t{1} << 26;
 /// header is compared with the file size before memory is allocated.
 ///
 /// @param bin_columns Columns of a .bin file in order, "x,y,z,intensity,ring". Each column is float32, or has a NumPy
-/// type after a colon ("x:f8"); the name "_" skips bytes. An empty text selects KITTI's columns x y z intensity, if the
-/// content does not contradict them (bin_layout.hpp).
+/// type after a colon ("x:f8"); the name "_" skips bytes. If `bin_columns` is empty, the columns are x y z intensity
+/// (KITTI), unless the content contradicts this layout (bin_layout.hpp).
 ///
 /// Throws BadInput with file and location if the file is missing or damaged, or has another format, impossible columns,
 /// or more than 2^26 points.

@@ -58,7 +58,7 @@ class HeaderLines {
   std::uint64_t bytes() const { return bytes_; }
 
   /// Throws BadInput if the number of points in the header does not fit the remaining file size. `made_of_a_byte` is
-  /// the largest number of point bytes that one byte of the file can contain.
+  /// the largest compression factor of the points (1: uncompressed).
   void require_room(const CloudHeader& header, std::uint64_t made_of_a_byte = 1) const {
     if (header.points > kCloudPointsMax) {
       fail(fmt::format("the file states {} points; at most {} can be read", header.points, kCloudPointsMax));

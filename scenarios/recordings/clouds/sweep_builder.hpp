@@ -36,11 +36,11 @@ struct PointTimeRule {
 
 /// The field of the point times has one of these names (any case): t time timestamp timestamps time_stamp offset_time
 /// time_offset offset_ns. The suffix _s, _ms, _us or _ns of a field name determines the unit of the point times.
-/// Without a suffix, the times of a sweep must cover 0.15 to 150 % of `period_ns` in the correct unit, which at most
-/// one unit can satisfy. If the sweep period is unknown (0), the size of times since 1970 determines the unit. If all
-/// times of a sweep are equal, the points have no times.
+/// Without a suffix, the unit follows from the duration of a sweep, which must be 0.15 to 150 % of `period_ns`. If the
+/// sweep period is unknown (0), the size of times since 1970 determines the unit. If all times of a sweep are equal,
+/// the points have no times.
 ///
-/// A unit from an option or suffix is rejected if another unit fits better and the sweeps have at least 100 points.
+/// A stated unit is rejected if only another unit fits the sweep period and the sweeps have at least 100 points.
 PointTimeRule find_point_times(const std::vector<Cloud>& first, std::int64_t period_ns, const SweepReading& reading,
                                const std::string& where);
 
@@ -52,7 +52,7 @@ struct BuiltSweeps {
   std::vector<std::optional<std::int64_t>> last_point_ns = {};
 };
 
-/// Memory contains the first ten clouds; with points on disk, memory then contains one cloud at a time.
+/// SweepBuilder buffers the first ten clouds to determine the unit of the point times.
 ///
 /// A point counts as a ray without return if it is not finite, farther than 1000 km, or at the origin. Intensities
 /// above 1 are divided by 255, or by their maximum if it exceeds 255. A sweep starts at its time stamp, or at its first

@@ -105,13 +105,13 @@ void pass_over(VtkWords& words, std::uint64_t count, std::uint64_t each) {
   for (std::uint64_t i = 0; i < count * each; ++i) words.number();
 }
 
-/// The section has the form "VERTICES lines numbers", followed by the announced count of numbers.
+/// Skips the line "VERTICES lines numbers", and as many integers as `numbers` states.
 void pass_vertices(VtkWords& words) {
   words.whole("the number of vertices");
   pass_over(words, words.whole("the vertices' numbers"), 1);
 }
 
-/// The section has the lines "SCALARS name type [numbers per point]" and "LOOKUP_TABLE name", followed by the numbers.
+/// Reads the numbers after the lines "SCALARS name type [numbers per point]" and "LOOKUP_TABLE name".
 void read_scalars(VtkWords& words, Cloud& cloud) {
   const std::string name(words.need("the name of scalars"));
   words.need("the scalars' type");

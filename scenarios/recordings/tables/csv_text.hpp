@@ -21,7 +21,7 @@ class CsvText {
   /// otherwise, blanks are the separator.
   explicit CsvText(const std::filesystem::path& path);
   CsvText(const std::filesystem::path& path, char separator);
-  /// Throws BadInput for a last line without newline, which may be truncated; the caller can then continue.
+  /// Throws BadInput if the last line has no line end, because the line may be truncated; the next call returns false.
   bool next(CsvLine& line);
   struct Place {
     std::size_t at = 0;

@@ -90,7 +90,7 @@ struct Units {
   GyroUnit gyro;
 };
 
-/// Reads the samples of one IMU, leaves out faulty samples, and adds notes.
+/// Reads the samples of one IMU without the faulty samples, and adds remarks for the user to `notes`.
 sim::ImuRecord checked_readings(LoggedTable& table, const ImuColumns& columns, const sim::ImuRecord& device,
                                 const std::string& path, const Units& units, std::vector<std::string>& notes) {
   LeftOut left_out("readings");

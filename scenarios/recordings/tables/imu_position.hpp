@@ -18,9 +18,9 @@ struct ImuPosition {
   std::string problem;                                ///< explains why the position is unknown; empty: known
 };
 
-/// Estimates the position of a second IMU with the same axes from the difference of both specific forces, by least
-/// squares: a x p + w x (w x p) plus a constant bias, for the rate w and the angular acceleration a. Samples near the
-/// largest gyro reading do not count, because the gyro may be saturated. Cost: O(N) for N samples.
+/// Estimates the position p of a second IMU with the same axes, by least squares. The difference of both specific
+/// forces is a x p + w x (w x p) plus a bias, with rate w and angular acceleration a. The fit omits samples near the
+/// largest gyro reading, because the gyro may be saturated. Cost: O(N) for N samples.
 ImuPosition estimate_imu_position(const sim::ImuRecord& first, const sim::ImuRecord& second);
 
 }  // namespace tumble::scenarios

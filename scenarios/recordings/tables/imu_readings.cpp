@@ -196,7 +196,7 @@ GravityRotation gravity_rotation(const sim::ImuRecord& imu, RotationWindows wind
     const bool whole = near(end) && end >= begin + 4 && (length_s >= kRotationWindow_s || turned()) &&
                        length_s < 1.5 * kRotationWindow_s;
     if (whole) {
-      // Averages over a quarter of the window at each end keep noise from appearing as rotation.
+      // Means over the first and the last quarter of the readings reduce the noise of the force change.
       const std::size_t quarter = std::max<std::size_t>(1, (end - begin) / 4);
       Eigen::Vector3d first = Eigen::Vector3d::Zero(), last = Eigen::Vector3d::Zero(), middle = Eigen::Vector3d::Zero();
       for (std::size_t k = 0; k < quarter; ++k) first += imu.accel_m_s2[begin + k], last += imu.accel_m_s2[end - k];
@@ -226,7 +226,7 @@ bool has_sufficient_rotation(const GravityRotation& turn) {
 
 GravityRotation sufficient_rotation(const sim::ImuRecord& imu) {
   const GravityRotation turn = gravity_rotation(imu, RotationWindows::even);
-  // A rolling sphere rotates too far in windows of equal length, so windows that end after a fixed rotation are tried.
+  // A fast rolling sphere turns too far within 0.2 s for the comparison with the gyro, so shorter intervals are tried.
   return has_sufficient_rotation(turn) ? turn : gravity_rotation(imu, RotationWindows::brisk);
 }
 

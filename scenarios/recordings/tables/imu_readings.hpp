@@ -17,11 +17,11 @@ void add_reading(const std::string& where, std::int64_t stamp_ns, const Eigen::V
 using ReadingText = std::function<std::string(std::size_t reading)>;
 
 /// Removes lost readings (all six values are exactly 0), and readings whose time stamps are out of order
-/// (stamps_in_order). The sample period becomes the median time step. If a driver delivered readings in bursts, their
-/// time stamps are first distributed over the time since the previous burst.
+/// (stamps_in_order). The sample period becomes the median time step. If a driver delivers readings in bursts, their
+/// time stamps are first distributed evenly over the time since the previous burst.
 ///
-/// @param disorder Describes a time stamp that is out of order; null: relative to the previous time stamp.
-/// @return A note on bursts; may be empty.
+/// @param disorder Returns the error message for a time stamp that is out of order; null: default message.
+/// @return A remark for the user if the driver delivered bursts of readings, otherwise empty.
 std::string leave_out_faulty(const ReadingText& where, const ReadingText& disorder, LeftOut& left_out,
                              sim::ImuRecord& imu);
 
@@ -29,19 +29,19 @@ std::string leave_out_faulty(const ReadingText& where, const ReadingText& disord
 /// outside 20 us to 2 s.
 void finish_readings(const std::string& where, AccelUnit unit, sim::ImuRecord& imu);
 
-/// Returns true if the median norm of the specific force is within 10 % of 1, and a fifth of the norms are within 2 %
-/// of the median (rest).
+/// Returns true if the accelerometer probably reads in g: the median norm is 0.9 to 1.1. A fifth of the norms must be
+/// within 2 % of the median.
 bool is_in_g(const sim::ImuRecord& imu);
 
 std::string even_out_stamps(sim::ImuRecord& imu);
 
 std::string gaps_text(const sim::ImuRecord& imu);
 
-/// RotationWindows selects the time windows in which the rotation of the measured gravity is compared with the gyro. In
-/// a window of 0.2 s (`even`), the specific force must have the size of gravity within a tenth, and rotate by one to
-/// about twenty degrees. The change of the specific force is compared with the product -(rotation vector) x force;
-/// their ratio is 1 for correct units. A rolling sphere rotates too far in 0.2 s, so windows of kind `brisk` end when
-/// the specific force has rotated by a quarter of gravity.
+/// RotationWindows selects the time windows in which the rotation of the measured gravity is compared with the gyro. A
+/// window of kind `even` lasts 0.2 s. A window of kind `brisk` ends earlier if the specific force has changed by a
+/// quarter of gravity. A window counts if the specific force has the size of gravity within 10 %, and changes by 2 to
+/// 40 % of gravity. The change of the specific force is compared with the product -(rotation vector) x force; `ratio`
+/// is 1 for correct units.
 enum class RotationWindows { even, brisk };
 struct GravityRotation {
   int windows = 0;

@@ -17,8 +17,8 @@ namespace tumble::scenarios {
 /// A unit in a column name is used: "time_ms", "#timestamp [ns]", "gx (deg/s)", "w_RS_S_x [rad s^-1]", "ax [g]".
 std::optional<ImuColumns> logger_columns(const CsvLine& header);
 
-/// The list of columns has the form "time=t,gyro=gx,gy,gz,accel=ax,ay,az". A word that is no column name is the
-/// position of a column, from 0.
+/// The list of columns has the form "time=t,gyro=gx,gy,gz,accel=ax,ay,az". A number instead of a column name is the
+/// position of the column, from 0.
 ImuColumns chosen_columns(const LoggedTable& table, const std::string& choice);
 
 }  // namespace tumble::scenarios

@@ -15,8 +15,8 @@ namespace {
 /// Reference and gyro contradict each other if their rotations differ by more than half of the rotation; they agree
 /// below 30 %.
 constexpr double kContradicts = 0.5, kReferenceAgrees = 0.3;
-/// A rotation difference above 0.15 is a fault of the pose file if another quaternion convention reduces the difference
-/// to less than 0.4 times its value.
+/// A wrong quaternion convention is reported only if reference and gyro differ by more than 15 % of the rotation. The
+/// correct convention must reduce the difference below 40 % of its value.
 constexpr double kExplained = 0.15, kExplanationLeaves = 0.4;
 /// The filters of an IMU cause a delay of about 0.02 s.
 constexpr double kDelayNoted_s = 0.03;

@@ -24,9 +24,9 @@ constexpr double kEnough_rad = 0.2;
 constexpr std::size_t kTurnPairsMin = 6, kTurnPairsMax = 400, kDelayPairsMin = 20;
 constexpr std::uint8_t kGyroClipped = 0b111;
 constexpr double kCoarse_s = 0.02, kFine_s = 0.002;
-/// A delay of 0.3 s is detectable if it at least doubles the rotation difference.
+/// A delay of 0.3 s is detectable if it at least doubles the rotation difference between gyro and attitudes.
 constexpr double kShown_s = 0.3, kShows = 2.0, kShowsBy = 0.02;
-/// Other quaternion conventions are tried only if the stated attitudes differ from the gyro by less than 30 % of the
+/// Gravity tests the quaternion convention only if the attitudes as stated agree with the gyro within 30 % of the
 /// rotation.
 constexpr double kAgreesAsStated = 0.3;
 constexpr double kNoFit = std::numeric_limits<double>::infinity();

@@ -46,8 +46,8 @@ template <class Fit>
 struct DelayedFit {
   Fit undelayed, delayed;
 
-  /// Returns the fit with a delay only if its difference is clearly below half of that without a delay, because one of
-  /// a few hundred delays fits better by chance.
+  /// A delay must clearly halve the rotation difference, because one of several hundred delays may fit better by
+  /// chance.
   const Fit& likely() const { return delayed.difference < 0.5 * undelayed.difference - 0.02 ? delayed : undelayed; }
 };
 
@@ -77,8 +77,8 @@ std::string delay_remedy(double delay_s);
 ///
 /// @param frames       Frames to which the attitudes may belong; the first is the user's choice.
 /// @param delay_max_s  Largest delay in either direction, searched in steps of 20 ms, then of 2 ms. With fewer than 20
-/// pairs of attitudes, or for `delay_max_s` = 0, no delay is searched. The cost of the comparison is O(N log N + pairs
-/// x delays): half a second for delays of up to 5 s.
+/// pairs of attitudes, or for `delay_max_s` = 0, no delay is searched. The search for a delay of up to 5 s takes half a
+/// second.
 TurningCheck check_turning(std::span<const TimedAttitude> attitudes, const std::vector<CandidateFrame>& frames,
                            const sim::ImuRecord& imu, double delay_max_s);
 

@@ -15,7 +15,7 @@ struct SlopeProfile {
   double height_m(double x_m) const;
 };
 
-/// LedgeProfile describes terraces below a level top at height 0: drops of equal height, vertical within `face_m`, each
+/// LedgeProfile describes terraces below a level top at height 0. Each drop has the horizontal length `face_m` and is
 /// followed by a sloping ledge.
 struct LedgeProfile {
   double edge_x_m = 0.0;  ///< x of the first drop
