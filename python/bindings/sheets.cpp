@@ -62,7 +62,7 @@ void bind_sheets(nb::module_& m) {
   m.def("lsm6dso", &sheets::lsm6dso, "STMicroelectronics LSM6DSO at 2000 deg/s and 16 g.");
   m.def("ouster_imu", &sheets::ouster_imu,
         "IMU inside an Ouster OS0 or OS1, in the default setting of 250 deg/s and 2 g.");
-  m.def("mid360_imu", &sheets::mid360_imu, "IMU inside a Livox Mid-360; its ranges are assumed.");
+  m.def("mid360_imu", &sheets::mid360_imu, "IMU inside a Livox Mid-360 at 2000 deg/s and 4 g.");
   m.def("rs16", &sheets::rs16, "RoboSense RS-16.");
   m.def("mid40", &sheets::mid40, "Livox Mid-40.");
   m.def("mid100", &sheets::mid100, "Livox Mid-100.");

@@ -97,7 +97,7 @@ ImuSheet mid360_imu() {
   return {.rate_hz = 200.0,
           .gyro_range_rad_s = 34.90658504,
           .accel_range_m_s2 = 39.2266,
-          .gyro_noise_rad_s_sqrt_hz = 6.632251e-05,
+          .gyro_noise_rad_s_sqrt_hz = 7.853982e-05,
           .accel_noise_m_s2_sqrt_hz = 0.000980665};
 }
 

@@ -75,7 +75,7 @@ ImuSheet mti3();
 ImuSheet lsm6dso();
 /// IMU inside an Ouster OS0 or OS1, in the default setting of 250 deg/s and 2 g.
 ImuSheet ouster_imu();
-/// IMU inside a Livox Mid-360; its ranges are assumed.
+/// IMU inside a Livox Mid-360 at 2000 deg/s and 4 g.
 ImuSheet mid360_imu();
 
 /// For programs that select a data sheet by name.
