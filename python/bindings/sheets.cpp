@@ -62,7 +62,12 @@ void bind_sheets(nb::module_& m) {
   m.def("lsm6dso", &sheets::lsm6dso, "STMicroelectronics LSM6DSO at 2000 deg/s and 16 g.");
   m.def("ouster_imu", &sheets::ouster_imu,
         "IMU inside an Ouster OS0 or OS1, in the default setting of 250 deg/s and 2 g.");
-  m.def("mid360_imu", &sheets::mid360_imu, "IMU inside a Livox Mid-360; its ranges are assumed.");
+  m.def("mid360_imu", &sheets::mid360_imu, "IMU inside a Livox Mid-360 at 2000 deg/s and 4 g.");
+  m.def("icm20601", &sheets::icm20601, "InvenSense ICM-20601 at 2000 deg/s and 32 g.");
+  m.def("icm20602", &sheets::icm20602, "InvenSense ICM-20602 at 2000 deg/s and 16 g.");
+  m.def("lsm6dsv320x", &sheets::lsm6dsv320x, "STMicroelectronics LSM6DSV320X at 4000 deg/s and 16 g.");
+  m.def("adis16405", &sheets::adis16405, "Analog Devices ADIS16405 at 300 deg/s and 18 g.");
+  m.def("iim42653", &sheets::iim42653, "InvenSense IIM-42653 at 4000 deg/s and 32 g.");
   m.def("rs16", &sheets::rs16, "RoboSense RS-16.");
   m.def("mid40", &sheets::mid40, "Livox Mid-40.");
   m.def("mid100", &sheets::mid100, "Livox Mid-100.");

@@ -97,15 +97,67 @@ ImuSheet mid360_imu() {
   return {.rate_hz = 200.0,
           .gyro_range_rad_s = 34.90658504,
           .accel_range_m_s2 = 39.2266,
-          .gyro_noise_rad_s_sqrt_hz = 6.632251e-05,
+          .gyro_noise_rad_s_sqrt_hz = 7.853982e-05,
           .accel_noise_m_s2_sqrt_hz = 0.000980665};
 }
 
+ImuSheet icm20601() {
+  return {.rate_hz = 100.0,
+          .gyro_range_rad_s = 34.90658504,
+          .accel_range_m_s2 = 313.8128,
+          .gyro_noise_rad_s_sqrt_hz = 0.0001745329,
+          .accel_noise_m_s2_sqrt_hz = 0.002941995};
+}
+
+ImuSheet icm20602() {
+  return {.rate_hz = 200.0,
+          .gyro_range_rad_s = 34.90658504,
+          .accel_range_m_s2 = 156.9064,
+          .gyro_noise_rad_s_sqrt_hz = 6.981317e-05,
+          .accel_noise_m_s2_sqrt_hz = 0.000980665};
+}
+
+ImuSheet lsm6dsv320x() {
+  return {.rate_hz = 250.0,
+          .gyro_range_rad_s = 69.81317008,
+          .accel_range_m_s2 = 156.9064,
+          .gyro_noise_rad_s_sqrt_hz = 6.632251e-05,
+          .accel_noise_m_s2_sqrt_hz = 0.000588399};
+}
+
+ImuSheet adis16405() {
+  return {.rate_hz = 500.0,
+          .gyro_range_rad_s = 5.235987756,
+          .accel_range_m_s2 = 176.5197,
+          .gyro_noise_rad_s_sqrt_hz = 0.0008726646,
+          .accel_noise_m_s2_sqrt_hz = 0.003333333};
+}
+
+ImuSheet iim42653() {
+  return {.rate_hz = 200.0,
+          .gyro_range_rad_s = 69.81317008,
+          .accel_range_m_s2 = 313.8128,
+          .gyro_noise_rad_s_sqrt_hz = 8.726646e-05,
+          .accel_noise_m_s2_sqrt_hz = 0.0006374322};
+}
+
 std::span<const std::pair<const char*, ImuSheet (*)()>> imus() {
-  static constexpr std::pair<const char*, ImuSheet (*)()> kAll[] = {
-      {"mti30", mti30},     {"vn100", vn100},           {"phidget1044", phidget1044}, {"mpu6050", mpu6050},
-      {"bmi088", bmi088},   {"icm20948", icm20948},     {"icm42688", icm42688},       {"mti3", mti3},
-      {"lsm6dso", lsm6dso}, {"ouster_imu", ouster_imu}, {"mid360_imu", mid360_imu}};
+  static constexpr std::pair<const char*, ImuSheet (*)()> kAll[] = {{"mti30", mti30},
+                                                                    {"vn100", vn100},
+                                                                    {"phidget1044", phidget1044},
+                                                                    {"mpu6050", mpu6050},
+                                                                    {"bmi088", bmi088},
+                                                                    {"icm20948", icm20948},
+                                                                    {"icm42688", icm42688},
+                                                                    {"mti3", mti3},
+                                                                    {"lsm6dso", lsm6dso},
+                                                                    {"ouster_imu", ouster_imu},
+                                                                    {"mid360_imu", mid360_imu},
+                                                                    {"icm20601", icm20601},
+                                                                    {"icm20602", icm20602},
+                                                                    {"lsm6dsv320x", lsm6dsv320x},
+                                                                    {"adis16405", adis16405},
+                                                                    {"iim42653", iim42653}};
   return kAll;
 }
 

@@ -1,11 +1,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Contains the data sheets of the devices that the simulation models. models/sensors/NAME.yaml has the source of each number."""
 from ._tumble import (
+    adis16405,
     bmi088,
     helios32,
+    icm20601,
+    icm20602,
     icm20948,
     icm42688,
+    iim42653,
     lsm6dso,
+    lsm6dsv320x,
     mid100,
     mid360,
     mid360_imu,
@@ -27,11 +32,16 @@ from ._tumble import (
 )
 
 __all__ = [
+    "adis16405",
     "bmi088",
     "helios32",
+    "icm20601",
+    "icm20602",
     "icm20948",
     "icm42688",
+    "iim42653",
     "lsm6dso",
+    "lsm6dsv320x",
     "mid100",
     "mid360",
     "mid360_imu",

@@ -75,8 +75,18 @@ ImuSheet mti3();
 ImuSheet lsm6dso();
 /// IMU inside an Ouster OS0 or OS1, in the default setting of 250 deg/s and 2 g.
 ImuSheet ouster_imu();
-/// IMU inside a Livox Mid-360; its ranges are assumed.
+/// IMU inside a Livox Mid-360 at 2000 deg/s and 4 g.
 ImuSheet mid360_imu();
+/// InvenSense ICM-20601 at 2000 deg/s and 32 g.
+ImuSheet icm20601();
+/// InvenSense ICM-20602 at 2000 deg/s and 16 g.
+ImuSheet icm20602();
+/// STMicroelectronics LSM6DSV320X at 4000 deg/s and 16 g.
+ImuSheet lsm6dsv320x();
+/// Analog Devices ADIS16405 at 300 deg/s and 18 g.
+ImuSheet adis16405();
+/// InvenSense IIM-42653 at 4000 deg/s and 32 g.
+ImuSheet iim42653();
 
 /// Returns the data sheets of all IMUs with their names, for programs that select a data sheet by name.
 std::span<const std::pair<const char*, ImuSheet (*)()>> imus();
