@@ -31,7 +31,7 @@ namespace tumble::scenarios::bridge {
 inline constexpr double kGapMaxS = 1.0, kAnyGapS = std::numeric_limits<double>::infinity();
 
 /// Real saturation limits exceed the stated range of a device (MTi-30: by a factor of 1.4), and a tilted saturation
-/// plane allows even larger readings.
+/// limit allows even larger readings.
 inline constexpr double kStatedRangesMax = OutlierFilter::kStatedRangesMax;
 
 inline constexpr double kWildShareMax = 0.01;

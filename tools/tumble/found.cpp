@@ -100,11 +100,11 @@ class Found {
     if (pose_stated) return add("pose of the lidar", pose_text(lidar.T_BL), kStated, kPoseOption);
     if (const auto& better = recording_.rotation.better_BL) {
       lidar.T_BL = *better;
-      return add(
-          "pose of the lidar",
-          fmt::format("{}: the attitude comes from the rotations of lidar and gyro, and the position is assumed 0",
-                      pose_text(lidar.T_BL)),
-          kMeasured, kPoseOption);
+      return add("pose of the lidar",
+                 fmt::format("{}: the lidar's attitude is estimated from the rotations of lidar and gyro, and its "
+                             "position is assumed 0",
+                             pose_text(lidar.T_BL)),
+                 kMeasured, kPoseOption);
     }
     add("pose of the lidar",
         "the lidar is assumed at the origin and in the axes of the body; the run calibrates its pose. Tracking may "

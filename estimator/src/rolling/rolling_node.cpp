@@ -91,7 +91,8 @@ RollingNominal start_nominal(const RollingParams& params, const Eigen::Quaternio
 void set_prior(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s, Covariance& P) {
   P.setZero();
   auto prior = P.diagonal();
-  // While a sphere is pushed, the force is not gravity. A rotating sphere may slip with its full rolling speed.
+  // While a sphere is pushed, the specific force differs from gravity. A rotating sphere may slip with its full rolling
+  // speed.
   const bool moves = starts_in_motion(rate_I_rad_s);
   const double tilt = moves ? kStartTilt_rad : 0.0, velocity = moves ? params.radius_m * rate_I_rad_s.norm() : 0.0;
   // The initial heading defines the world's x axis, so its prior variance is 0.

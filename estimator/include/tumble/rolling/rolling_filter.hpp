@@ -66,7 +66,7 @@ class RollingFilter {
     bool started_in_motion = false;
     std::int64_t gaps = 0;  ///< number of bridged gaps
     double gap_longest_s = 0.0;
-    // trajectory and constants about which all hypotheses are linearised
+    // The errors of all contact-mode hypotheses are linearised about the nominal trajectory and calibration.
     RollingNominal nominal;
     RollingIntegrals sums;
     ImuAverage average;  ///< average of the readings that are not yet processed

@@ -65,8 +65,8 @@ struct RateReport {
   bool calibration_at_prior = false;          ///< the rig constants were fixed at their prior
   std::array<std::optional<double>, 6> rail;  ///< saturation limits: gyro [rad/s], accelerometer [m/s^2]; empty: none
   std::array<bool, 6> rail_observed{};        ///< the limit was observed on this axis, not inferred from another axis
-  RailPlanes planes;                          ///< saturation planes of the gyro's sensing elements, where observed
-  RailPlanes accel_planes;                    ///< saturation planes of the accelerometer's sensing elements, in m/s^2
+  RailPlanes planes;                          ///< planes of the gyro's saturated readings, where observed
+  RailPlanes accel_planes;                    ///< planes of the accelerometer's saturated readings [m/s^2]
   KnownSensorErrors sensor_errors;
   double data_sheet_probability = 1.0, synchronous_probability = 1.0;  ///< see SensorErrorFit
   /// Standard deviation of a delay common to gyro and accelerometer [s]; 0 if the device agrees with its data sheet.
