@@ -149,7 +149,7 @@ def draws_with_one(recordings: dict[int, Recording]) -> list[int]:
 
 
 def draw_with_collisions(recordings: dict[int, Recording]) -> int:
-    """Returns the simulated run with most collisions between its first and last clipped sample; of equal runs, that with most clipped samples."""
+    """Returns the simulated run with the most collisions between its first and last clipped sample, and of equal runs, the run with the most clipped samples."""
     def collisions(seed: int) -> tuple[int, int]:
         recording = recordings[seed]
         clipped_s = recording.time_s[recording.clipped]

@@ -107,7 +107,7 @@ class Found {
                  kMeasured, kPoseOption);
     }
     add("pose of the lidar",
-        "the lidar is assumed at the origin and in the axes of the body; the run calibrates its pose. Tracking may "
+        "the lidar is assumed at the origin and in the axes of the body; mapping calibrates its pose. Tracking may "
         "fail if the error exceeds 1 deg or 5 cm",
         kAssumed, kPoseOption);
   }
@@ -202,12 +202,12 @@ class Found {
     const auto& agreement = recording_.rotation.primary;
     if (!agreement)
       return add("clock of the lidar",
-                 "the lidar's time stamps are unchanged; the run calibrates their offset to the IMU", kAssumed,
+                 "the lidar's time stamps are unchanged; mapping calibrates their offset to the IMU", kAssumed,
                  "--stamps");
     add("clock of the lidar",
         agreement->delay_s == 0.0
             ? std::string(
-                  "the lidar's clock agrees with the IMU's clock within about 10 ms; the run calibrates the offset")
+                  "the lidar's clock agrees with the IMU's clock within about 10 ms; mapping calibrates the offset")
             : fmt::format("the lidar's rotation follows the gyro's rotation {} s {}",
                           rounded(std::abs(agreement->delay_s)), agreement->delay_s > 0.0 ? "later" : "earlier"),
         kMeasured, "--stamps");

@@ -14,8 +14,8 @@ namespace {
 constexpr double kGravityWindow_s = 0.2;  // window over which the rotations of force and gyro are compared
 constexpr double kForceReading_s = 0.02;  // averaging time of the readings, so that the sample rate does not matter
 constexpr double kWindowGapMax_s = 0.1;   // an unmeasured rotation may hide in a longer gap
-constexpr double kChangeMax = 0.12;       // largest change of a steady force in a window, as a share of the force
-constexpr double kGravityNear = 0.25;     // directions are compared if force and gravity differ by less than this share
+constexpr double kChangeMax = 0.12;    // largest change of a steady force in a window, as a share of the specific force
+constexpr double kGravityNear = 0.25;  // directions are compared if force and gravity differ by less than this share
 // On pendulums and hand-held wands, the rotation of the measured gravity is 0.75 to 1.21 times the gyro's rotation.
 constexpr double kSlopeMin = 0.65, kSlopeMax = 1.5;
 constexpr double kRotationMin_rad2 = 0.5, kRotationMin_rad = 0.15;  // minimum rotation in total, and of a window

@@ -119,10 +119,10 @@ class RollingOdometry {
   /// kStampMax_ns, or the only IMU with readings has a frozen axis.
   ///
   /// A single wrong time stamp causes the loss of one sample. After a gap of more than a second between two samples,
-  /// add_imus() rejects the first sample with `gap`, and restarts the run with the second sample. If the clock steps
-  /// back, add_imus() rejects samples with `time_order` for 0.2 s, and then the estimation restarts. A restart finishes
-  /// the poses so far and continues at the newest pose, like reset(pose). Poses after a restart have the flag
-  /// `uncertain`, and their covariance includes the unknown motion during the gap.
+  /// add_imus() rejects the first sample with `gap`, and restarts with the second sample. If the clock steps back,
+  /// add_imus() rejects samples with `time_order` for 0.2 s, and then restarts. A restart finishes the poses so far and
+  /// continues at the newest pose, like reset(pose). Poses after a restart have the flag `uncertain`, and their
+  /// covariance includes the unknown motion during the gap.
   Status add_imus(std::span<const ImuSample> samples);
   /// Processes a sample of a sphere with one IMU. Returns `ok` or an error of add_imus().
   Status add_imu(const ImuSample& sample) { return add_imus({&sample, 1}); }
@@ -136,12 +136,12 @@ class RollingOdometry {
   /// The pose uses all data so far, and is empty before the first sample.
   std::optional<Pose> newest() const;
 
-  /// Returns the next pose in time order, once. If the lag is 0, the poses are live; otherwise the poses are smoothed
+  /// Returns the next pose in time order, once. If `lag_s` is 0, the poses are live; otherwise the poses are smoothed
   /// and `lag_s` old.
   std::optional<Pose> take();
 
-  /// Ends the run and smooths the remaining poses. After finish(), add_imus() rejects samples until reset(). Returns
-  /// `ok`, or the first error of the remaining samples. With kWholeRecording, returns `ok` or an error of
+  /// Ends the estimation and smooths the remaining poses. After finish(), add_imus() rejects samples until reset().
+  /// Returns `ok`, or the first error of the remaining samples. With kWholeRecording, returns `ok` or an error of
   /// merge_recordings().
   Status finish();
 

@@ -37,13 +37,13 @@ struct SweepScale;
 /// `lag_s` after the sweep's end. The report of the following sweep contains the final pose (`report.smoothed`), at
 /// most 0.3 s after the sweep's end at ten sweeps per second. Time stamps of poses are in the IMU's clock. The earliest
 /// sweep with enough points starts the map, and poses are reported only after the map has started. Start with at least
-/// half a second at rest, which determines the tilt. If the gyro's zero offset at rest exceeds 0.05 rad/s, the offset
-/// is subtracted and the run restarts, which needs a second at rest.
+/// half a second at rest, which determines the tilt. If the gyro's zero offset at rest exceeds 0.05 rad/s,
+/// TumblingOdometry subtracts the offset and restarts, which needs a second at rest.
 ///
 /// Some seconds after motion starts, SecondPass processes the first seconds of motion again with the calibration
-/// estimated so far. The run then continues with the map and pose of SecondPass; poses that were already reported are
-/// not changed. If no sweep arrives for a second, inertial integration continues, and take() returns a sweep without
-/// points.
+/// estimated so far. TumblingOdometry then continues with the map and pose of SecondPass; poses that were already
+/// reported are not changed. If no sweep arrives for a second, inertial integration continues, and take() returns a
+/// sweep without points.
 ///
 /// With `lag_s` = kWholeRecording, add_imu() and add_sweep() store the data, and finish() estimates rates, poses and
 /// map from the whole recording. finish() estimates the rates with RegimeSmoother, checks the IMU, and repeats the
@@ -58,8 +58,8 @@ struct SweepScale;
 /// ten metres. A call needs at most 64 KiB of stack.
 ///
 /// TumblingOdometry starts no threads, uses no files and prints nothing. A copy of a TumblingOdometry contains the
-/// complete state, so the copy can continue the run. The limitations of RegimeStream and LidarInertialOdometry apply to
-/// TumblingOdometry.
+/// complete state, so the copy can process the following data. The limitations of RegimeStream and
+/// LidarInertialOdometry apply to TumblingOdometry.
 class TumblingOdometry {
  public:
   using Params = TumblingParams;
@@ -212,7 +212,7 @@ class TumblingOdometry {
   /// at every switch-on. If at least 100 points of the saved map have normals, load() calls use_map() with the saved
   /// map. The new run starts at the saved pose and localises the robot around this pose. Until the robot is localised,
   /// health() reports the missing localisation. If the robot may have moved by more than a metre, call reset(pose)
-  /// after load(). With kWholeRecording, the run starts at the saved pose with a new map.
+  /// after load(). With kWholeRecording, the new run starts at the saved pose with a new map.
   ///
   /// `last_pose` receives the saved pose with its time in the clock of the saved run, or is empty. On error, the object
   /// is unchanged, and the returned status names the field, the saved value and the bound. The error is `too_few`

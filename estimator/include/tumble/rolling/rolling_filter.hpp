@@ -24,8 +24,9 @@ namespace tumble {
 /// While the sphere is at rest, the reported position is constant, unless another hypothesis becomes the most probable
 /// one. Corrections of the position at rest are applied when motion resumes.
 ///
-/// In a gap of up to gap_max_s between samples, the rate is interpolated, the force is unknown, and the covariance
-/// grows. While the gyro is saturated, the rolling constraint is not used, and the covariance of the position grows.
+/// In a gap of up to gap_max_s between samples, the rate is interpolated, the specific force is unknown, and the
+/// covariance grows. While the gyro is saturated, the rolling constraint is not used, and the covariance of the
+/// position grows.
 ///
 /// RollingFilter assumes a rigid, unmoving floor. The heading drifts. The state needs 430 KiB of memory.
 class RollingFilter {

@@ -87,11 +87,11 @@ struct RateReport {
 ///
 /// RateSmoother estimates the rate and angular acceleration of each sample, and the rig constants of the run
 /// (RigConstants). Unclipped gyro readings measure the rate, and clipped readings give a lower bound on the rate, for
-/// any number of axes. In flight, the specific force and Euler's equation determine the rate. During contact, the force
-/// and Euler's equation have lower weights. Between samples, the angular jerk is white noise, whose density increases
-/// with the contact force. The equations are in docs/maths/rate_smoother.md.
+/// any number of axes. In flight, the specific force and Euler's equation determine the rate. During contact, the
+/// specific force and Euler's equation have lower weights. Between samples, the angular jerk is white noise, whose
+/// density increases with the contact force. The equations are in docs/maths/rate_smoother.md.
 ///
-/// A Gauss-Newton solver starts from the rates of a published method (Saave). An iteration costs O(N), including the
+/// A Gauss-Newton solver starts from the rates of the published method Saave. An iteration costs O(N), including the
 /// covariance.
 ///
 /// RateSmoother also estimates the constant errors of gyro and accelerometer (SensorErrors), and repeats the
