@@ -22,7 +22,7 @@ constexpr double kRotationMin_rad2 = 0.5, kRotationMin_rad = 0.15;  // minimum r
 // A push, or the centripetal force in flight, may rotate the measured force for a few windows of 0.2 s.
 constexpr double kRotatedWindowsMin = 5.0;
 // A fault of the gyro's scale is found only if a scaled rotation leaves at most this fraction of the unexplained
-// rotation. Pushes of the body resemble a slope (I20) from 0 to 1, so such slopes have the smaller limit.
+// rotation. Pushes resemble a slope from 0 to 1, imu_merge.md (I20), so such slopes have the smaller limit.
 constexpr double kScaledResidualMax = 0.75, kReducedResidualMax = 0.33;
 constexpr double kFrozen_s = 1.0, kRepetitionRatio = 10.0;
 constexpr double kUnmeasuredMin = 0.5;      // share of gravity's rotation that a gyro without changing readings leaves
