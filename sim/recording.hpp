@@ -69,7 +69,7 @@ struct Truth {
   std::vector<Eigen::Vector3d> f_B_m_s2;  ///< at the centre of mass, step mean
   std::vector<ContactLabel> label;
   std::vector<ContactTruth> contacts;                ///< any number per physics sample
-  Eigen::Vector3d p_BG_m = Eigen::Vector3d::Zero();  ///< geometric centre in B (sphere)
+  Eigen::Vector3d p_BG_m = Eigen::Vector3d::Zero();  ///< geometric centre of a sphere, in body axes
   std::vector<std::string> surfaces;                 ///< name of surface id i: "terrain", "rock_3", "trunk_7"
   std::vector<ImuTruth> imus;                        ///< in the order of Sensors::imus
   std::vector<LidarTruth> lidars;

@@ -24,7 +24,7 @@ struct ImuRecord {
   std::vector<Eigen::Vector3d> gyro_rad_s;
   std::vector<Eigen::Vector3d> accel_m_s2;        ///< specific force
   std::vector<std::uint8_t> clip_flags;           ///< gyro x y z, accel x y z
-  std::vector<Eigen::Vector3d> magnetic_field_t;  ///< in I, one per sample
+  std::vector<Eigen::Vector3d> magnetic_field_t;  ///< in IMU axes, one per sample
   /// Undisturbed magnetic field of the Earth at the place of the recording; 0: unknown
   Eigen::Vector3d earth_field_W_t = Eigen::Vector3d::Zero();
 };

@@ -61,7 +61,7 @@ void bind_rolling_smoother(nb::module_& m) {
             self.run([&](Streaming<RollingSmoother>& at) { at.filter.finish(*at.state, out.rows); });
             return out;
           },
-          "Ends the run and returns the remaining poses.")
+          "Ends the estimation and returns the remaining poses.")
       .def_static("parameters", [] { return list_fields(RollingSmoother::Params{}); });
   bind_copy<Object>(bound);
 }
@@ -123,7 +123,7 @@ void bind_filter(nb::module_& m) {
       .def_prop_ro(
           "started_in_motion",
           [](Object& self) { return self.run([](Live& at) { return at.state->started_in_motion; }); },
-          "True if the run started in motion; the initial attitude then has a larger uncertainty")
+          "True if the sphere moved at the first samples; the initial attitude then has a larger uncertainty")
       .def_static("parameters", [] { return list_fields(RollingFilter::Params{}); });
   bind_copy<Object>(bound);
 }
@@ -289,9 +289,7 @@ void bind_rolling_odometry(nb::module_& m) {
           [](Object& self) {
             require(self.run([](BoundRollingOdometry& rolling) { return rolling.odometry.finish(); }));
           },
-          "Ends the run and smooths the poses within the lag, or of the whole recording, which take() returns. reset() "
-          "starts\n"
-          "the next run.")
+          "Ends the estimation and smooths the remaining poses, which take() returns. reset() starts the next run.")
       .def(
           "reset", [](Object& self) { self.run([](BoundRollingOdometry& rolling) { rolling.odometry.reset(); }); },
           "Starts a new run, stationary at the origin.")

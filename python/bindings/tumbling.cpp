@@ -152,7 +152,7 @@ void bind_accessors(Class& bound) {
           [](BoundTumblingOdometry& self) {
             return rates_of(self.run([](TumblingOdometry& odometry) { return odometry.smoothed_rate(); }));
           },
-          "Returns the latest rate of the fixed-lag smoother, lag_s old; no row while the lag fills.")
+          "Returns the latest rate of the fixed-lag smoother, lag_s old; no row during the first lag_s.")
       .def(
           "rig",
           [](BoundTumblingOdometry& self) {
@@ -327,7 +327,7 @@ void bind_tumbling(nb::module_& m) {
           "the map at the start, with its standard deviations per axis and of the heading; None: the whole map is "
           "searched.\n"
           "extend=False keeps the map unchanged. Until report.in_prior_map is true, poses are in a local frame, and\n"
-          "health() reports that the run is not localised.")
+          "health() reports that the robot is not localised.")
       .def(
           "take",
           [](BoundTumblingOdometry& self) {

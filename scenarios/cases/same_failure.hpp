@@ -7,8 +7,8 @@
 
 namespace tumble::scenarios {
 
-/// A run for which the failure's metric has no value counts as a success, for example a run without clipping for an
-/// error at clipped samples.
+/// A run without a value of the failure's metric counts as a success. For example, the rate error at clipped samples
+/// has no value in a run without clipping.
 class SameFailure {
  public:
   SameFailure(const Failure& failure, const Outcome& outcome);

@@ -29,7 +29,7 @@ struct ClippedPlane {
 };
 ClippedPlane plane_of(const Eigen::Matrix3d& axes, const Eigen::Vector3d& offset, double rail, int j);
 
-/// Fits the saturation plane by least squares to the samples during which only the sensing element j was saturated.
+/// Fits a plane by least squares to the samples during which only the sensing element j was saturated.
 inline constexpr int kFewestClipped = 10;
 ClippedPlane fit_clipped_plane(const SensedTriad& triad, int j, int& samples);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Saturation planes of two real gyros are the reference for the simulated saturation. The program
-// tests/bench/rail_measures fits the planes to recordings of the data set RepoIMU (Szczesna et al., ICCVG 2016).
+// The saturation limits of two real gyros are the reference for the simulated saturation. The program
+// tests/bench/rail_measures fits planes to the saturated readings of the data set RepoIMU (Szczesna et al., ICCVG
+// 2016).
 //
 // The plane of the wand's x axis (limit 7.3 rad/s) is fitted to the RepoIMU recordings Test05 and Test10, trials 1 to
 // 3.
@@ -78,17 +79,16 @@ void show_plane(const DataSheet& sheet, const MeasuredPlane& plane, const RealRa
     entries.push_back({row, subject, law, unit, value, measured.low, measured.high, note});
   };
   const char* slope =
-      "a gyro simulated with the sensing elements of a real gyro has the measured tilted rail: slope to another axis";
+      "saturated readings of a simulated gyro are on a plane with the slope to another axis that a real gyro has";
   add("real_rail_slope", name + ", " + axis_name(plane.element + 1), slope, "1", fitted.first_slope, plane.first_slope);
   add("real_rail_slope", name + ", " + axis_name(plane.element + 2), slope, "1", fitted.second_slope,
       plane.second_slope);
   add("real_rail_distance", name,
-      "a gyro simulated with the sensing elements of a real gyro has the measured tilted rail: distance from zero",
-      "rad/s", fitted.distance, plane.distance_rad_s);
+      "saturated readings of a simulated gyro are on a plane with the distance from zero that a real gyro has", "rad/s",
+      fitted.distance, plane.distance_rad_s);
   add("real_rail_offset", name,
-      "a gyro simulated with the sensing elements of a real gyro has the measured tilted rail: midpoint between "
-      "upper and lower rail",
-      "rad/s", fitted.offset, plane.offset_rad_s);
+      "the midpoint between upper and lower saturation limit of a simulated gyro equals that of a real gyro", "rad/s",
+      fitted.offset, plane.offset_rad_s);
 }
 
 struct DrawnPlanes {
@@ -132,14 +132,15 @@ std::vector<CertificateEntry> certify_real_rails(const CertificateInput& input, 
     const DataSheet sheet = load_data_sheet(input.data, name);
     if (sheet.sensor_kind != "imu") continue;
     const DrawnPlanes drawn = drawn_planes(sheet, setup);
-    entries.push_back({"real_rail_slope_drawn", name + " gyro",
-                       "the tilted rails of simulated gyros spread as far as those of real gyros: largest real slope / "
-                       "standard deviation of the simulated slopes",
-                       "1", slope / drawn.slope, 0.0, kCut, ""});
+    entries.push_back(
+        {"real_rail_slope_drawn", name + " gyro",
+         "tilt of the saturation limits: largest slope of a real gyro / standard deviation of the slopes of "
+         "simulated gyros",
+         "1", slope / drawn.slope, 0.0, kCut, ""});
     entries.push_back(
         {"real_rail_offset_drawn", name + " gyro",
-         "the tilted rails of simulated gyros spread as far as those of real gyros: largest real offset / "
-         "standard deviation of the simulated offsets",
+         "midpoint of upper and lower saturation limit: largest value of a real gyro / standard deviation over "
+         "simulated gyros",
          "1", offset_rad_s / drawn.offset_rad_s, 0.0, kCut, ""});
   }
   return entries;

@@ -92,7 +92,7 @@ struct TiltedRailSetup {
 };
 std::vector<CertificateEntry> certify_tilted_rail(const CertificateInput& input, const TiltedRailSetup& setup = {});
 
-/// The real-gyro check compares the saturation planes of two real gyros with those of simulated gyros.
+/// The real-gyro check compares the saturation limits of two real gyros with those of simulated gyros.
 struct RealRailsSetup {
   double tilt_factor = 1.0;         ///< on the slopes; 0: aligned elements
   double added_tilt = 0.0;          ///< added to each slope

@@ -69,17 +69,17 @@ std::vector<CertificateEntry> certify_tilted_rail(const CertificateInput& input,
   for (const auto& [subject, errors] : {std::pair{"mti30 gyro", gyro}, std::pair{"mti30 accel", accel}}) {
     const bool enough = errors.samples >= kFewestClipped && errors.samples < kMany;
     const std::string note =
-        enough ? ""
-               : "the fit of a tilted rail needs at least 10 samples per sign that only this sensing element clips";
+        enough ? "" : "fewer than 10 samples per sign in which only this sensing element is saturated";
     const double none = std::nan("");
     entries.push_back(
         {"tilted_rail_slope", subject,
-         "clipped readings of a simulated IMU are on the tilted rails of its sensing elements: maximum slope error",
-         "1", enough ? errors.slope : none, 0.0, 1e-9, note});
-    entries.push_back({"tilted_rail_distance", subject,
-                       "clipped readings of a simulated IMU are on the tilted rails of its sensing elements: maximum "
-                       "error of distance and offset, relative to the saturation limit",
-                       "1", enough ? errors.distance_share : none, 0.0, 1e-9, note});
+         "the saturated readings of a sensing element are on its simulated plane: maximum error of the slopes", "1",
+         enough ? errors.slope : none, 0.0, 1e-9, note});
+    entries.push_back(
+        {"tilted_rail_distance", subject,
+         "the saturated readings of a sensing element are on its simulated plane: maximum error of distance "
+         "and offset, relative to the saturation limit",
+         "1", enough ? errors.distance_share : none, 0.0, 1e-9, note});
   }
   return entries;
 }

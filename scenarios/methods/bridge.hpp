@@ -19,19 +19,19 @@
 /// The libraries `sim` and `estimator` have these conventions:
 ///
 /// - In both, the time of a sample is the end of its averaging window [ns].
-/// - In both, the rate is that of I relative to W, in the axes of I [rad/s].
-/// - In both, the specific force is in the axes of I [m/s^2], with +g upward at rest.
+/// - In both, the rate is the rate of the IMU relative to the world, in IMU axes [rad/s].
+/// - In both, the specific force is in IMU axes [m/s^2], with +g upward at rest.
 /// - The clip flags in sim are bits 0 to 5 for gyro x y z and accelerometer x y z; the estimator uses ClipFlag.
-/// - The IMU mounting in sim is T_BI with B at the centre of mass; the estimator uses the lever arm from B to I in axes
-///   of I.
-/// - The lidar mounting in sim is T_BL; the estimator uses T_IL.
-/// - In both, a lidar point is in metres in L, with the time offset from the sweep's start [ns].
+/// - The IMU mounting in sim is T_BI, with the body frame B at the centre of mass. The estimator uses the lever arm
+///   from the centre of mass to the IMU, in IMU axes.
+/// - The lidar pose in sim is relative to the body (T_BL). The estimator uses the pose relative to the IMU (T_IL).
+/// - In both, a lidar point is in metres in the lidar frame, with the time offset from the sweep's start [ns].
 namespace tumble::scenarios::bridge {
 
 inline constexpr double kGapMaxS = 1.0, kAnyGapS = std::numeric_limits<double>::infinity();
 
 /// Real saturation limits exceed the stated range of a device (MTi-30: by a factor of 1.4), and a tilted saturation
-/// plane allows even larger readings.
+/// limit allows even larger readings.
 inline constexpr double kStatedRangesMax = OutlierFilter::kStatedRangesMax;
 
 inline constexpr double kWildShareMax = 0.01;

@@ -57,7 +57,7 @@ Method rate_saave() {
   info.kind = Kind::rate;
   info.doc =
       "Estimates the clipped axis from the centripetal force in free flight, then applies a smoother with white noise "
-      "on jerk. docs/papers/rig.md compares its errors with the paper.";
+      "on jerk. docs/papers/rig.md compares the errors with those of the ICRA 2024 paper.";
   info.source = "Deschenes et al., Saturation-Aware Angular Velocity Estimation, ICRA 2024";
   info.settings = {&saave_settings()};
   info.robots = {"rig", "pendulum"};

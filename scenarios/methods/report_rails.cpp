@@ -30,7 +30,7 @@ void report_plane(std::size_t j, const RailPlane& plane, std::map<std::string, d
     health[begin + "slope_" + pair] = plane.row[static_cast<Eigen::Index>(along)];
     health[begin + "slope_sigma_" + pair] = sigma(static_cast<Eigen::Index>(i - 1));
   }
-  // The offset of a tilted saturation plane requires readings at its limits of both signs.
+  // The offset of a tilted plane of saturated readings requires readings at its limits of both signs.
   if (!plane.seen(-1) || !plane.seen(1)) return;
   health[begin + "offset_" + axis + "_rad_s"] = plane.offset_rad_s;
   health[begin + "offset_sigma_" + axis + "_rad_s"] = sigma(3);

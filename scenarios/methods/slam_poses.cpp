@@ -5,7 +5,8 @@
 #include "scenarios/methods/sweep_log.hpp"
 #include "tumble/mapping/detail/voxel_map.hpp"
 
-/// Published methods build maps of a rolling sphere from the poses of a position method, without registration.
+/// The methods in slam_poses.cpp build maps of a rolling sphere from the poses of a position method, without
+/// registration.
 namespace tumble::scenarios {
 
 namespace {
@@ -137,7 +138,7 @@ Method slam_poses_rolling() {
 Method slam_poses_autogain_fusion() {
   MethodInfo info;
   info.name = "poses_autogain_fusion";
-  info.doc = "Builds the map with the poses of position/autogain_fusion (published method), without registration.";
+  info.doc = "Builds the map with the poses of position/autogain_fusion (MFI 2021 paper), without registration.";
   info.source = "Zevering et al., IMU-based pose-estimation for spherical robots, IEEE MFI 2021";
   return posed(std::move(info), autogain_fusion(), run_poses_autogain_fusion);
 }

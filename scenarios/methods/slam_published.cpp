@@ -26,14 +26,15 @@ Estimate run_slam_published(const sim::Sensors& sensors, const sim::Values& para
 }  // namespace
 
 Method slam_published() {
-  return rig_slam({.name = "published",
-                   .doc = "Runs the published mapping method with the constants of its launch files: rates of "
-                          "rate/saave, Madgwick attitude, accelerometer odometry corrected by the registration, time "
-                          "weighting, and trimmed point-to-plane registration. Parameters switch the known faults of "
-                          "the method on and off. The complete map stays in memory.",
-                   .source = "Deschenes et al., ICRA 2024, and the authors' launch files",
-                   .settings = {&published_settings(), &slam_published_rate_settings()}},
-                  run_slam_published);
+  return rig_slam(
+      {.name = "published",
+       .doc = "Runs the mapping method of the ICRA 2024 paper with the constants of its launch files: rates of "
+              "rate/saave, Madgwick attitude, accelerometer odometry corrected by the registration, time "
+              "weighting, and trimmed point-to-plane registration. Parameters switch the known faults of "
+              "the method on and off. The complete map stays in memory.",
+       .source = "Deschenes et al., ICRA 2024, and launch files of its authors",
+       .settings = {&published_settings(), &slam_published_rate_settings()}},
+      run_slam_published);
 }
 
 }  // namespace tumble::scenarios

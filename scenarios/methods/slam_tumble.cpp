@@ -251,12 +251,13 @@ Estimate run_live(const sim::Sensors& sensors, const sim::Values& parameters, co
 }  // namespace
 
 Method slam_tumble() {
-  return rig_slam({.name = "tumble",
-                   .doc = "Runs TumblingOdometry (public API) on the whole recording: uses the rates of rate/tumble, "
-                          "and repeats the mapping until the calibration has converged.",
-                   .ours = true,
-                   .settings = {&whole_settings()}},
-                  run_whole);
+  return rig_slam(
+      {.name = "tumble",
+       .doc = "Runs TumblingOdometry (public API) on the whole recording, and repeats the mapping until the "
+              "calibration has converged.",
+       .ours = true,
+       .settings = {&whole_settings()}},
+      run_whole);
 }
 
 Method slam_tumble_lag() {

@@ -300,7 +300,7 @@ std::string attitude_problem(const Eigen::Quaterniond& q_WB, std::size_t) {
 
 std::string label_problem(sim::ContactLabel label, std::size_t) {
   if (label <= sim::ContactLabel::slide) return "";
-  return fmt::format("label {} is unknown; labels are 0 to 3", static_cast<int>(label));
+  return fmt::format("contact label {} is unknown; contact labels are 0 to 3", static_cast<int>(label));
 }
 
 template <class Truth>

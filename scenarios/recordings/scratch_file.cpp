@@ -33,7 +33,7 @@ ScratchFile::ScratchFile(std::filesystem::path folder) : folder_(std::move(folde
   if (descriptor_ >= 0) return;
   std::string name = (folder_ / ".tumble_scratch.XXXXXX").string();
   descriptor_ = mkostemp(name.data(), O_CLOEXEC);
-  if (descriptor_ < 0) fail(folder_, "cannot create a temporary file in this folder", errno);
+  if (descriptor_ < 0) fail(folder_, "cannot create a file in the folder for temporary files", errno);
   unlink(name.c_str());
 }
 
@@ -45,7 +45,7 @@ void ScratchFile::write(std::uint64_t at, std::span<const std::byte> bytes) {
   while (!bytes.empty()) {
     const ssize_t written = pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(at));
     if (written < 0 && errno == EINTR) continue;
-    if (written < 0) fail(folder_, "cannot write temporary data to a file in this folder", errno);
+    if (written < 0) fail(folder_, "cannot write to a file in the folder for temporary files", errno);
     bytes = bytes.subspan(static_cast<std::size_t>(written));
     at += static_cast<std::uint64_t>(written);
     bytes_ = std::max(bytes_, at);
@@ -56,7 +56,7 @@ void ScratchFile::read(std::uint64_t at, std::span<std::byte> bytes) const {
   while (!bytes.empty()) {
     const ssize_t got = pread(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(at));
     if (got < 0 && errno == EINTR) continue;
-    if (got <= 0) fail(folder_, "cannot read the temporary file in this folder", got < 0 ? errno : EIO);
+    if (got <= 0) fail(folder_, "cannot read a file in the folder for temporary files", got < 0 ? errno : EIO);
     bytes = bytes.subspan(static_cast<std::size_t>(got));
     at += static_cast<std::uint64_t>(got);
   }

@@ -22,8 +22,8 @@ const char* symbol(Unit unit);
 /// signed values).
 enum class Compared { by_ratio, by_difference };
 
-/// The full table contains all metrics. Gates compare metrics of place `held` and `headline`; the report starts with
-/// metrics of place `headline`.
+/// Place states where a metric appears. Gates compare `held` and `headline` metrics, and the report page starts with
+/// `headline` metrics. `tumble report --all` prints all metrics.
 enum class Place { detail, held, headline };
 
 inline constexpr double kNoTarget = std::numeric_limits<double>::quiet_NaN();

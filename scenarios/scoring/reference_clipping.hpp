@@ -17,16 +17,16 @@ struct ReferenceRail {
   Eigen::Vector2d slopes = Eigen::Vector2d::Zero();
 };
 
-/// Estimates the saturation planes of the three axes for both signs from a reference of the rate, independently of the
-/// estimator.
+/// Estimates the plane of the saturated readings of each axis and sign from a reference of the rate, independently of
+/// the estimator.
 ///
 /// Gyro readings within 5 % of the largest reading of their axis and sign may be saturated. The reference confirms the
 /// saturation if the reference rate exceeds the gyro reading by 2 % of the largest reading, and by four times the
 /// median difference between gyro and reference. A saturation limit exists if five readings, and half of the possibly
 /// saturated readings, are confirmed.
 ///
-/// A least-squares fit to the confirmed readings gives the saturation plane. The fit assumes slopes of 0 +- 0.03, and
-/// readings that scatter by 0.02 rad/s. The fit is repeated with the readings within 2 % of the saturation plane.
+/// A plane is fitted to the confirmed readings by least squares. The prior of the slopes is 0 +- 0.03, and the readings
+/// are assumed to scatter by 0.02 rad/s. The plane is fitted again to the readings within 2 % of the plane.
 std::array<ReferenceRail, 6> reference_rails(std::span<const Eigen::Vector3d> reading,
                                              std::span<const Eigen::Vector3d> reference);
 

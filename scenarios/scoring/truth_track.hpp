@@ -26,7 +26,7 @@ class TruthTrack {
   bool covers(std::int64_t time_ns) const;
   bool covers_attitude(std::int64_t time_ns) const;
 
-  /// Returns pose and velocity of the constructor's `frame` in W; NaN where the position is unknown.
+  /// Returns pose and velocity of the constructor's `frame` in the world; NaN where the position is unknown.
   PoseState pose(std::int64_t time_ns) const;
   /// Returns the rate of the constructor's `frame` in its own axes [rad/s]; NaN where the rate is unknown.
   Eigen::Vector3d rate_rad_s(std::int64_t time_ns) const;
@@ -60,8 +60,8 @@ struct PairedPose {
   bool rest = false;
 };
 
-/// Alignment moves the estimate's world to W by position and heading only. Gravity fixes roll and pitch, so an initial
-/// tilt error counts as an error.
+/// Alignment moves the world frame of an estimate to the true world frame by position and heading only. Gravity fixes
+/// roll and pitch, so an initial tilt error counts as an error.
 struct Alignment {
   double yaw_rad = 0;
   Eigen::Vector3d translation_m = Eigen::Vector3d::Zero();

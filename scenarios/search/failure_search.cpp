@@ -228,7 +228,7 @@ class Report {
   }
 
   void find_likely() {
-    std::map<std::size_t, std::size_t> nearest;  // by family
+    std::map<std::size_t, std::size_t> nearest;  // by initial draw
     for (std::size_t i = 0; i < draws().size(); ++i) {
       if (!(draws()[i].score > bound_)) continue;
       const auto [at, added] = nearest.emplace(draws()[i].family, i);

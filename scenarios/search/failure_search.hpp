@@ -51,9 +51,9 @@ struct FoundFailure {
 struct SearchResult {
   SplittingResult splitting;
   std::size_t failures = 0, rejected = 0;  ///< runs that fail, and runs that could not be simulated
-  std::vector<FoundFailure> likely;        ///< the failure with the smallest distance of each family, smallest first
-  FoundFailure worst;              ///< run with the largest score, of equal runs that with the smallest distance
-  std::vector<InputShift> shifts;  ///< of the failures in the last population, or without failures of all its members
+  std::vector<FoundFailure> likely;  ///< per initial draw, the failing copy with the smallest distance, smallest first
+  FoundFailure worst;                ///< run with the largest score, of equal runs that with the smallest distance
+  std::vector<InputShift> shifts;    ///< of the failures in the last population, or without failures of all its members
 };
 
 /// Replaces each random parameter of the scenario by its value at the standard normal number in `normals` (number_at).

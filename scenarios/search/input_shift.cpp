@@ -14,7 +14,8 @@ namespace tumble::scenarios {
 
 namespace {
 
-/// Averages a parameter's standard normal numbers within each family, then over all families; also counts families.
+/// Averages the standard normal number of a parameter over the copies of each initial draw, then over the initial
+/// draws. Also returns the number of initial draws.
 std::pair<double, std::size_t> family_mean(std::span<const ScoredPoint> draws, std::size_t number) {
   std::map<std::size_t, std::vector<double>> families;
   for (const ScoredPoint& draw : draws) families[draw.family].push_back(draw.point.normals[number]);

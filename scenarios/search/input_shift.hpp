@@ -21,8 +21,9 @@ struct InputShift {
   double scenario_low = 0.0, scenario_median = 0.0, scenario_high = 0.0;  ///< those of the scenario's distribution
 };
 
-/// Returns the InputShift of all parameters, largest shift first. Draws with a common ancestor (family) depend on each
-/// other, so `shift` is the mean of the family means, equation (S31) of statistics.md. `draws` must not be empty.
+/// Compares the values of each random parameter in the draws with the scenario's distribution. The parameter with the
+/// largest shift comes first. Copies of one initial draw depend on each other, so `shift` is averaged over the copies
+/// of each initial draw, and then over the initial draws: equation (S31) of statistics.md. `draws` must not be empty.
 std::vector<InputShift> input_shifts(std::span<const DrawnNumber> numbers, std::span<const ScoredPoint> draws);
 
 }  // namespace tumble::scenarios

@@ -45,7 +45,7 @@ struct SplittingOptions {
 struct ScoredPoint {
   SplittingPoint point;
   double score = 0.0;
-  std::size_t family = 0;  ///< index of the first draw from which the draw descends
+  std::size_t family = 0;  ///< index of the initial draw that was copied and changed to this draw
 };
 
 /// SplittingLevel describes the population after all members up to a score were replaced.
@@ -53,7 +53,7 @@ struct SplittingLevel {
   double score = 0.0;        ///< each member of the population exceeds this score
   Interval probability{};    ///< probability that a random draw exceeds the score
   std::size_t runs = 0;      ///< number of scored draws so far
-  std::size_t families = 0;  ///< number of first draws from which the population descends
+  std::size_t families = 0;  ///< number of initial draws that have copies in the population
   std::size_t moves = 0;     ///< number of moves of each new member
   double accepted = 0.0;     ///< fraction of accepted moves
 };
@@ -76,9 +76,9 @@ struct SplittingResult {
 /// the draws exceed the bound.
 ///
 /// The step size of the Metropolis moves increases if more than 40 % of the moves are accepted. Each copy makes enough
-/// moves that 90 % of the copies accept a new seed. The 95 % interval considers common ancestors of draws. Equal
-/// options give equal results for deterministic scores. Scores may be infinite, but not NaN. Throws BadInput for
-/// invalid options or NaN scores.
+/// moves that 90 % of the copies accept a new seed. The 95 % interval considers that copies of one initial draw depend
+/// on each other. Equal options give equal results for deterministic scores. Scores may be infinite, but not NaN.
+/// Throws BadInput for invalid options or NaN scores.
 SplittingResult split(const SplittingOptions& options, const ScorePoints& score);
 
 }  // namespace tumble::scenarios

@@ -19,7 +19,7 @@ std::map<std::size_t, double> sizes_of(std::span<const std::size_t> families) {
   return sizes;
 }
 
-/// Returns the number of ordered pairs of draws without a common ancestor.
+/// Returns the number of ordered pairs of draws that are copies of different initial draws.
 double unrelated_pairs(std::span<const std::size_t> families) {
   const auto n = static_cast<double>(families.size());
   double related = 0.0;
@@ -66,7 +66,7 @@ Interval SplittingEstimate::of_failure(std::span<const std::size_t> families,
     return share_interval(static_cast<std::int64_t>(failing.size()), static_cast<std::int64_t>(population_));
   if (2 * failing.size() >= population_) return interval(failing, kRisk);
   // If fewer than half of the draws fail, the estimate is not log-normal. Two intervals then share the error risk; the
-  // interval of the failing fraction counts families instead of draws.
+  // interval of the failing fraction counts all copies of one initial draw as one draw.
   const Interval level = interval(families, 0.5 * kRisk);
   const auto n = static_cast<double>(sizes_of(families).size());
   const double share = static_cast<double>(failing.size()) / static_cast<double>(population_), count = share * n;

@@ -21,8 +21,8 @@ class SplittingEstimate {
   /// Returns the probability that a random draw exceeds the level, with its 95 % interval.
   Interval of_level(std::span<const std::size_t> families) const;
 
-  /// Returns the probability of a failure with its 95 % interval. `families` contains ScoredPoint::family of all draws
-  /// in the population, and `failing` contains the families of the failing draws.
+  /// Returns the probability of a failure with its 95 % interval. `families` contains ScoredPoint::family (the initial
+  /// draw) of all draws in the population, and `failing` contains ScoredPoint::family of the failing draws.
   Interval of_failure(std::span<const std::size_t> families, std::span<const std::size_t> failing) const;
 
  private:

@@ -16,7 +16,7 @@ struct Spread {
   std::string quantity;  ///< "largest rate"
   std::string unit;
   std::string published;  ///< empty if none
-  /// Published range in `unit`: equal limits mean one number, NaN means no published value
+  /// Limits of the published values of the quantity, in `unit`; equal limits: one value; NaN: no published value
   double published_low = std::numeric_limits<double>::quiet_NaN();
   double published_high = std::numeric_limits<double>::quiet_NaN();
   double factor = 1.0;         ///< conversion from SI to `unit`

@@ -36,7 +36,7 @@ struct World {
   std::vector<FrictionPatch> patches;
   double half_extent_m = 0;  ///< limit of |x| and |y|
   Eigen::Vector3d start_W_m = Eigen::Vector3d::Zero();
-  /// True centre of mass in the robot's design frame, in B axes
+  /// True centre of mass in the robot's design frame, in body axes
   Eigen::Vector3d com_offset_m = Eigen::Vector3d::Zero();
   double sphere_radius_m = 0;  ///< 0 if the robot is not a sphere
 };

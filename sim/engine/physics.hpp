@@ -20,8 +20,8 @@ class Physics {
 
   double step_s() const { return world_.model->opt.timestep; }
   BodyState state() const;
-  /// For a robot on joints, set_state() sets only the time, and throws InvalidSituation if the pose differs from the
-  /// current pose.
+  /// If joints attach the robot to the world, set_state() sets only the time, and throws InvalidSituation if the pose
+  /// differs from the current pose.
   void set_state(const BodyState& state);
 
   double joint_rad(const std::string& name) const;

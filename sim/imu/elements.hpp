@@ -18,7 +18,7 @@ namespace tumble::sim {
 ///   of the sensing element.
 /// - A saturated sensing element also changes the readings of the other axes, in proportion to its saturation deficit.
 ///
-/// Saturation planes of two real gyros have slopes of up to 0.05 and offsets of up to 0.14 rad/s
+/// The planes of the saturated readings of two real gyros have slopes of up to 0.05 and offsets of up to 0.14 rad/s
 /// (scenarios/certificate/real_rails.cpp). Elements assumes that the device knows M and o exactly, and that o does not
 /// drift within a recording.
 class Elements {

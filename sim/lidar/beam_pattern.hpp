@@ -58,9 +58,9 @@ class BeamPattern {
 };
 
 /// SpinningPattern is the firing pattern of a spinning lidar, in which a column of lasers rotates about the z axis. The
-/// azimuth of a spinning lidar is zero (along x of L) at the start of each sweep, and increases clockwise seen from
-/// above. Channel c of sequence k fires at the time k P + c p, with the sequence period P and the firing period p.
-/// Timing and geometry are from the RoboSense RS-16 User's Guide v4.0 and the published driver.
+/// azimuth of a spinning lidar is zero (along the lidar's x axis) at the start of each sweep, and increases clockwise
+/// seen from above. Channel c of sequence k fires at the time k P + c p, with the sequence period P and the firing
+/// period p. Timing and geometry are from the RoboSense RS-16 User's Guide v4.0 and the published driver.
 class SpinningPattern final : public BeamPattern {
  public:
   explicit SpinningPattern(const Values& values);

@@ -43,8 +43,8 @@ enum class HeightFieldSides { open, closed };
 /// Visual geoms (contype and conaffinity zero) and invisible geoms (alpha zero, as in mj_ray) are omitted.
 SceneGeometry static_geometry(const engine::World& world, HeightFieldSides sides);
 
-/// Primitives that contain the origin of L (the housing of the lidar, or a shell around it) are omitted, because they
-/// are transparent.
+/// Primitives that contain the origin of the lidar frame (the housing of the lidar, or a shell around it) are omitted,
+/// because they are transparent.
 SceneGeometry cage_geometry(const engine::World& world, const Eigen::Isometry3d& T_BL);
 
 Eigen::Isometry3d geom_pose(const mjData& data, int geom);

@@ -10,7 +10,7 @@
 namespace tumble::sim {
 
 struct HandHeldPose {
-  Eigen::Vector3d p_m;  ///< centre of mass, in W
+  Eigen::Vector3d p_m;  ///< centre of mass, in world axes
   Eigen::Quaterniond q;
 };
 

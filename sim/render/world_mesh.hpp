@@ -20,8 +20,8 @@ struct MeshPart {
   int rows = 0, columns = 0;
 };
 
-/// Returns the visible parts of the world in frame W, without ceilings and near walls that would hide the inside. Round
-/// parts have `segments` facets about their axis, capsules half as many.
+/// Returns the visible parts of the world in world axes, without ceilings and near walls that would hide the inside.
+/// Round parts have `segments` facets about their axis, capsules half as many.
 std::vector<MeshPart> world_mesh(const BuiltSituation& built, int segments = 12);
 
 std::vector<MeshPart> robot_mesh(const BuiltSituation& built, int segments = 20);

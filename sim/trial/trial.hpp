@@ -33,7 +33,7 @@ class Trial {
   double gravity_m_s2() const;
   Eigen::Matrix3d inertia_B_kg_m2() const;  ///< about the centre of mass
   double sphere_radius_m() const;           ///< 0: no sphere
-  Eigen::Vector3d p_BG_m() const;           ///< geometric centre in B
+  Eigen::Vector3d p_BG_m() const;           ///< geometric centre in body axes
   double half_extent_m() const;             ///< limit of |x| and |y|
 
   BodyState state() const;

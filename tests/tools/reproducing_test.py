@@ -144,7 +144,7 @@ class RigPage(Case):
 
     def test_draws_that_clip_two_elements_are_told_apart(self):
         self.assertEqual(rig.draws_with_one({1: self.recording(1), 2: self.recording(2), 3: self.recording(3)}), [1])
-        self.assertIn("1 of 2 simulated runs that are most similar to the paper", self.text(overlap=0.8))
+        self.assertIn("1 of 2 simulated runs that are most similar to the ICRA paper", self.text(overlap=0.8))
 
 
 class Legs(unittest.TestCase):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes the pages of docs/papers: tables with the paper's numbers next to those of this project. The module also finds stale lines."""
+"""Writes the pages of docs/papers: tables with the numbers of a paper next to those of this project. The module also finds stale lines."""
 from __future__ import annotations
 
 import math

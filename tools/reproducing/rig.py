@@ -102,14 +102,14 @@ def page(runs: Runs, recordings: dict[int, Recording], errors: dict, exact: dict
 
 
 def unseen_share(recordings: dict[int, Recording]) -> float:
-    """Returns the fraction of the clipped samples in which no axis exceeds the published threshold."""
+    """Returns the fraction of the clipped samples in which no axis exceeds the default threshold of Saave."""
     highest = np.concatenate([np.abs(r.gyro_rad_s[r.clipped]).max(axis=1) for r in recordings.values()])
     return float(np.mean(highest <= DEFAULT_THRESHOLD_RAD_S)) if len(highest) else 0.0
 
 
 def table(lag: str) -> Table:
     """Returns a table with one column per method. `lag` is the lag of the results in the last column."""
-    return Table(["quantity", "paper", *(LABELS[name] for name in RATES[:-1]), f"ours, {lag} lag"])
+    return Table(["quantity", "ICRA paper", *(LABELS[name] for name in RATES[:-1]), f"ours, {lag} lag"])
 
 
 def highest_values(recordings: dict[int, Recording]) -> tuple[list[float], list[float]]:
@@ -149,7 +149,7 @@ def draws_with_one(recordings: dict[int, Recording]) -> list[int]:
 
 
 def draw_with_collisions(recordings: dict[int, Recording]) -> int:
-    """Returns the simulated run with most collisions between its first and last clipped sample; of equal runs, that with most clipped samples."""
+    """Returns the simulated run with the most collisions between its first and last clipped sample, and of equal runs, the run with the most clipped samples."""
     def collisions(seed: int) -> tuple[int, int]:
         recording = recordings[seed]
         clipped_s = recording.time_s[recording.clipped]
@@ -285,45 +285,44 @@ def draw_map(runs: Runs, maps: Scores, path: pathlib.Path) -> None:
 ERROR_COLOURS = [(0.0, "#316ec8"), (0.1, "#5abe8c"), (0.25, "#f5e15a"), (0.5, "#f58c32"), (1.0, "#d71928")]
 SCALE_PX = 26
 
-PAGE = """# The tumbling rig: the paper next to our simulation
+PAGE = """# The tumbling rig: the ICRA paper next to our simulation
 
 The authors of *Saturation-Aware Angular Velocity Estimation* (Deschênes et al., ICRA 2024) push a lidar rig down a
-hill until its gyro saturates. The published method recovers the rate about the saturated axis from the
+hill until its gyro saturates. The method Saave of the ICRA paper recovers the rate about the saturated axis from the
 accelerometer. `tools/reproduce papers --only rig` writes this page from {draws} simulated runs of the scenario
 `hill` (seeds {first} to {last}).
 
 {headline}
-- In the column *paper*, the first of two numbers is for the raw gyro, and the second for the published method.
-- The column *raw gyro* shows the published mapping method with clipped gyro readings (`rate/raw`, `slam/icp_raw`).
-- The column *published* shows the published method with the constants of the authors' launch files (`rate/saave`,
-  `slam/published`).
-- The published method treats gyro readings above a saturation threshold of 10.45 rad/s as clipped. In {unseen} of our
-  clipped samples, no axis exceeds 10.45 rad/s, because our simulated gyros have different saturation limits. The
-  column *threshold 10.0 rad/s* shows the published method with `{threshold}`.
+- In the column *ICRA paper*, the first of two numbers is for the raw gyro, and the second for Saave.
+- The column *raw gyro* shows the mapping of the ICRA paper with clipped gyro readings (`rate/raw`, `slam/icp_raw`).
+- The column *published* shows the rates of Saave (`rate/saave`), and the mapping of the ICRA paper with these rates
+  (`slam/published`). The constants come from launch files of the ICRA paper's authors.
+- Saave treats gyro readings above a saturation threshold of 10.45 rad/s as clipped. In {unseen} of our clipped
+  samples, no axis exceeds 10.45 rad/s, because our simulated gyros have different saturation limits. The column
+  *published, threshold 10.0 rad/s* shows Saave with `{threshold}`.
 - The column *ours, whole recording* shows the methods `rate/tumble` and `slam/tumble`. The last column shows
   `rate/tumble_lag` with a lag of 0.2 s, and `slam/tumble_lag` with a lag of 0.3 s.
 - The gyro clips in {clipping} simulated runs, in {clipped} samples. The highest angular speed is {top_speed} rad/s
-  (median over the runs: {speed} rad/s; paper: up to 18.6 rad/s). The highest acceleration is {top_force} m/s² (median
-  over the runs: {force} m/s²; paper: up to 157.8 m/s²).
+  (median over the runs: {speed} rad/s; ICRA paper: up to 18.6 rad/s). The highest acceleration is {top_force} m/s²
+  (median over the runs: {force} m/s²; ICRA paper: up to 157.8 m/s²).
 - The median rate error covers only clipped samples. The end error is the error of the motion from the sixth
-  registered sweep to the last sweep, as in the paper.
+  registered sweep to the last sweep, as in the ICRA paper.
 - The map overlap is the share of map points within 0.25 m of the true surface. A map fails if its overlap is below
-  85 %, as in the paper.
-- In medians and means, a failed run counts with the largest error and a map overlap of 0. The paper limits rotation
-  errors to 90°, but our rotation errors reach 180°.
+  85 %, as in the ICRA paper.
+- In medians and means, a failed run counts with the largest error and a map overlap of 0. The ICRA paper limits
+  rotation errors to 90°, but our rotation errors reach 180°.
 
 ## What is reproduced
 
-- With an exact centre of mass, one clipped gyro axis and a saturation threshold of 10.0 rad/s, the published rate
-  method reduces the rate error nearly as much as in the paper.
-- The published mapping method reduces the median localisation errors at least as much as in the paper. On the
-  simulated runs most similar to the paper, the published method also raises the map overlap as in the paper.
-- Mapping with the published rate recovery sometimes fails in our simulation, whose fastest motions exceed the motions
-  of the paper.
+- With an exact centre of mass, one clipped gyro axis and a saturation threshold of 10.0 rad/s, Saave reduces the rate
+  error nearly as much as in the ICRA paper.
+- Mapping with Saave reduces the median localisation errors at least as much as in the ICRA paper. On the simulated
+  runs most similar to the ICRA paper, mapping with Saave also raises the map overlap.
+- Mapping with Saave sometimes fails in our simulation, whose fastest motions exceed the motions of the ICRA paper.
 
-## What differs from the paper
+## What differs from the ICRA paper
 
-| condition | paper | our simulation |
+| condition | ICRA paper | our simulation |
 | --- | --- | --- |
 | motion | one hill | slopes of 20 to 45° |
 | gyro | one device, 10.5 rad/s | one device per run |
@@ -341,14 +340,14 @@ accelerometer. `tools/reproduce papers --only rig` writes this page from {draws}
 
 ![rate through a tumble](rig_rate.png)
 
-The figure shows the simulated run with the most collisions while the gyro clips; grey areas mark ground contact.
+The figure shows the simulated run with the most collisions while the gyro clips.
 
 ## Rate error with and without recovery
 
 {rates}
 The table shows the median rate error for samples with one clipped sensing element of the gyro ({one} of the clipped
 samples), and with two or three ({more}). In the rows *inexact*, the assumed centre of mass has an error of up to 20 mm.
-The published method corrects only one axis.
+Saave recovers the rate about only one clipped axis per sample.
 
 ![distribution of the rate error](rig_rate_errors.png)
 
@@ -358,22 +357,21 @@ The published method corrects only one axis.
 
 The figure of localisation errors shows a failed run as an error of 10 m and 180°.
 
-The next table covers only the {alike_draws} of {draws} simulated runs that are most similar to the paper: at most 2 %
-of their clipped samples have two or three clipped sensing elements.
+The next table covers only the {alike_draws} of {draws} simulated runs that are most similar to the ICRA paper: at most
+2 % of their clipped samples have two or three clipped sensing elements.
 
 {alike}
 ## Map outliers
 
 ![maps coloured by error](rig_maps.png)
 
-The figure shows maps of seed {worst} from the raw gyro, the published method, and our method with the whole recording.
-The colour of a map point shows its distance to the true surface.
+The figure shows maps of seed {worst} from the raw gyro, from Saave, and from our method with the whole recording.
 
 ## Angular speed against acceleration
 
 ![angular speed against acceleration](rig_density.png)
 
-In the figure, a rectangle marks the highest values of other data sets according to the paper: 4.7 rad/s and 30.7 m/s².
-For each acceleration step of 5 m/s², two lines show the highest angular speeds in the public data sets BROAD (Laidig et
-al., Data 2021, CC BY 4.0) and AirbrakesV2 (MIT).
+In the figure, a rectangle marks the highest values of other data sets according to the ICRA paper: 4.7 rad/s and
+30.7 m/s². For each acceleration step of 5 m/s², two lines show the highest angular speeds in the public data sets BROAD
+(Laidig et al., Data 2021, CC BY 4.0) and AirbrakesV2 (MIT).
 """

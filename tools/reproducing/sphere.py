@@ -18,9 +18,9 @@ HERE = pathlib.Path(__file__).resolve().parent
 MADGWICK, COMPLEMENTARY, AUTOGAIN, OURS = ATTITUDES = ("attitude/madgwick", "attitude/complementary", "attitude/autogain",
                                                        "attitude/tumble")
 ROTATION, FUSED, BATCH, LIVE = "position/rolling", "position/autogain_fusion", "position/tumble", "position/tumble_live"
-WIDE = f"{FUSED} with the diameter"  # the authors' code uses the diameter of the sphere, but the equation uses the radius
+WIDE = f"{FUSED} with the diameter"  # the code of the MFI paper uses the sphere's diameter, but the paper's equation uses the radius
 POSITIONS = (ROTATION, FUSED, WIDE, BATCH, LIVE)
-# the paper's gain; and the paper's weight of 0.02 per sample, converted at our 250 Hz to a time constant: -dt / ln(1 - 0.02)
+# gain of the MFI paper; its weight of 0.02 per sample, converted at our 250 Hz to a time constant: -dt / ln(1 - 0.02)
 SETTINGS = {MADGWICK: f"{MADGWICK}.gain_rad_s=0.2", COMPLEMENTARY: f"{COMPLEMENTARY}.tau_s=0.198", WIDE: f"{FUSED}.radius_m=0.29"}
 MAPS = ("slam/poses_rolling", "slam/poses_autogain_fusion", "slam/poses_tumble", "slam/rolling_prior")
 LABELS = dict(zip(ATTITUDES + POSITIONS + MAPS, (
@@ -29,11 +29,11 @@ LABELS = dict(zip(ATTITUDES + POSITIONS + MAPS, (
     "rotation alone", "published fusion", "ours, IMU alone", "ours, IMU and lidar")))
 COLOURS = dict(zip(ATTITUDES + POSITIONS, (pictures.RAW, "tab:green", pictures.PUBLISHED, pictures.OURS,
                                            pictures.RAW, pictures.PUBLISHED, "tab:olive", pictures.OURS, pictures.LIVE)))
-SLOW, FAST = "slow_roll", "roll"  # scenario with the speed of the paper, and scenario of the catalogue
+SLOW, FAST = "slow_roll", "roll"  # scenario with the speed of the MFI paper, and scenario of the catalogue
 SLIP, SLIDE, FAST_SLIP = "slip_l", "slide_l", "slip"
 BELOW_M = 0.1  # points farther below the floor are errors of the map, not noise of the lidar
 MAP_DRAWS = 8
-TRACKER_HZ = 120.0  # rate of the paper's optical tracking, at which the paper computes the derivative
+TRACKER_HZ = 120.0  # rate of the optical tracker in the MFI paper, at which the paper computes the derivative
 SETTLING = 75  # number of omitted samples at the start and at the end of a standstill, while the filters settle
 MOVING_RAD_S = 0.05
 DRAWN_STEP_DEG = 1e-5  # smaller steps are drawn at this value
@@ -61,7 +61,7 @@ def reproduce(runs: Runs, folder: pathlib.Path, check: bool) -> list[str]:
 def situation(runs: Runs, scenario: str, seed: int) -> tuple[pathlib.Path, Callable[[str], pathlib.Path]]:
     """Returns the recording of one simulated run, and a function that returns the folder of a method's estimate.
 
-    Runs of catalogue scenarios come from the sweeps. Runs of the scenario files in this folder are simulated one by one.
+    Runs of catalogue scenarios come from the sweeps. Runs of the scenario files in tools/reproducing are simulated one by one.
     """
     own = HERE / f"{scenario}.yaml"
     kept = runs.folder / f"sphere_{scenario}" / str(seed) if own.is_file() else runs.kept(f"sphere_{scenario}", scenario, seed)
@@ -91,7 +91,7 @@ class Turning:
     mean_rate_rad_s: float  # mean rate while the sphere moves
 
     def at_tracker(self, method: str) -> tuple[np.ndarray, np.ndarray]:
-        """Returns times in s and angles to the truth in degrees while the sphere moves, at the sample rate of the paper's tracker."""
+        """Returns times in s and angles to the truth in degrees while the sphere moves, at the sample rate of the optical tracker in the MFI paper."""
         time_s = self.time_s[self.moving]
         grid = np.arange(time_s[0], time_s[-1], 1 / TRACKER_HZ)
         return grid, np.interp(grid, time_s, self.distance_deg[method][self.moving])
@@ -181,7 +181,7 @@ def page(runs: Runs, turns: dict[str, list[Turning]], legs: dict[str, list[Leg]]
 
 
 def jitter_table(steps: dict[str, np.ndarray]) -> Table:
-    table = Table(["quantity", "paper", *(LABELS[m] for m in ATTITUDES)])
+    table = Table(["quantity", "MFI paper", *(LABELS[m] for m in ATTITUDES)])
     table.add("rms step at standstill", "0.229° (Madgwick), 0.0084° (complementary)",
               *(number(np.degrees(rms(np.linalg.norm(steps[m], axis=1)))) + "°" for m in ATTITUDES))
     return table
@@ -194,7 +194,7 @@ def lag_1(parts: list[np.ndarray]) -> float:
 
 def distance_table(turns: dict[str, list[Turning]]) -> Table:
     methods = (MADGWICK, AUTOGAIN, OURS)
-    table = Table(["quantity", "paper, Madgwick", "paper, Autogain", *(f"`{name}`, {LABELS[m]}" for name in turns for m in methods)])
+    table = Table(["quantity", "MFI paper, Madgwick", "MFI paper, Autogain", *(f"`{name}`, {LABELS[m]}" for name in turns for m in methods)])
     at = {(name, m): [t.at_tracker(m)[1] for t in draws] for name, draws in turns.items() for m in methods}
     for name, madgwick, autogain, measure, unit in (
             ("mean distance", "1.35", "1.29", lambda d: float(d.mean()), "°"),
@@ -208,7 +208,7 @@ def distance_table(turns: dict[str, list[Turning]]) -> Table:
 
 
 def leg_table(legs: dict[str, list[Leg]]) -> Table:
-    table = Table(["quantity", "paper", *(LABELS[m] for m in POSITIONS)])
+    table = Table(["quantity", "MFI paper", *(LABELS[m] for m in POSITIONS)])
     printed_slip = ("1.52 m; 1.13 m", "1.47 m; 0.93 m", "−10 to +10 %", "all")
     printed_slide = ("0.81 m; 1.02 m", "0.48 m; 0.46 m", "-", "1 of 2")
     for scenario, printed in ((SLIP, printed_slip), (SLIDE, printed_slide)):
@@ -228,7 +228,7 @@ def leg_errors(legs: list[Leg], method: str) -> list[float]:
 
 
 def room_table(maps: dict[int, dict[str, np.ndarray]]) -> Table:
-    table = Table(["quantity", "paper", *(LABELS[m] for m in MAPS)])
+    table = Table(["quantity", "MFI paper", *(LABELS[m] for m in MAPS)])
     below = {m: sum(int(np.sum(points[m][:, 2] < -BELOW_M)) for points in maps.values()) for m in MAPS}
     total = {m: sum(len(points[m]) for points in maps.values()) for m in MAPS}
     table.add(f"map points below −{BELOW_M} m", "not counted",
@@ -306,27 +306,26 @@ def draw_map(maps: dict[int, dict[str, np.ndarray]], path: pathlib.Path) -> None
     pictures.save(figure, path)
 
 
-PAGE = """# The rolling sphere: the paper next to our simulation
+PAGE = """# The rolling sphere: the MFI paper next to our simulation
 
 The authors of *IMU-Based Pose-Estimation for Spherical Robots with Limited Resources* (Zevering et al., IEEE MFI
-2021) roll a sphere with a diameter of 29 cm by hand. The published attitude filter Autogain switches between
-Madgwick's filter and a complementary filter. The published position filter fuses the rolling velocity with the
-integrated acceleration. `tools/reproduce papers --only sphere` writes this page from {draws} simulated runs of
-each scenario (seeds {first} to {last}). The numbers for the paper's figures come from data files published by the
-authors.
+2021) roll a sphere with a diameter of 29 cm by hand. The attitude filter Autogain of the MFI paper switches between
+Madgwick's filter and a complementary filter. The position filter of the MFI paper fuses the rolling velocity with
+the integrated acceleration. `tools/reproduce papers --only sphere` writes this page from {draws} simulated runs of
+each scenario (seeds {first} to {last}). The numbers for figures of the MFI paper come from data files of its authors.
 
 ## What is reproduced
 
 - At standstill, the attitude of Madgwick's filter jumps by more than ten times the attitude steps of the complementary
-  filter, in the paper and in our simulation.
-- At the pace of the paper (scenario `slow_roll`), Autogain and Madgwick's filter have similar attitude errors, but the
-  attitude error of Autogain changes more slowly.
+  filter, in the MFI paper and in our simulation.
+- At the pace of the MFI paper (scenario `slow_roll`), Autogain and Madgwick's filter have similar attitude errors, but
+  the attitude error of Autogain changes more slowly.
 - In the faster scenario `roll`, Autogain has nearly the errors of Madgwick's filter, because Autogain applies only
   Madgwick's correction above 2.1 rad/s.
 
-## What differs from the paper
+## What differs from the MFI paper
 
-| condition | paper | our simulation |
+| condition | MFI paper | our simulation |
 | --- | --- | --- |
 | published methods | three averaged gyros, 125 Hz | first IMU, 250 Hz |
 | our methods | - | all three IMUs, 250 Hz |
@@ -340,20 +339,21 @@ authors.
 ## Jitter at standstill: Madgwick against complementary
 
 {jitter}
-An attitude step is the rotation of the estimated attitude between two successive samples (figure 2 of the paper). An
-attitude step of Madgwick's filter is at most twice the gain times the sample time: 0.092° at our sample time of 4 ms,
-and 0.229° at 10 ms. Successive attitude steps of Madgwick's filter have a correlation of {lag1} in our simulation, and
-−0.83 in the paper's data. A correlation near −1 means that Madgwick's filter alternates between two attitudes.
+An attitude step is the rotation of the estimated attitude between two successive samples (figure 2 of the MFI
+paper). An attitude step of Madgwick's filter is at most twice the gain times the sample time: 0.092° at our sample time
+of 4 ms, and 0.229° at 10 ms. Successive attitude steps of Madgwick's filter have a correlation of {lag1} in our
+simulation, and −0.83 in the MFI paper's data. A correlation near −1 means that Madgwick's filter alternates between two
+attitudes.
 
 ![steps at standstill](sphere_jitter.png)
 
 ## Autogain against Madgwick: distance to the reference and its derivative
 
-The *distance* is the angle between estimated and true attitude (figures 5 and 6 of the paper). A *step* is the change
-of the attitude distance from sample to sample at 120 Hz. A *second difference* is the change between successive steps.
-Each cell is a median over the simulated runs. The mean angular rate is {slow} rad/s in `slow_roll`, {fast} rad/s in `roll`,
-and 0.56 rad/s in a log of the paper's authors. The paper's total variation of the distance includes noise of the
-optical tracker.
+The *distance* is the angle between estimated and true attitude (figures 5 and 6 of the MFI paper). A *step* is the
+change of the attitude distance from sample to sample at 120 Hz. A *second difference* is the change between successive
+steps. Each cell is a median over the simulated runs. The mean angular rate is {slow} rad/s in `slow_roll`, {fast} rad/s
+in `roll`, and 0.56 rad/s in a log of the MFI paper's authors. The total variation of the distance in the MFI paper
+includes noise of the optical tracker.
 
 {distance}
 ![distance to the truth](sphere_distance.png)
@@ -363,16 +363,18 @@ The figure of attitude distances shows the first simulated run of the scenario `
 ## The L-shaped path of 1 m × 1 m with slip and with slide
 
 {ways}
-- In the column *paper*, the first of two lengths comes from rotation alone and the second from the published fusion;
-  single values come from the published fusion.
-- The rows `slip_l` reproduce figure 7 of the paper, and the rows `slide_l` reproduce figure 8. The medians
-  of the true lengths of first and second leg are {true_legs}.
-- On slippery patches of the scenario `slip_l`, the sphere spins 1.5 to 2.8 times faster than during rolling
-  without slip. On slippery patches of the scenario `slide_l`, a hand slows the rotation to at most 0.7 times the
-  rate of rolling without slip.
-- The column *published fusion* uses the sphere's radius of 0.145 m. The column *published fusion, radius 0.29 m* uses
-  the diameter as radius, as the authors' code does. While the velocity from the accelerometer is near zero, the
-  published fusion halves the rolling velocity. A radius of 0.29 m partly cancels this error.
+- In the column *MFI paper*, the first of two lengths comes from rotation alone. The second length, or a single value,
+  comes from the position filter of the MFI paper.
+- The scenario `slip_l` is an L-shaped path with slip, as in figure 7 of the MFI paper: on slippery patches, the sphere
+  spins 1.5 to 2.8 times faster than during rolling without slip.
+- The scenario `slide_l` is an L-shaped path with sliding, as in figure 8 of the MFI paper: on slippery patches, a hand
+  slows the rotation to at most 0.7 times the rate of rolling without slip.
+- The medians of the true lengths of first and second leg are
+  {true_legs}.
+- The column *published fusion* shows the position filter of the MFI paper with the sphere's radius of 0.145 m. The
+  column *published fusion, radius 0.29 m* uses the sphere's diameter as radius, like the code of the MFI paper.
+- While the velocity from the accelerometer is near zero, the position filter of the MFI paper halves the rolling
+  velocity. The doubled radius of 0.29 m partly cancels the halving of the rolling velocity.
 
 ![paths with slip](sphere_slip.png)
 
@@ -380,8 +382,9 @@ The figure of attitude distances shows the first simulated run of the scenario `
 
 ![errors of the legs](sphere_legs.png)
 
-The figures of paths show three simulated runs of `slip_l` and of `slide_l` from above. The figure of leg errors
-also shows the scenario `slip`, in which the sphere rolls 1 m in 2 to 5 s. The paper's sphere rolls 1 m in 5 to 9 s.
+The figures of paths show three simulated L-shaped paths with slip, and three with sliding, from above. The figure of
+leg errors also shows the scenario `slip`, in which the sphere rolls 1 m in 2 to 5 s. In the MFI paper, the sphere rolls
+1 m in 5 to 9 s.
 
 ## The map of a room
 

@@ -49,7 +49,7 @@ std::vector<scenarios::MethodPointer> methods_of(const BenchOptions& options) {
   for (const scenarios::MethodPointer& each : methods)
     if (each->info.kind != methods.front()->info.kind)
       throw BadInput(
-          fmt::format("{}/{} and {}/{} are methods of two kinds; all methods of a bench must have the same kind",
+          fmt::format("{}/{} and {}/{} are methods of two kinds; all methods of a benchmark must have the same kind",
                       to_string(each->info.kind), each->info.name, to_string(methods.front()->info.kind),
                       methods.front()->info.name));
   return methods;
@@ -207,7 +207,7 @@ Action declare_bench(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<BenchOptions>();
   verb.add("METHOD", options->methods,
            "runs this method: NAME.yaml or NAME.py of an external method, or the name of a method; several methods "
-           "must have the same kind")
+           "must have the same kind (rate, attitude, position or slam)")
       .required();
   verb.add("--suite", options->suite,
            "runs this suite, which must list its simulated runs [default: the standard suite of the method's kind]");

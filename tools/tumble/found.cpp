@@ -100,14 +100,14 @@ class Found {
     if (pose_stated) return add("pose of the lidar", pose_text(lidar.T_BL), kStated, kPoseOption);
     if (const auto& better = recording_.rotation.better_BL) {
       lidar.T_BL = *better;
-      return add(
-          "pose of the lidar",
-          fmt::format("{}: the attitude comes from the rotations of lidar and gyro, and the position is assumed 0",
-                      pose_text(lidar.T_BL)),
-          kMeasured, kPoseOption);
+      return add("pose of the lidar",
+                 fmt::format("{}: the lidar's attitude is estimated from the rotations of lidar and gyro, and its "
+                             "position is assumed 0",
+                             pose_text(lidar.T_BL)),
+                 kMeasured, kPoseOption);
     }
     add("pose of the lidar",
-        "the lidar is assumed at the origin and in the axes of the body; the run calibrates its pose. Tracking may "
+        "the lidar is assumed at the origin and in the axes of the body; mapping calibrates its pose. Tracking may "
         "fail if the error exceeds 1 deg or 5 cm",
         kAssumed, kPoseOption);
   }
@@ -202,12 +202,12 @@ class Found {
     const auto& agreement = recording_.rotation.primary;
     if (!agreement)
       return add("clock of the lidar",
-                 "the lidar's time stamps are unchanged; the run calibrates their offset to the IMU", kAssumed,
+                 "the lidar's time stamps are unchanged; mapping calibrates their offset to the IMU", kAssumed,
                  "--stamps");
     add("clock of the lidar",
         agreement->delay_s == 0.0
             ? std::string(
-                  "the lidar's clock agrees with the IMU's clock within about 10 ms; the run calibrates the offset")
+                  "the lidar's clock agrees with the IMU's clock within about 10 ms; mapping calibrates the offset")
             : fmt::format("the lidar's rotation follows the gyro's rotation {} s {}",
                           rounded(std::abs(agreement->delay_s)), agreement->delay_s > 0.0 ? "later" : "earlier"),
         kMeasured, "--stamps");

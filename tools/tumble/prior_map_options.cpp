@@ -67,9 +67,10 @@ std::string localisation_text(const PriorMapOptions& options, const scenarios::E
   const auto first = std::find_if(estimate.sweeps.begin(), estimate.sweeps.end(),
                                   [](const SweepReport& sweep) { return sweep.in_prior_map; });
   if (first == estimate.sweeps.end())
-    return fmt::format("{}: the run is not localised in this map; poses are in a local frame", file);
-  return fmt::format("{}: the run is localised in this map; poses are in the frame of the map from sweep {} of {}",
-                     file, first - estimate.sweeps.begin() + 1, estimate.sweeps.size());
+    return fmt::format("{}: the recording is not localised in this map; poses are in a local frame", file);
+  return fmt::format(
+      "{}: the recording is localised in this map; poses are in the frame of the map from sweep {} of {}", file,
+      first - estimate.sweeps.begin() + 1, estimate.sweeps.size());
 }
 
 }  // namespace tumble::tools

@@ -180,11 +180,13 @@ int search(const Session& session, const SearchVerbOptions& options) {
 
 Action declare_search(VerbOptions& verb, const Session& session) {
   auto options = std::make_shared<SearchVerbOptions>();
-  verb.add("SUITE", options->suite, "searches all scenarios of this suite or suite file, or only this scenario")
+  verb.add("SUITE", options->suite,
+           "searches for failures in all scenarios of this suite or suite file, or in this scenario")
       .required()
       .check(a_suite(session));
   verb.add("--scenario", options->scenarios,
-           "searches only this scenario of the suite; repeat the option for more scenarios [default: all]")
+           "searches for failures only in this scenario of the suite; repeat the option for more scenarios [default: "
+           "all]")
       .one_at_a_time();
   verb.add("--method", options->method, "names the method whose failures are searched").required();
   verb.add(

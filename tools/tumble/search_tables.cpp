@@ -35,7 +35,7 @@ Table probability_table(const ShownSearch& shown) {
 
 Table levels_table(const ShownSearch& shown) {
   Table table(fmt::format("{}: levels of {}", shown.scenario, shown.goal.metric),
-              {"level", "probability", "95 % interval", "runs", "families", "moves", "accepted"});
+              {"level", "probability", "95 % interval", "runs", "initial runs", "moves", "accepted"});
   for (const SplittingLevel& level : shown.result.splitting.levels) {
     table.add_row({number_text(shown.goal.value_at(level.score)), number_text(level.probability.value),
                    interval_text(level.probability), std::to_string(level.runs), std::to_string(level.families),

@@ -22,7 +22,7 @@ int side(const ImuSample& sample, Triad triad, std::size_t j) {
   return reading_of(sample, triad)[static_cast<Eigen::Index>(j)] < 0.0 ? -1 : 1;
 }
 
-// Saturated readings are on the saturation plane, rails.md (R55), or have the device's saturation flag.
+// A reading counts as saturated if it is at or beyond a plane of `rail`, rails.md (R55), or has the device's clip flag.
 bool at_rail(const ImuSample& sample, Triad triad, const RailPlane& rail, std::size_t j) {
   const Eigen::Vector3d& reading = reading_of(sample, triad);
   return (sample.device_clip_flags >> (first_channel(triad) + j) & 1u) != 0 || rail.holds(reading, -1) ||
@@ -74,7 +74,7 @@ bool are_upright(std::span<const Eigen::Vector3d> readings, const RailPlanes& pl
     const double plateau = rails.channels[first_channel(triad) + j].rail;
     if (rail && has_unequal_levels(*rail)) return false;
     if (rail && plateau > 0.0) {
-      // On a tilted saturation plane, most clipped samples have unequal readings.
+      // On a tilted plane of saturated readings, most clipped samples have unequal readings.
       const auto equal = std::count_if(readings.begin(), readings.end(), [&](const Eigen::Vector3d& y) {
         return std::abs(std::abs(y[static_cast<Eigen::Index>(j)]) - plateau) <= kEqualReadingsRatio * plateau;
       });

@@ -21,7 +21,7 @@ inline std::size_t first_channel(Triad triad) {
   return 3 * index_of(triad);
 }
 
-/// Returns finders of saturation planes for gyro and accelerometer, each with and without the data sheet's range.
+/// Returns a RailPlaneFinder for gyro and accelerometer, each with and without the data sheet's range.
 std::array<std::array<RailPlaneFinder, 2>, 2> plane_finders(const ClippingFinder::Params& params);
 
 bool stated_range_contradicted(const RailDetector& axis_aligned_rails, const RailDetector::State& state, Triad triad);
@@ -30,10 +30,11 @@ bool stated_range_contradicted(const RailDetector& axis_aligned_rails, const Rai
 bool are_upright(std::span<const Eigen::Vector3d> readings, const RailPlanes& planes, const RailDetector::State& rails,
                  Triad triad);
 
-/// Removes the saturation planes of axes that have a run of equal extreme readings.
+/// Removes the planes of axes on which several successive extreme readings are equal.
 RailPlanes without_plateaus(const RailPlanes& planes, const RailDetector::State& rails, Triad triad);
 
-/// Marks a sample as clipped if its reading is on a saturation plane, or if the device flags the sample.
+/// Marks a sample as clipped if its reading is at or beyond a saturation limit of `planes`, or if the device flags the
+/// sample.
 Clipping classify_by_planes(const RailPlanes& planes, Triad triad, const Clipping& by_axis_aligned_rails,
                             const ImuSample* before, const ImuSample& now, const ImuSample* after);
 

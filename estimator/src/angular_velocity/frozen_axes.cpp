@@ -15,8 +15,8 @@ constexpr std::array<const char*, 6> kQuantities = {
     "time in s for which gyro z repeats one reading",  "time in s for which accel x repeats one reading",
     "time in s for which accel y repeats one reading", "time in s for which accel z repeats one reading"};
 
-constexpr double kAxisFrozen_s = 0.5;  // longest repetition of a working axis while the body moves
-// minimum duration of a repetition, as a multiple of the longest earlier repetition
+constexpr double kAxisFrozen_s = 0.5;  // longest time for which a working axis repeats one reading while the body moves
+// An axis is frozen if it repeats one reading at least this many times longer than ever before.
 constexpr double kMinRepetitionRatio = 10.0;
 constexpr double kPossibleRailRatio = 0.9;  // fraction of the stated range above which a reading may be saturated
 constexpr double kExtremeRatio = 0.5;       // the same fraction for the extreme reading of an axis

@@ -10,7 +10,7 @@ namespace tumble {
 
 namespace {
 
-// maximum tilt between the saturation planes of two sensing elements
+// maximum tilt between the planes of saturated readings of two sensing elements
 constexpr double kMaxPlaneTilt = 0.06, kDeficitStepRatio = 0.5;
 
 constexpr double kTopRatio = 0.01, kMaxElementSigmas = 3.0;
@@ -29,8 +29,8 @@ double rise_above_plateau(double count, double entered, double left) {
   return both > 0.0 ? count * std::max(0.0, entered) * std::max(0.0, left) / both : 0.0;
 }
 
-// On a tilted saturation plane, a saturated reading changes by the tilt times the change of the rate about the other
-// axes.
+// On a tilted plane of saturated readings, a saturated reading changes by the tilt times the change of the rate about
+// the other axes.
 double other_axes_rate(const Eigen::Vector3d& rate_rad_s, Eigen::Index axis) {
   return std::hypot(rate_rad_s[(axis + 1) % 3], rate_rad_s[(axis + 2) % 3]);
 }

@@ -16,7 +16,7 @@ struct DistinctReadings {
 DistinctReadings distinct_readings(std::span<const Eigen::Vector3d> readings, std::vector<Eigen::Vector3d>& rates,
                                    std::vector<double>& noises);
 
-/// RailFacet is a possible saturation plane: a reading y is on the plane if sign * row . y = level.
+/// RailFacet is a possible plane of saturated readings: a reading y is on the plane if sign * row . y = level.
 struct RailFacet {
   int axis = 0, sign = 1;
   Eigen::Vector3d row = Eigen::Vector3d::Zero();

@@ -49,11 +49,11 @@ std::optional<Extreme> find_extreme(const RailPlaneFinder::Params& params, const
                                     int sign, const FacetPrior& prior, double slope_range,
                                     RailPlaneFinder::Workspace& workspace);
 
-/// Returns the cross-axis sensitivities whose saturation plane is close to the most readings: rails.md (R57).
+/// Returns the cross-axis sensitivities of the plane that has the most readings closely below it: rails.md (R57).
 Eigen::Vector2d search_slopes(const DistinctReadings& readings, const Extreme& extreme, double slope_max,
                               const FacetPrior& prior, RailPlaneFinder::Workspace& workspace);
 
-/// Fits the saturation plane, starting from the cross-axis sensitivities `slopes`: rails.md (R58).
+/// Fits a plane to the saturated readings, starting from the cross-axis sensitivities `slopes`: rails.md (R58).
 Side fit_facet(const DistinctReadings& readings, const Extreme& extreme, const FacetPrior& prior,
                const Eigen::Vector2d& slopes, double deviation, RailPlaneFinder::Workspace& workspace);
 

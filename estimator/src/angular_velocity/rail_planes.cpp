@@ -27,8 +27,8 @@ using rails::Gate;
 using rails::others;
 using rails::Side;
 
-// The fit of a saturation plane starts from two standard deviations of the readings about the plane, relative to the
-// thickness of the searched layer. The small value suits layers with few partly saturated readings.
+// Initial standard deviations of the saturated readings about their plane, relative to the thickness of the searched
+// layer. The plane is fitted with both values. The small value suits layers with few partly saturated readings.
 constexpr double kInitialSigmaRatios[] = {0.5, 0.02};
 constexpr double kElementLevelRatio = 0.04;
 constexpr double kNearElementLogOdds = 5.0, kNearStatedLogOdds = 3.0, kOppositeSignLogOdds = 5.0,
@@ -218,7 +218,7 @@ RailPlanes RailPlaneFinder::find(std::span<const Vector3d> readings_rad_s, const
     return merge_with_known_planes(found, readings.rates);
   const SideSearch search{params_, readings, workspace};
   std::array<Pair, 3> sides;
-  // Each accepted saturation plane changes the log odds of further planes.
+  // Each accepted plane changes the log odds of further planes.
   for (bool added = true; added;) {
     added = false;
     for (int axis = 0; axis < 3; ++axis) {

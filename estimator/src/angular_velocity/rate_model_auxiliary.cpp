@@ -18,7 +18,8 @@ void add_row(const AuxiliaryRow& row, double residual, double sigma, arrow::Bloc
   block.gradient.noalias() -= information * residual * row.transpose();
 }
 
-// Returns whether the force along `axis` of an auxiliary IMU depends only on unclipped readings of the primary IMU.
+// Returns whether the specific force along `axis` of an auxiliary IMU depends only on unclipped readings of the primary
+// IMU.
 bool depends_on_unclipped_axes(const Eigen::RowVector3d& axis, const RateObservation& observation) {
   constexpr double kNegligibleCoupling = 0.02;
   if (observation.clipping.accel == 0) return true;

@@ -44,8 +44,8 @@ RateFactor RateModel::flight(const RateObservation& observation, const RateKnot&
   if (uses_raw_readings_ && delay_s == 0.0 && jacobian_delay == nullptr) return flight_factor(knot, rig, reading);
   const Vector3d force = reading - params_.errors.accel * reading;
   RateFactor out = delayed_flight_factor(knot, rig, force, delay_s, jacobian_delay);
-  // Averaging over the accelerometer's window changes the force in proportion to the force's second time derivative:
-  // rate_smoother.md (R13).
+  // Averaging over the accelerometer's window changes the specific force in proportion to the force's second time
+  // derivative: rate_smoother.md (R13).
   out.residual += 0.5 * params_.errors.accel_filter_time_variance_s2 * flight_curvature(knot, rig);
   return out;
 }

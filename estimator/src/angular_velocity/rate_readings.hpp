@@ -12,11 +12,11 @@
 
 namespace tumble {
 
-/// `known` contains the prior calibration, with cross-axis sensitivities from the saturation planes.
+/// `known` contains the prior calibration, with cross-axis sensitivities from the planes of saturated readings.
 struct RateReadings {
   std::vector<RateObservation> observations;  ///< one per sample
   RateModelParams known;
-  RailPlanes planes;  ///< saturation planes of the gyro that are used
+  RailPlanes planes;  ///< planes of saturated readings of the gyro that are used
   std::optional<RepeatedReadings> gyro_repeated;
 };
 

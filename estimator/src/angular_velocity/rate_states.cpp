@@ -118,7 +118,7 @@ std::vector<RateState> rate_states(const RateSmoother::Params& params, std::span
   const SensorErrors& errors = health.sensor_errors.errors;
   const double gyro_late_s = std::max(0.0, -errors.accel_delay_s);
   const std::vector<Eigen::Matrix3d> covariances = rate_covariances(params, readings, fit, health);
-  // With axis-aligned saturation planes, equal readings alone identify saturation.
+  // If each axis saturates at a constant reading, equal readings alone identify saturation.
   const std::vector<std::uint8_t> near =
       possible_partial_saturation(samples, health.clips_after_compensation ? RailPlanes{} : readings.planes);
   const std::vector<std::optional<InterpolatedRate>> own = interpolate_gyro(samples, readings);

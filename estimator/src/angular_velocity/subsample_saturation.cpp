@@ -20,7 +20,7 @@ SubsampleSaturation subsample_saturation(double reading_rad_s, double neighbour_
   const double depth = rail_rad_s - reading_rad_s, slope = reading_rad_s - neighbour_rad_s;
   // Noise that is added before clipping lowers a fully saturated reading by less than a tenth of the noise.
   if (!(depth > 0.1 * noise_rad_s)) return {};
-  // Fully saturated readings on a tilted saturation plane may change slowly.
+  // On a tilted plane of saturated readings, even fully saturated readings may change slowly.
   if (!(slope > noise_rad_s)) return {};
   double share = 0.0;  // rails.md (R71)
   if (slope > 2.0 * depth) {

@@ -162,7 +162,8 @@ double add_gyro(const NodeReadings& readings, const Matrix3d& rows, const Readin
     const ElementSums& e = readings.gyro[static_cast<std::size_t>(i)];
     const GyroRows& element = elements[static_cast<std::size_t>(i)];
     if (e.count > 0.0) {
-      // All readings of a node share the tilt error of the saturation plane, so averaging does not reduce this error.
+      // All readings of a node share the tilt error of their plane (RailPlane), so averaging does not reduce this
+      // error.
       const double tilt = noise.deficit_error_ratio * deficit(readings, elements, i);
       cost += add_unclipped_readings(
           e, element,

@@ -7,7 +7,7 @@ namespace tumble {
 
 namespace {
 
-/// A sensing element without a known saturation plane is assumed to be parallel to its output axis.
+/// A sensing element without a known plane of saturated readings is assumed to be parallel to its output axis.
 Eigen::Matrix3d rows_of(const RailPlanes& planes) {
   Eigen::Matrix3d out = Eigen::Matrix3d::Identity();
   for (int j = 0; j < 3; ++j) {

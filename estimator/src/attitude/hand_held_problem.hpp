@@ -89,7 +89,7 @@ class Problem {
   HandHeldSmoother::Params params_;
   Eigen::Matrix3d rows_;
   std::span<const NodeReadings> readings_;
-  std::span<const double> measured_jerk_;  // jerk density near each node, from NodeData
+  std::span<const double> measured_jerk_;  // NodeData::jerk
   Motion motion_;
   double period_s_ = 0.0;  // period of the gyro's readings, without repetitions
   ReadingNoise noise_;

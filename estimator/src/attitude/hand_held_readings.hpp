@@ -38,7 +38,7 @@ struct NodeData {
   Windows samples;
   GyroReadings rates;
   std::vector<NodeReadings> nodes;  ///< nodes at equal time steps from the first sample's centre
-  /// root density of the angular jerk near each node [rad/s^3 sqrt(s)]; 0: no estimate
+  /// root of the spectral density of angular jerk, per element of `nodes` [rad/s^3 sqrt(s)]; 0: no estimate
   std::vector<double> jerk;
 };
 
@@ -47,8 +47,9 @@ NodeData collect(const HandHeldSmoother::Params& params, std::span<const ImuSamp
 
 inline constexpr double kLongest = 1.5;  ///< longest averaging window, in sample periods
 
-/// Estimates the root of the spectral density of angular jerk [rad/s^3 sqrt(s)] near each node: carried.md (C24),
-/// (C25). Cost: O(N). If the readings near a node do not determine the jerk, the result is 0.
+/// Estimates the root of the spectral density of angular jerk [rad/s^3 sqrt(s)] near each time step (node) of the
+/// smoother: carried.md (C24), (C25). Cost: O(N). If the readings near a node do not determine the jerk, the result is
+/// 0.
 std::vector<double> estimate_jerk(const GyroReadings& rates, const Eigen::Matrix3d& rows, double noise_rad_s,
                                   double node_s, std::size_t nodes);
 

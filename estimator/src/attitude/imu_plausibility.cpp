@@ -14,15 +14,15 @@ namespace {
 constexpr double kGravityWindow_s = 0.2;  // window over which the rotations of force and gyro are compared
 constexpr double kForceReading_s = 0.02;  // averaging time of the readings, so that the sample rate does not matter
 constexpr double kWindowGapMax_s = 0.1;   // an unmeasured rotation may hide in a longer gap
-constexpr double kChangeMax = 0.12;       // largest change of a steady force in a window, as a share of the force
-constexpr double kGravityNear = 0.25;     // directions are compared if force and gravity differ by less than this share
+constexpr double kChangeMax = 0.12;    // largest change of a steady force in a window, as a share of the specific force
+constexpr double kGravityNear = 0.25;  // directions are compared if force and gravity differ by less than this share
 // On pendulums and hand-held wands, the rotation of the measured gravity is 0.75 to 1.21 times the gyro's rotation.
 constexpr double kSlopeMin = 0.65, kSlopeMax = 1.5;
 constexpr double kRotationMin_rad2 = 0.5, kRotationMin_rad = 0.15;  // minimum rotation in total, and of a window
 // A push, or the centripetal force in flight, may rotate the measured force for a few windows of 0.2 s.
 constexpr double kRotatedWindowsMin = 5.0;
-// Pushes of the body also cause slopes between 0 and 1, so a slope below 1 indicates a fault only with a smaller
-// residual.
+// A fault of the gyro's scale is found only if a scaled rotation leaves at most this fraction of the unexplained
+// rotation. Pushes resemble a slope from 0 to 1, imu_merge.md (I20), so such slopes have the smaller limit.
 constexpr double kScaledResidualMax = 0.75, kReducedResidualMax = 0.33;
 constexpr double kFrozen_s = 1.0, kRepetitionRatio = 10.0;
 constexpr double kUnmeasuredMin = 0.5;      // share of gravity's rotation that a gyro without changing readings leaves

@@ -30,7 +30,8 @@ double log_about_gravity(double n, double g, double variance) {
   return log_gaussian(n * n + g * g, variance) + log_sinh_x;
 }
 
-// One in three samples of hand-held motion has a five times larger standard deviation of the force: carried.md (C33).
+// One in three samples of hand-held motion has a five times larger standard deviation of the specific force: carried.md
+// (C33).
 constexpr double kRoughly = 3.0, kRougher = 5.0;
 
 double log_hand_held(double n, double g, double hand_variance, double grip_variance) {

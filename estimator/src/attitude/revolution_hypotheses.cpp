@@ -232,7 +232,8 @@ void test_revolutions(Problem& problem, HandHeldSmoother::Report& report, SolveA
   std::vector<Part> parts = with_surroundings(problem, segments);
   std::vector<AlternativeSolutions> open;
   std::vector<bool> fallen(parts.size(), false);
-  // Each test linearises the motion outside its segment, so a changed number of revolutions requires new tests.
+  // The test of one clipped segment linearises the motion outside the segment. After a change of any number of
+  // revolutions, all segments are therefore tested again.
   for (int round = 0; round < kRounds; ++round) {
     if (!problem.condense_rest(parts)) break;
     const std::vector<TestedSegment> tested = test_segments(problem, segments, parts, fallen);

@@ -20,7 +20,7 @@ struct RigidForces {
   std::array<bool, kUnits> present{};
   std::array<Eigen::Vector3d, kUnits> position_m{}, force_m_s2{};
   std::array<double, kUnits> peak_m_s2{};    ///< largest component of the IMU's readings in the window
-  std::array<double, kUnits> change_m_s2{};  ///< change of the force since the last window
+  std::array<double, kUnits> change_m_s2{};  ///< change of the specific force since the last window
   Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero(), acceleration_rad_s2 = Eigen::Vector3d::Zero();
   double uncertainty_rad_s2 = 0.0;  ///< standard deviation of the angular acceleration
   double small_peak_m_s2 = 0.0;     ///< two IMUs with smaller readings are unsaturated

@@ -27,10 +27,9 @@ constexpr std::array kMeanings = {
     Meaning{"unit_frozen", false, "the IMU repeats one reading, and its readings are left out; check the sensor"},
     Meaning{"unit_silent", false, "the IMU delivers no readings"},
     Meaning{"unit_disagrees", false, "the IMU disagrees with the other IMUs, and its readings are left out"},
-    Meaning{
-        "force_at_rest", true,
-        "the force at rest differs from gravity, probably because of a wrong unit or scale of the accelerometer; do "
-        "not use the estimate"},
+    Meaning{"force_at_rest", true,
+            "the specific force at rest differs from gravity, probably because of a wrong unit or scale of the "
+            "accelerometer; do not use the estimate"},
     Meaning{"axes_or_signs", true, "axes of the IMU seem to be exchanged or inverted; do not use the estimate"},
     Meaning{
         "flight_forces", true,
@@ -51,7 +50,7 @@ constexpr std::array kMeanings = {
             "uncertainty"},
     Meaning{"vertical_unknown", true, "the vertical of the map is uncertain after a start in motion"},
     Meaning{"tracking_lost", true, "the position in the map is unknown; do not use the estimate"},
-    Meaning{"not_localised", true, "the run is not localised in its prior map; the poses are in a local frame"}};
+    Meaning{"not_localised", true, "the robot is not localised in the prior map; the poses are in a local frame"}};
 
 static_assert(kMeanings.size() == static_cast<std::size_t>(HealthFinding::kLast) + 1);
 

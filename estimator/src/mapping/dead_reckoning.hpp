@@ -9,8 +9,9 @@
 
 namespace tumble::mapping {
 
-/// DeadReckoning predicts the pose from the IMU, without an unconfirmed relocalisation. If later sweeps contradict the
-/// relocalisation, DeadReckoning predicts the rejected pose, which remains a starting pose of the search.
+/// After an unconfirmed relocalisation, DeadReckoning continues the pose from before the relocalisation with the IMU
+/// alone. If a later sweep contradicts the relocalisation, odometry and DeadReckoning swap their poses. The rejected
+/// pose remains a starting pose of the search.
 struct DeadReckoning {
   SweepBoundary boundary;
   LagWindow window;

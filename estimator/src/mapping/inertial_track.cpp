@@ -174,7 +174,7 @@ bool InertialTrack::starts_at_rest(double lasted_s) const {
   const auto rests = [&](const MotionSample& sample) {
     return sample.at_rest || seconds(sample.from_ns - samples_.front().from_ns) >= lasted_s;
   };
-  // A gyro bias exists only after a long enough initial rest, whose first samples may have been deleted.
+  // A nonzero gyro bias was estimated during a long enough initial rest, whose first samples may be deleted already.
   return !initial_.gyro_bias_rad_s.isZero(0.0) || std::all_of(samples_.begin(), samples_.end(), rests);
 }
 

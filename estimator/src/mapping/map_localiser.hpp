@@ -26,7 +26,7 @@ class MapLocaliser {
   /// Returns the pose of the local frame in the prior map if the sweep confirms the proposed pose. Cost: a few
   /// milliseconds, or about a second for every fifth sweep while no pose is proposed.
   std::optional<FramePose> observe(const VoxelMap& local, const Eigen::Vector3d& p_WI_m);
-  /// Returns `degenerate` if the run is not localised in its prior map.
+  /// Returns `degenerate` if the robot is not localised in the prior map.
   Status status() const;
 
  private:

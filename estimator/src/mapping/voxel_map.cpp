@@ -78,7 +78,7 @@ inline Eigen::Vector3i VoxelMap::Group::of(const Eigen::Vector3i& cell) {
   return {cell.x() >> kBits, cell.y() >> kBits, cell.z() >> kBits};
 }
 
-/// Each group of cells is looked up only once, when a row of cells first needs the group.
+/// Rows returns the occupied cells near a cell. The hash table finds each group (8 x 8 x 8 cells) at most once.
 class VoxelMap::Rows {
  public:
   Rows(const VoxelMap& map, const Eigen::Vector3i& cell, int reach) : map_(map), first_x_(cell.x() - reach) {

@@ -224,7 +224,7 @@ Status RollingOdometry::Impl::finish() {
   return status;
 }
 
-/// Ends a run, and smooths the poses that are still within the lag.
+/// Ends a run, and smooths the poses of the last `lag_s`.
 void RollingOdometry::Impl::end_run() {
   for (OutlierFilter::State& unit : outlier_filter_state_) OutlierFilter::finish(unit);
   delayed_samples_.reset();

@@ -87,7 +87,7 @@ struct RollingOdometry::Impl {
   std::vector<RollingEstimate> results_;
   std::size_t returned_count_ = 0;
   std::optional<Eigen::Isometry3d> start_;    ///< pose passed to reset(), until the first sample
-  std::optional<Eigen::Isometry3d> T_W_run_;  ///< pose of the run's origin; empty: the world's origin
+  std::optional<Eigen::Isometry3d> T_W_run_;  ///< pose of the filter's frame in the world; empty: equal frames
   std::size_t restart_count_ = 0;
   std::optional<RollingRestart> restart_;  ///< last restart; poses after a restart are uncertain
   bool live_ = true, finished_ = false;

@@ -50,7 +50,7 @@ void RollingOdometry::Impl::restart_at_newest(double gap_s) {
   restart_ = restart;
 }
 
-/// Computes the pose of the run's frame in the world from the first pose of the run.
+/// Computes the pose of the filter's frame in the world from the stated start pose and the filter's first pose.
 void RollingOdometry::Impl::initialise_pose() {
   if (!start_ || !state_->live.started) return;
   const RollingEstimate first = RollingFilter::estimate(state_->live);
@@ -62,7 +62,7 @@ void RollingOdometry::Impl::initialise_pose() {
   start_.reset();
 }
 
-/// Converts an estimate of the filter or the smoother from the frame of the run to the world.
+/// Converts an estimate of the filter or the smoother from the filter's frame to the world.
 RollingEstimate RollingOdometry::Impl::transform_to_world(RollingEstimate estimate) const {
   estimate.uncertain = estimate.uncertain || restart_.has_value();
   if (!T_W_run_) return estimate;

@@ -29,7 +29,7 @@ void visit_rails(Visit& visit, Rails& rails) {
 
 }  // namespace
 
-/// Saturation planes of a sensor with upright rails are not saved, because its saturation limits suffice.
+/// Planes of saturated readings are not saved for upright rails, because the saturation limits suffice.
 void write_rails(const SaturationLevels& rails, SavedWriter& out) {
   SaturationLevels kept = rails;
   if (rails.gyro_clips_after_compensation) kept.planes = {};

@@ -21,7 +21,7 @@ constexpr std::size_t kSweepsPerExtraRejection =
 // The estimated calibration is not used if more than one in kSweepsPerRejection sweeps was rejected.
 constexpr std::size_t kSweepsPerRejection = 5;
 
-/// `inflation` is a factor on the covariances of the detected saturation planes.
+/// `inflation` is a factor on the covariances of the detected planes of saturated readings.
 void start_from_rails(const SaturationLevels& known, double inflation, RateStream::Params& params) {
   params.expert.planes.known = known.planes;
   params.expert.accel_planes.known = known.accel_planes;

@@ -17,7 +17,7 @@ namespace {
 struct SavedTumbling {
   Eigen::Vector3d lever_arm_I_m = Eigen::Vector3d::Zero();        ///< stated lever arm
   Eigen::Isometry3d stated_T_IL = Eigen::Isometry3d::Identity();  ///< stated mounting of the lidar
-  std::optional<RigCalibration> rig;                              ///< empty if the run did not estimate the rig
+  std::optional<RigCalibration> rig;                              ///< empty if the rig constants were not estimated
   std::optional<KnownSensorErrors> sensor_errors;
   SaturationLevels rails;
   StatedCalibration lidar;  ///< estimated mounting and time offset, with standard deviations

@@ -41,7 +41,8 @@ class UnitRails {
   /// finite are copied unchanged.
   void flag_clipped(std::span<const ImuSample> samples, const State& state, Samples& out) const;
 
-  /// The samples must be unflagged. Cost: O(1), except for rare searches for saturation planes. No memory is allocated.
+  /// The samples must be unflagged. Cost: O(1), except for rare searches for planes of saturated readings. No memory is
+  /// allocated.
   void observe(std::span<const ImuSample> samples, State& state) const;
 
  private:

@@ -77,7 +77,7 @@ class LastPass {
   Checkpoint cut_, end_;
   Checkpoint again_;  ///< filter for a segment that is recomputed
   Adjoint adjoint_;   ///< state of the backward pass
-  // segment whose node records are in memory
+  // index of the segment (`length_` successive nodes) whose filter records are in `records_`
   std::size_t loaded_ = 0;
   std::vector<NodeRecord> records_;
   std::vector<SamplePoint> points_;

@@ -28,8 +28,8 @@ constexpr double kPruneLogWeight = -120.0;  // minimum log weight of a hypothesi
 constexpr double kRestLogLikelihoodMin =
     -60.0;                             // smallest log likelihood at rest; limits the effect of a single bad node
 constexpr double kModeAgeMax_s = 1.0;  // maximum age of a mode; older modes count as equally old
-// During slip, the change of the contact velocity per node is a mixture of three Gaussians. The narrowest Gaussian is
-// narrower than the noise of grip, so that slip at constant velocity does not count as grip.
+// During slip, the change of the contact velocity per node is a mixture of three Gaussians. kPlateau_m_s is below the
+// noise of the contact velocity in the mode grip, so that slip at constant velocity does not count as grip.
 constexpr double kPlateau_m_s = 0.004, kSteady_m_s = 0.01, kJump_m_s = 0.08, kPlateauFraction = 0.4,
                  kSteadyFraction = 0.35;
 constexpr double kRollOverSigma_m_s = 0.03, kHitSigma_m_s = 0.3, kRollOverFraction = 0.7;

@@ -28,18 +28,18 @@ Eigen::Vector3d normal(const Eigen::Vector2d& slope) {
   return {slope.x(), slope.y(), upward(slope)};
 }
 
-constexpr double kNoImpactForce_m_s2 = 3.0;  // maximum difference between the force and gravity without an impact
+constexpr double kNoImpactForce_m_s2 = 3.0;  // maximum difference of specific force and gravity without an impact
 constexpr double kImuOffset_m = 0.02;        // distance of an IMU from the centre that explains forces in fast rotation
 constexpr double kPartialRangeMin = 0.3, kPartialRangeMax = 0.6;  // as fractions of the accelerometer's range
 constexpr double kForceTilt_rad = 0.35;                           // direction error of the mean force in motion
-constexpr double kLostTilt_rad = kForceTilt_rad;  // a tilt with a larger standard deviation is levelled by the force
-constexpr double kUncertainTilt_rad = 0.1;        // limit of the tilt at rest, where the force is gravity
+constexpr double kLostTilt_rad = kForceTilt_rad;  // the specific force levels a tilt with a larger standard deviation
+constexpr double kUncertainTilt_rad = 0.1;        // limit of the tilt at rest, where the specific force is gravity
 constexpr double kRestTilt_rad = 5e-3;
 // If force and gravity differ by more than this fraction of gravity, the sphere is pushed or rotates fast.
 constexpr double kPushForceRatio = 0.15;
 constexpr double kLostSpeed_m_s = 1.0;
 constexpr double kRecoveredTau_s = 0.1;  // correlation time of the error of a recovered rate
-constexpr double kFastRate_rad_s = 6.0;  // at higher rates, the force rotates too far within a node for levelling
+constexpr double kFastRate_rad_s = 6.0;  // above this rate, the specific force rotates too far per node for levelling
 constexpr double kUnsureSpeed_m_s = 0.1, kSpeedWindow_s = 1.0, kSpeedSigma_m_s = 1.0;
 constexpr double kStartTilt_rad = 0.15;  // tilt error of a start in motion, caused by a push of 1.5 m/s^2
 // If the rates before and after a gap are below kGapRate_rad_s, the sphere was hardly pushed during the gap.
@@ -91,7 +91,8 @@ RollingNominal start_nominal(const RollingParams& params, const Eigen::Quaternio
 void set_prior(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s, Covariance& P) {
   P.setZero();
   auto prior = P.diagonal();
-  // While a sphere is pushed, the force is not gravity. A rotating sphere may slip with its full rolling speed.
+  // While a sphere is pushed, the specific force differs from gravity. A rotating sphere may slip with its full rolling
+  // speed.
   const bool moves = starts_in_motion(rate_I_rad_s);
   const double tilt = moves ? kStartTilt_rad : 0.0, velocity = moves ? params.radius_m * rate_I_rad_s.norm() : 0.0;
   // The initial heading defines the world's x axis, so its prior variance is 0.
@@ -150,8 +151,8 @@ void integrate(const RollingParams& params, const ImuAverage& reading, RollingNo
   const Eigen::Vector3d w = w_raw - nominal.gyro_bias_rad_s - nominal.gyro_scale * w_raw;
   Eigen::Vector3d f =
       f_raw - nominal.accel_bias_m_s2 - nominal.accel_scale * f_raw - nominal.accel_delay_s * w.cross(f_raw);
-  // Averaging over the time dt at the rate w reduces the force across the rotation axis by the fraction (|w| dt)^2 /
-  // 24: rolling.md (R4).
+  // Averaging over the time dt at the rate w reduces the specific force across the rotation axis by the fraction (|w|
+  // dt)^2 / 24: rolling.md (R4).
   f -= dt_s * dt_s / 24.0 * w.cross(w.cross(f));
   const Eigen::Quaterniond half = so3::exp(0.5 * dt_s * w);
   const Eigen::Quaterniond q_mid = nominal.q_WI * half;
@@ -167,8 +168,8 @@ void integrate(const RollingParams& params, const ImuAverage& reading, RollingNo
   const Eigen::Vector3d arm = params.lever_arm_m + nominal.lever_arm_error_m;
   const Eigen::Vector3d change_rad_s = w_raw - nominal.last_rate_I_rad_s;  // angular acceleration times dt_s
   nominal.last_rate_I_rad_s = w_raw;
-  // If the rate is unknown, the direction of the force is unknown, so the velocity of the centre is assumed constant:
-  // rolling.md (R7).
+  // If the rate is unknown, the direction of the specific force is unknown, so the velocity of the centre is assumed
+  // constant: rolling.md (R7).
   const Eigen::Vector3d centre_velocity_change_m_s = R_T * w.cross(w.cross(arm)) + q_mid * change_rad_s.cross(arm);
   const Eigen::Vector3d fallen = dt_s * gravity * Eigen::Vector3d::UnitZ();
   Eigen::Vector3d least = Eigen::Vector3d::Zero();

@@ -29,7 +29,7 @@ class Feed : public evalio::Pipeline {
  public:
   /// `sweep_length_ns` is the time from the first return to the end of the sweep.
   void begin(nb::object odometry, std::int64_t sweep_length_ns);
-  /// Ends the run and saves the remaining poses. A sweep that the IMU did not cover has no pose.
+  /// Ends the estimation and saves the remaining poses. A sweep that the IMU did not cover has no pose.
   void finish();
 
   void add_imu(evalio::ImuMeasurement given) override;

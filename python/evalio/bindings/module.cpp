@@ -34,5 +34,5 @@ NB_MODULE(tumble_evalio, m) {
            "odometry: an object with add_imu, add_sweep, take_all, window_trajectory, finish and map, as "
            "TumblingOdometry.")
       .def("finish", &Feed::finish,
-           "Ends the run and saves the remaining poses. A sweep that the IMU did not cover has no pose.");
+           "Ends the estimation and saves the remaining poses. A sweep that the IMU did not cover has no pose.");
 }

@@ -18,7 +18,7 @@ class ClippedBaseline {
  public:
   struct Params {
     RailDetector::Params rails = {};
-    bool tilted_rails = false;  ///< tilted saturation limits too, unlike the published method
+    bool tilted_rails = false;  ///< tilted saturation limits too, unlike Saave
     /// Noise density of the gyro [rad/s/sqrt(Hz)]
     double gyro_noise_density = 5.236e-4;
     double rate_max_rad_s = 50.0;  ///< largest rate about one axis in a gap
@@ -33,8 +33,8 @@ class ClippedBaseline {
                          FieldRank::basic));
       visit(p.gyro_noise_density, {"gyro_noise_density", "rad/s/sqrt(Hz)", 1e-9, 1.0, "noise density of the gyro"});
       visit(p.rate_max_rad_s, {"rate_max_rad_s", "rad/s", 1.0, 1e4, "largest estimated rate"});
-      visit(p.gap_max_s, {"gap_max_s", "s", 1e-6, 3600.0,
-                          "maximum time between two samples; a longer gap ends the run with an error"});
+      visit(p.gap_max_s,
+            {"gap_max_s", "s", 1e-6, 3600.0, "maximum time between two samples; a longer gap causes an error"});
     }
   };
 

@@ -11,8 +11,8 @@
 namespace tumble::baselines {
 
 enum class AutogainProfile : std::uint8_t {
-  paper,     ///< eq 2 of the paper
-  code2021,  ///< authors' code of 2021, unlike eq 2
+  paper,     ///< eq 2 of the MFI 2021 paper
+  code2021,  ///< code of the paper's authors from 2021, unlike eq 2
   smooth,    ///< continuous, independent of the mounting
 };
 
@@ -34,17 +34,18 @@ class Autogain {
     double tau_s = 0.396;
     double lower_rad_s = 0.1;  ///< unused by code2021
     double upper_rad_s = 2.1;  ///< above lower_rad_s; unused by code2021
-    /// If true, the filter repeats an error in the authors' code of 2021: roll is never corrected.
+    /// If true, the filter repeats an error in the code of the MFI 2021 paper: roll is never corrected.
     bool roll_error_2021 = false;
     bool tilt_form = false;
     double gap_max_s = 1.0;
 
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
-      visit(p.profile,
-            {"profile", "1", 0.0, 2.0,
-             "dependence of the gain on the rate: 0: eq. 2 of the paper; 1: the authors' code of 2021; 2: smooth",
-             FieldRank::basic});
+      visit(
+          p.profile,
+          {"profile", "1", 0.0, 2.0,
+           "dependence of the gain on the rate: 0: eq. 2 of the MFI 2021 paper; 1: the code of its authors; 2: smooth",
+           FieldRank::basic});
       visit(p.gain_rad_s,
             {"gain_rad_s", "rad/s", 0.0, 10.0, "Madgwick gain at full rate (Theta, eq. 4)", FieldRank::basic});
       visit(p.tau_s,
@@ -55,14 +56,14 @@ class Autogain {
             {"upper_rad_s", "rad/s", 1e-9, 100.0,
              "rate above which the gyro has full weight, added to lower_rad_s (eq. 2)", FieldRank::basic});
       visit(p.roll_error_2021,
-            switch_field("roll_error_2021", "1: never correct the roll angle, as in the authors' code of 2021",
+            switch_field("roll_error_2021", "1: never correct the roll angle, as in the code of the MFI 2021 paper",
                          FieldRank::basic));
       visit(p.tilt_form, switch_field("tilt_form",
                                       "1: the complementary step is the smallest rotation; 0: the step turns towards a "
                                       "target in roll, pitch and yaw",
                                       FieldRank::basic));
       visit(p.gap_max_s,
-            {"gap_max_s", "s", 1e-9, 1e4, "maximum time between two samples; a longer gap ends the run with an error"});
+            {"gap_max_s", "s", 1e-9, 1e4, "maximum time between two samples; a longer gap causes an error"});
     }
   };
   struct State {

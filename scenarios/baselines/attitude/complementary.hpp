@@ -25,7 +25,7 @@ class Complementary {
              "time constant of the accelerometer correction: 0.02 per sample at 125 Hz (Zevering et al., MFI 2021)",
              FieldRank::basic});
       visit(p.gap_max_s,
-            {"gap_max_s", "s", 1e-9, 1e4, "maximum time between two samples; a longer gap ends the run with an error"});
+            {"gap_max_s", "s", 1e-9, 1e4, "maximum time between two samples; a longer gap causes an error"});
     }
   };
   struct State {

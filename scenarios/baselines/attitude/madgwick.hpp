@@ -23,7 +23,7 @@ class Madgwick {
       visit(p.gain_rad_s, {"gain_rad_s", "rad/s", 0.0, 10.0,
                            "gain of the tilt correction, as a quaternion rate (Madgwick, eq. 33)", FieldRank::basic});
       visit(p.gap_max_s,
-            {"gap_max_s", "s", 1e-9, 1e4, "maximum time between two samples; a longer gap ends the run with an error"});
+            {"gap_max_s", "s", 1e-9, 1e4, "maximum time between two samples; a longer gap causes an error"});
     }
   };
   struct State {

@@ -26,8 +26,8 @@ TimeNs rounded_offset(const LidarPoint& point, TimeNs step_ns) {
   return static_cast<TimeNs>(point.offset_ns) / step_ns * step_ns;
 }
 
-/// If all points of a sweep have one time, a pose at the start of the sweep would make the velocity feedback of the
-/// published chain unstable.
+/// If all points of a sweep have one time, a pose at the start of the sweep would make the velocity feedback of
+/// PublishedChain unstable.
 TimeNs registered_at(const Sweep& sweep, TimeNs step_ns) {
   if (sweep.points.empty()) return sweep.start_ns;
   const auto [first, last] = std::minmax_element(

@@ -26,8 +26,8 @@ class TrimmedIcp {
     double trim_min = 0.5;       ///< smallest fraction of the matches to keep
     double trim_max = 0.7;
     double trim_lambda = 2.35;
-    /// If true, the fraction of kept matches refers to all match slots, including slots without a match, as in the
-    /// authors' code.
+    /// If true, the fraction of kept matches refers to all match slots, including slots without a match, as in the code
+    /// of the ICRA 2024 paper.
     bool count_unmatched_slots = false;
     int iterations_max = 40;
     double step_m = 0.01;  ///< converged below both bounds
@@ -49,7 +49,7 @@ class TrimmedIcp {
       visit(p.count_unmatched_slots,
             switch_field("trim_counts_unmatched",
                          "1: compute the kept share relative to all possible matches, including missing matches, as in "
-                         "the authors' code; 0: relative to the found matches",
+                         "the code of the ICRA 2024 paper; 0: relative to the found matches",
                          FieldRank::basic));
       visit(p.iterations_max, {"iterations_max", "1", 1, 1000, "maximum number of Gauss-Newton steps"});
       visit(p.step_m, {"step_m", "m", 0.0, 1.0, "position step below which the registration has converged"});

@@ -18,12 +18,12 @@ class AutogainFusion {
   struct Params {
     double radius_m = 0.145;
     double gravity_m_s2 = 9.80665;
-    double limiter = 1.2;              ///< maximum of |v_acc| / |v_rot|; 1.1 in the code
+    double limiter = 1.2;              ///< maximum of |v_acc| / |v_rot|; 1.1 in the authors' code
     double rotation_weight = 0.5;      ///< eq 13
     double acceleration_weight = 0.5;  ///< eq 13
     Autogain::Params autogain = {};
 
-    // Each option switches one difference between the paper of the filter and its authors' code; the defaults follow
+    // Each option switches one difference between the MFI 2021 paper and the code of its authors. The defaults follow
     // the paper.
     bool integrate_in_body = true;    ///< eq 7 in the rotating frame
     bool direction_only = false;      ///< as in the code: ignores |f|
@@ -38,9 +38,10 @@ class AutogainFusion {
     static void fields(Self& p, Visitor& visit) {
       visit(p.radius_m, {"radius_m", "m", 1e-9, 10.0, "radius of the sphere"});
       visit(p.gravity_m_s2, {"gravity_m_s2", "m/s^2", 1e-9, 100.0, "strength of gravity"});
-      visit(p.limiter, {"limiter", "1", 0.0, 100.0,
-                        "maximum ratio of the integrated velocity to the rolling velocity; 1.1 in the authors' code",
-                        FieldRank::basic});
+      visit(p.limiter,
+            {"limiter", "1", 0.0, 100.0,
+             "maximum ratio of the integrated velocity to the rolling velocity; 1.1 in the code of the MFI 2021 paper",
+             FieldRank::basic});
       visit(p.rotation_weight,
             {"rotation_weight", "1", 0.0, 10.0, "weight of the rolling velocity (eq. 13)", FieldRank::basic});
       visit(p.acceleration_weight, {"acceleration_weight", "1", 0.0, 10.0,
@@ -52,14 +53,16 @@ class AutogainFusion {
                          "false: in the world frame",
                          FieldRank::basic));
       visit(p.direction_only,
-            switch_field("direction_only",
-                         "true, as in the authors' code: subtract gravity of length 1 from the direction of the "
-                         "specific force, without multiplying by g",
-                         FieldRank::basic));
+            switch_field(
+                "direction_only",
+                "true, as in the code of the MFI 2021 paper: subtract gravity of length 1 from the direction of the "
+                "specific force, without multiplying by g",
+                FieldRank::basic));
       visit(p.recursive_coupling,
-            switch_field("recursive_coupling",
-                         "true, as in the authors' code: eq. 8 scales the integrated velocity again at each sample",
-                         FieldRank::basic));
+            switch_field(
+                "recursive_coupling",
+                "true, as in the code of the MFI 2021 paper: eq. 8 scales the integrated velocity again at each sample",
+                FieldRank::basic));
       visit(p.limit_per_axis, switch_field("limit_per_axis",
                                            "true: limit the integrated velocity along each horizontal axis of the "
                                            "world; false: limit its horizontal norm",
@@ -70,17 +73,18 @@ class AutogainFusion {
                          "the squared horizontal speed",
                          FieldRank::basic));
       visit(p.vertical_by_norm,
-            switch_field("vertical_by_norm",
-                         "true, as in the authors' code: limit the vertical speed by the horizontal rolling speed; "
-                         "false: by the mean of the rolling speeds along x and y"));
+            switch_field(
+                "vertical_by_norm",
+                "true, as in the code of the MFI 2021 paper: limit the vertical speed by the horizontal rolling speed; "
+                "false: by the mean of the rolling speeds along x and y"));
       visit(p.gap_max_s,
-            {"gap_max_s", "s", 1e-9, 1e4, "maximum time between two samples; a longer gap ends the run with an error"});
+            {"gap_max_s", "s", 1e-9, 1e4, "maximum time between two samples; a longer gap causes an error"});
     }
   };
   struct State {
     Eigen::Vector3d p_WG_m = Eigen::Vector3d::Zero();
     Eigen::Vector3d v_WG_m_s = Eigen::Vector3d::Zero();        ///< fused velocity at the last sample
-    Eigen::Vector3d v_integral_m_s = Eigen::Vector3d::Zero();  ///< in I or W, see `integrate_in_body`
+    Eigen::Vector3d v_integral_m_s = Eigen::Vector3d::Zero();  ///< in IMU or world axes, see `integrate_in_body`
     TimeNs last_time_ns = 0;
     bool started = false;
     bool operator==(const State&) const = default;

@@ -24,7 +24,7 @@ class RollingOdometry {
       visit(p.radius_m, {"radius_m", "m", 1e-9, 10.0, "radius of the sphere"});
       visit(p.normal_W, {"normal_W", "1", -1.0, 1.0, "unit normal of the floor, from contact point to centre"});
       visit(p.gap_max_s,
-            {"gap_max_s", "s", 1e-9, 1e4, "maximum time between two samples; a longer gap ends the run with an error"});
+            {"gap_max_s", "s", 1e-9, 1e4, "maximum time between two samples; a longer gap causes an error"});
     }
   };
   struct State {

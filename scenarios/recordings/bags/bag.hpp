@@ -32,7 +32,7 @@ struct BagTrack {
     Eigen::Vector3d p_WB_m = Eigen::Vector3d::Zero();
     Eigen::Quaterniond q_WB = Eigen::Quaterniond::Identity();
     Eigen::Vector3d v_WB_B_m_s = kUnknown, w_WB_B_rad_s = kUnknown;
-    /// Covariance of position in W and attitude error in W, as in PoseState; a block of zeros is unknown.
+    /// Covariance of position and attitude error in world axes, as in PoseState; a block of zeros is unknown.
     Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
     bool exact = false;  ///< true: zero covariance means exact
     inline static const Eigen::Vector3d kUnknown = Eigen::Vector3d::Constant(kNaN);

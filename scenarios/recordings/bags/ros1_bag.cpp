@@ -219,7 +219,7 @@ class Ros1BagReader : public BagReader {
     }
     if (files.size() < 2) return;
     require_one_recording();
-    notes.push_back(fmt::format("the import reads the bag files of this folder as parts of one recording:{}", names));
+    notes.push_back(fmt::format("the import reads these bag files as parts of one recording:{}", names));
   }
 
   std::vector<BagTopic> topics() override {

@@ -126,8 +126,9 @@ std::vector<std::int64_t> read_stamps(const std::filesystem::path& file, std::ve
   for (const Table::Row& row : table.rows) {
     const std::optional<std::int64_t> found = parse_stamp_ns(row.cells[0]);
     if (!found)
-      throw BadInput(fmt::format("{}:{}: the time stamp '{}' must be seconds, digits of ms, us or ns, or a date in UTC",
-                                 file.string(), row.line, shortened(row.cells[0])));
+      throw BadInput(
+          fmt::format("{}:{}: the time stamp '{}' must be in seconds, an integer in ms, us or ns, or a date in UTC",
+                      file.string(), row.line, shortened(row.cells[0])));
     const std::int64_t stamp = *found;
     std::string wrong;
     if (!stamps.empty() && stamp <= stamps.back()) {

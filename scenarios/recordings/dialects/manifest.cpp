@@ -40,7 +40,7 @@ std::string unit(const PointColumn& column) {
     case PointQuantity::intensity:
       return column.scale == 1.0 ? "0 to 1" : "0 to 255";
     case PointQuantity::ring:
-      return "ring number from bottom to top, or line number";
+      return "number of the point's ring from bottom to top, or of its scan line";
     case PointQuantity::time:
       break;
   }
@@ -58,7 +58,9 @@ Json fields_of(const SweepLayout& sweeps, bool timed) {
         {{"name", "x y z"}, {"type", "float32"}, {"unit", "m; positions are in the lidar's frame and not deskewed"}},
         {{"name", "reflectivity"}, {"type", "uint8"}, {"unit", "0 to 255"}},
         {{"name", "tag"}, {"type", "uint8"}, {"unit", "every tag is 0: a single return with full confidence"}},
-        {{"name", "line"}, {"type", "uint8"}, {"unit", "ring number from bottom to top, or line number"}}};
+        {{"name", "line"},
+         {"type", "uint8"},
+         {"unit", "number of the point's ring from bottom to top, or of its scan line"}}};
   }
   for (const PointColumn& column : sweeps.columns) {
     if (column.quantity == PointQuantity::time && !timed) continue;

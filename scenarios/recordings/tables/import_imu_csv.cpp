@@ -107,7 +107,8 @@ sim::ImuRecord checked_readings(LoggedTable& table, const ImuColumns& columns, c
   return imu;
 }
 
-/// Adds IMU i of a table at its estimated position, with a note. An IMU that cannot be read or placed is left out.
+/// Adds IMU number i of the imported table to `out` at its estimated position. An IMU that cannot be read or whose
+/// position cannot be estimated is left out. `out.notes` reports the result.
 template <class Read>
 void add_further_imu(const Read& read, const std::vector<std::string>& imus, std::size_t i, Imported& out) {
   const std::vector<std::string> notes = out.notes;  // the notes on the first IMU hold for all IMUs

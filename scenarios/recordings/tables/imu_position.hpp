@@ -19,8 +19,8 @@ struct ImuPosition {
 };
 
 /// Estimates the position p of a second IMU with the same axes, by least squares. The difference of both specific
-/// forces is a x p + w x (w x p) plus a bias, with rate w and angular acceleration a. The fit omits samples near the
-/// largest gyro reading, because the gyro may be saturated. Cost: O(N) for N samples.
+/// forces is a x p + w x (w x p) plus a bias, with rate w and angular acceleration a. The least-squares fit omits
+/// samples near the largest gyro reading, because the gyro may be saturated. Cost: O(N) for N samples.
 ImuPosition estimate_imu_position(const sim::ImuRecord& first, const sim::ImuRecord& second);
 
 }  // namespace tumble::scenarios

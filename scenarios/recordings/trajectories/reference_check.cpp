@@ -98,9 +98,11 @@ bool fits_as_stated(const TurningCheck& check) {
 
 [[noreturn]] void refuse(const TurningCheck& check, const std::string& imu, const std::string& where, double corrected,
                          const std::string& remedies) {
-  throw BadInput(where + ": " + disagreement(check, imu) +
-                 fmt::format(", but the corrected rotations would differ by only {}", share_text(corrected)) +
-                 remedies);
+  throw BadInput(
+      where + ": " + disagreement(check, imu) +
+      fmt::format(". After a correction of the reference, the rotations of reference and gyro would differ by only {}",
+                  share_text(corrected)) +
+      remedies);
 }
 
 void require_reading_as_stated(const TurningCheck& check, const std::string& imu, const std::string& where) {

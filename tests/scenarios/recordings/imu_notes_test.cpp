@@ -71,7 +71,7 @@ TEST(ImuNotes, ForcesThatAreNotGravitysAreSaid) {
                 for (std::size_t k = 0; k < imu.time_ns.size(); ++k)
                   imu.gyro_rad_s[k] *= 1e-3, imu.accel_m_s2[k] = 0.5 * imu.accel_m_s2[0];
               }),
-              HasSubstr("caution: the force at rest differs from gravity"));
+              HasSubstr("caution: the specific force at rest differs from gravity"));
 }
 
 TEST(ImuNotes, EachImuIsNamed) {

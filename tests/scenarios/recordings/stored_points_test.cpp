@@ -97,7 +97,7 @@ TEST_F(StoredPoints, AreHeldAgainstTheirSweeps) {
 
 TEST_F(StoredPoints, NeedAFolder) {
   EXPECT_THAT(fixture::complaint([&] { read(folder_ / "none"); }),
-              HasSubstr("none: cannot create a temporary file in this folder: No such file"));
+              HasSubstr("none: cannot create a file in the folder for temporary files: No such file"));
 }
 
 /// Ends the process with 0 when BadInput reports the full disk, and only the earlier files are left.

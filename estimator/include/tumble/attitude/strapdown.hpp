@@ -21,7 +21,7 @@ class Strapdown {
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.gap_max_s,
-            {"gap_max_s", "s", 1e-9, 1e4, "maximum time between two samples; a longer gap ends the run with an error"});
+            {"gap_max_s", "s", 1e-9, 1e4, "maximum time between two samples; a longer gap causes an error"});
     }
   };
   struct State {
@@ -44,7 +44,7 @@ class Strapdown {
 };
 
 /// Computes the attitude with yaw 0 from the specific force at rest, given in sensor axes [m/s^2]. Returns `degenerate`
-/// if the force is below 1e-6 m/s^2.
+/// if the specific force is below 1e-6 m/s^2.
 Status level(const Eigen::Vector3d& specific_force_m_s2, Eigen::Quaterniond& q_WI);
 
 }  // namespace tumble

@@ -28,7 +28,7 @@ namespace tumble {
 class SampleClock {
  public:
   struct Params {
-    double memory_s = 2.0;      ///< time constant of the fit
+    double memory_s = 2.0;      ///< time constant of the fitted line
     double jitter_min = 0.005;  ///< minimum jitter of corrected time stamps, in sample periods
     double jitter_max = 0.15;
 

@@ -30,7 +30,7 @@ struct HealthFinding {
     attitude_unknown,   ///< the direction of gravity is unknown; value: duration [s]
     vertical_unknown,   ///< the vertical of the map is uncertain after a start in motion
     tracking_lost,      ///< the pose in the map is uncertain, or sweeps contradict their predicted poses
-    not_localised,      ///< the run is not localised in its prior map
+    not_localised,      ///< the robot is not localised in the prior map
   };
   static constexpr Kind kLast = Kind::not_localised;
 

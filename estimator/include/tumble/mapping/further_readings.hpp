@@ -21,7 +21,8 @@ struct VelocityReading {
   double sigma_m_s = 0.0;                                ///< standard deviation of each axis
 };
 
-/// Motion of the IMU between two times. For poses in a drifting frame O, the motion is T_OI(from)^-1 T_OI(to).
+/// Motion of the IMU I between two times. For IMU poses T_OI in a drifting odometer frame O, the motion is
+/// T_OI(from)^-1 T_OI(to).
 struct MotionReading {
   TimeNs from_ns = 0;
   TimeNs to_ns = 0;
@@ -40,26 +41,27 @@ Status check_reading(const OdometerReading& reading);
 TimeNs reading_start_ns(const OdometerReading& reading);
 TimeNs reading_end_ns(const OdometerReading& reading);
 
-/// PositionReading is the position of an antenna or tag A on the robot in a frame P with z up, for example from GPS (as
-/// local east, north, up) or from beacons. PositionAlignment assumes that the errors of the readings are independent.
-/// If the errors are correlated over time, state a larger covariance.
+/// PositionReading is the position of an antenna or tag A on the robot, in a position frame P with z up, for example
+/// from GPS (as local east, north, up) or from beacons. PositionAlignment assumes that the errors of the readings are
+/// independent. If the errors are correlated over time, state a larger covariance.
 struct PositionReading {
   TimeNs time_ns = 0;  ///< in the IMU's clock
   Eigen::Vector3d p_PA_m = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();  ///< in P; the mean variance of the axes is used
-  Eigen::Vector3d p_IA_m = Eigen::Vector3d::Zero();         ///< lever arm: position of A in IMU axes
+  Eigen::Matrix3d covariance_m2 = Eigen::Matrix3d::Zero();  ///< in the frame P; the mean variance of the axes is used
+  Eigen::Vector3d p_IA_m = Eigen::Vector3d::Zero();         ///< position of the antenna or tag A in IMU axes
 };
 
-/// PositionFrame is the estimated transform from the world W of the poses to the frame P of the position readings. The
-/// drift of W relative to P is part of the transform, so poses in P do not drift.
+/// PositionFrame is the estimated transform from the odometry frame W of the poses to the position frame P of the
+/// position readings. The transform includes the drift of the odometry, so poses in the position frame do not drift.
 struct PositionFrame {
   Eigen::Isometry3d T_PW = Eigen::Isometry3d::Identity();  ///< the rotation is about the vertical
   Eigen::Vector3d reference_W_m = Eigen::Vector3d::Zero();
-  /// Covariance of the error of T_PW, in axes of P: translation at `reference_W_m` [m], and rotation about the vertical
-  /// through this point [rad].
+  /// Covariance of the error of T_PW, in axes of the position frame P: translation at `reference_W_m` [m], and rotation
+  /// about the vertical through this point [rad].
   Eigen::Matrix4d covariance = Eigen::Matrix4d::Zero();
 
-  /// Converts a pose from W to P, with the covariance of the position in P and the tilt errors of `in_W`.
+  /// Converts a pose from the odometry frame W to the position frame P. The covariance of position and heading comes
+  /// from `covariance`, and the covariance of the tilt from `in_W`.
   PoseState transform(const PoseState& in_W) const;
 };
 

@@ -11,11 +11,11 @@
 
 namespace tumble {
 
-/// Map of an earlier run in its frame M (z up), in which a new run localises the robot.
+/// Map of an earlier run, in which a new run localises the robot. The map frame M has the axis z up.
 struct PriorMap {
-  std::vector<MapPoint> points = {};  ///< points with normals, in M; to_map_points() computes normals
-  /// Start pose of the IMU in the frame M of the map, if known; only position and heading are used. If the start pose
-  /// is unknown, the run may start anywhere in the map.
+  std::vector<MapPoint> points = {};  ///< points with normals, in the map frame M; to_map_points() computes normals
+  /// Start pose of the IMU in the map frame M, if known; only position and heading are used. If the start pose is
+  /// unknown, the run may start anywhere in the map.
   std::optional<Eigen::Isometry3d> T_MI = std::nullopt;
   double sigma_m = 0.0;    ///< standard deviation of the position of T_MI per axis; 0: exact
   double sigma_rad = 0.0;  ///< standard deviation of the heading of T_MI; 0: exact

@@ -49,8 +49,8 @@ class RollingOdometry {
   struct Params {
     double radius_m = 0.0;    ///< required; has no default
     std::vector<Unit> units;  ///< 1 to 4 IMUs; required
-    /// Standard deviation of the distance between the origin of T_BI and the true centre of the sphere. RollingOdometry
-    /// estimates this distance.
+    /// Standard deviation of the sphere's true centre relative to the stated centre, from which the poses T_BI of the
+    /// IMUs are measured. RollingOdometry estimates the true centre.
     double centre_sigma_m = 6e-3;
     double gravity_m_s2 = 9.80665;
     /// Lag of the poses that take() returns; 0: live poses. With kWholeRecording, add_imus() stores the readings,
@@ -86,7 +86,7 @@ class RollingOdometry {
     }
   };
   struct Calibration {
-    Eigen::Vector3d centre_B_m = Eigen::Vector3d::Zero();  ///< sphere's centre, relative to the origin of T_BI
+    Eigen::Vector3d centre_B_m = Eigen::Vector3d::Zero();  ///< true centre of the sphere, relative to the stated centre
     /// radius and its standard deviation; 0: the radius is fixed (expert.rolling.filter.radius_sigma_m)
     double radius_m = 0.0, radius_sigma_m = 0.0;
   };
@@ -118,10 +118,11 @@ class RollingOdometry {
   /// sample), `gap` and `out_of_range`. `out_of_range` means that the run has finished, the time stamp exceeds
   /// kStampMax_ns, or the only IMU with readings has a frozen axis.
   ///
-  /// A single wrong time stamp causes the loss of one sample. The second sample after a gap of more than a second
-  /// restarts the run. If the clock steps back, add_imus() rejects samples with `time_order` for 0.2 s, and then the
-  /// run restarts. A restart finishes the poses so far and continues at the newest pose, like reset(pose). Poses after
-  /// a restart have the flag `uncertain`, and their covariance includes the unknown motion during the gap.
+  /// A single wrong time stamp causes the loss of one sample. After a gap of more than a second between two samples,
+  /// add_imus() rejects the first sample with `gap`, and restarts with the second sample. If the clock steps back,
+  /// add_imus() rejects samples with `time_order` for 0.2 s, and then restarts. A restart finishes the poses so far and
+  /// continues at the newest pose, like reset(pose). Poses after a restart have the flag `uncertain`, and their
+  /// covariance includes the unknown motion during the gap.
   Status add_imus(std::span<const ImuSample> samples);
   /// Processes a sample of a sphere with one IMU. Returns `ok` or an error of add_imus().
   Status add_imu(const ImuSample& sample) { return add_imus({&sample, 1}); }
@@ -135,12 +136,12 @@ class RollingOdometry {
   /// The pose uses all data so far, and is empty before the first sample.
   std::optional<Pose> newest() const;
 
-  /// Returns the next pose in time order, once. If the lag is 0, the poses are live; otherwise the poses are smoothed
+  /// Returns the next pose in time order, once. If `lag_s` is 0, the poses are live; otherwise the poses are smoothed
   /// and `lag_s` old.
   std::optional<Pose> take();
 
-  /// Ends the run and smooths the remaining poses. After finish(), add_imus() rejects samples until reset(). Returns
-  /// `ok`, or the first error of the remaining samples. With kWholeRecording, returns `ok` or an error of
+  /// Ends the estimation and smooths the remaining poses. After finish(), add_imus() rejects samples until reset().
+  /// Returns `ok`, or the first error of the remaining samples. With kWholeRecording, returns `ok` or an error of
   /// merge_recordings().
   Status finish();
 
@@ -181,19 +182,20 @@ class RollingOdometry {
   std::optional<double> estimated_jitter_s() const;
 
   /// Saves calibration, saturation limits of each IMU, and newest pose as bytes with a checksum, for load() after a
-  /// reboot. The calibration consists of the biases, scales and delay of the merged IMU, centre and radius, with their
-  /// covariance. The saved bytes are equal on every machine. The bytes do not contain poses that wait for take(),
-  /// velocity, contact mode, the differences between the IMUs, findings of health(), counters and recorded readings.
+  /// reboot. The calibration contains biases, scales and delay of the merged IMU, and centre and radius of the sphere,
+  /// with covariance. The saved bytes are equal on every machine. The saved bytes do not contain velocity, contact
+  /// mode, differences between the IMUs, health findings and counters. Recorded readings and poses that take() has not
+  /// yet returned are not saved.
   std::vector<std::byte> save() const;
   /// Starts a new run from saved bytes, like a new object. The saved calibration and saturation limits replace the
-  /// prior of the parameters, also after a later reset(). Biases keep their values with the prior's uncertainty,
-  /// because biases change at every switch-on. The run starts at the saved pose with its covariance, and its poses have
-  /// the flag `uncertain`. If the sphere may have moved, call reset(pose) after load().
+  /// prior of the parameters, also after a later reset(). The saved biases get the uncertainty of the prior, because
+  /// biases change at every switch-on. The new run starts at the saved pose, with the saved covariance of this pose.
+  /// All poses of the new run have the flag `uncertain`. If the sphere may have moved, call reset(pose) after load().
   ///
   /// `last_pose` receives the saved pose with its time in the clock of the saved run, or is empty. On error, the object
   /// is unchanged, and the returned status names the field, the saved value and the bound. The error is `too_few`
-  /// (truncated bytes), `non_finite` or `out_of_range`. Damaged bytes, bytes of TumblingOdometry or of another version,
-  /// and a saved run with another radius or other IMUs are rejected.
+  /// (truncated bytes), `non_finite` or `out_of_range`. load() rejects damaged bytes, and bytes that another version or
+  /// a TumblingOdometry saved. load() also rejects a saved run with another radius or other IMUs.
   Status load(std::span<const std::byte> bytes, std::optional<PoseState>* last_pose = nullptr);
 
   struct Impl;  ///< private implementation

@@ -46,8 +46,8 @@ struct SecondPassParams {
 /// of rates and of the map.
 struct TumblingExpertParams {
   double gravity_m_s2 = 9.80665;
-  /// Maximum number of sweeps that wait for IMU samples, in addition to the sweeps within the lag. TumblingOdometry
-  /// also stores at most sweeps_max sweeps that wait for take(), and then drops the oldest sweep.
+  /// Maximum number of sweeps that wait for IMU samples, in addition to the sweeps of the last `lag_s`.
+  /// TumblingOdometry also stores at most sweeps_max sweeps that wait for take(), and then drops the oldest sweep.
   std::size_t sweeps_max = 16;
   /// Parameters of the rate estimation. By default, the prior probability that the IMU does not match its data sheet is
   /// 0.003. The covariance of each rate includes the uncertainty of the calibration.

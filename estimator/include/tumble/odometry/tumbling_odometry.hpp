@@ -37,13 +37,13 @@ struct SweepScale;
 /// `lag_s` after the sweep's end. The report of the following sweep contains the final pose (`report.smoothed`), at
 /// most 0.3 s after the sweep's end at ten sweeps per second. Time stamps of poses are in the IMU's clock. The earliest
 /// sweep with enough points starts the map, and poses are reported only after the map has started. Start with at least
-/// half a second at rest, which determines the tilt. If the gyro's zero offset at rest exceeds 0.05 rad/s, the offset
-/// is subtracted and the run restarts, which needs a second at rest.
+/// half a second at rest, which determines the tilt. If the gyro's zero offset at rest exceeds 0.05 rad/s,
+/// TumblingOdometry subtracts the offset and restarts, which needs a second at rest.
 ///
 /// Some seconds after motion starts, SecondPass processes the first seconds of motion again with the calibration
-/// estimated so far. The run then continues with the map and pose of SecondPass; poses that were already reported are
-/// not changed. If no sweep arrives for a second, inertial integration continues, and take() returns a sweep without
-/// points.
+/// estimated so far. TumblingOdometry then continues with the map and pose of SecondPass; poses that were already
+/// reported are not changed. If no sweep arrives for a second, inertial integration continues, and take() returns a
+/// sweep without points.
 ///
 /// With `lag_s` = kWholeRecording, add_imu() and add_sweep() store the data, and finish() estimates rates, poses and
 /// map from the whole recording. finish() estimates the rates with RegimeSmoother, checks the IMU, and repeats the
@@ -58,8 +58,8 @@ struct SweepScale;
 /// ten metres. A call needs at most 64 KiB of stack.
 ///
 /// TumblingOdometry starts no threads, uses no files and prints nothing. A copy of a TumblingOdometry contains the
-/// complete state, so the copy can continue the run. The limitations of RegimeStream and LidarInertialOdometry apply to
-/// TumblingOdometry.
+/// complete state, so the copy can process the following data. The limitations of RegimeStream and
+/// LidarInertialOdometry apply to TumblingOdometry.
 class TumblingOdometry {
  public:
   using Params = TumblingParams;
@@ -91,10 +91,11 @@ class TumblingOdometry {
   Status use_map(PriorMap map);
   /// Processes an IMU sample, and registers the sweeps whose rates become available. Time stamps must increase. Returns
   /// `non_finite`, `out_of_range`, `time_order` or `gap` if the sample is rejected. A single wrong time stamp causes
-  /// the loss of one sample. The second sample after a gap of more than a second restarts the rate estimation with the
-  /// current calibration, and inertial integration bridges the gap. If the clock steps back, add_imu() rejects samples
-  /// with `time_order` for 0.2 s, and restarts at the newest pose, like reset(pose). OutlierFilter rejects single
-  /// outliers and may delay a sample by one. newest() is then one sample older.
+  /// the loss of one sample. After a gap of more than a second, add_imu() rejects the first sample with `gap`, and the
+  /// second sample restarts the rate estimation with the current calibration. Inertial integration bridges the gap. If
+  /// the clock steps back, add_imu() rejects samples with `time_order` for 0.2 s, and restarts at the newest pose, like
+  /// reset(pose). OutlierFilter rejects single outliers and may delay a sample by one. newest() is then one sample
+  /// older.
   Status add_imu(const ImuSample& sample);
   /// Processes a sweep of points fired in [start_ns, end_ns], at any time after the sweep's last point. The points are
   /// copied. Points from before the end of the last sweep are dropped, because time stamps of sweeps may overlap by
@@ -202,21 +203,22 @@ class TumblingOdometry {
   /// each with its uncertainty. The map has the format of save_map(). The saved bytes are equal on every machine. A run
   /// that is not yet localised in the map of use_map() saves this map.
   ///
-  /// The bytes do not contain sweeps that wait for samples or for take(), velocity, filter states, findings of
-  /// health(), counters, readings of further sensors, and the buffer of SecondPass. With kWholeRecording, the bytes
-  /// contain the results of finish(), without the recorded data.
+  /// The saved bytes do not contain velocity, filter states, health findings, counters, readings of further sensors,
+  /// and the buffer of SecondPass. Sweeps that wait for IMU samples or for take() are not saved. With kWholeRecording,
+  /// the saved bytes contain the results of finish(), without the recorded data.
   std::vector<std::byte> save() const;
   /// Starts a new run from saved bytes, like a new object. The saved calibration replaces the calibration of the
-  /// parameters, also after a later reset(). Biases keep their values with the prior's uncertainty, because biases
-  /// change at every switch-on. With at least 100 points that have normals, the saved map becomes the map of use_map().
-  /// The run starts at the saved pose and localises the robot around this pose; before, health() reports the missing
-  /// localisation. If the robot may have moved by more than a metre, call reset(pose) after load(). With
-  /// kWholeRecording, the run starts at the saved pose with a new map.
+  /// parameters, also after a later reset(). The saved biases get the uncertainty of the prior, because biases change
+  /// at every switch-on. If at least 100 points of the saved map have normals, load() calls use_map() with the saved
+  /// map. The new run starts at the saved pose and localises the robot around this pose. Until the robot is localised,
+  /// health() reports the missing localisation. If the robot may have moved by more than a metre, call reset(pose)
+  /// after load(). With kWholeRecording, the new run starts at the saved pose with a new map.
   ///
   /// `last_pose` receives the saved pose with its time in the clock of the saved run, or is empty. On error, the object
   /// is unchanged, and the returned status names the field, the saved value and the bound. The error is `too_few`
-  /// (truncated bytes), `non_finite`, `degenerate` or `out_of_range`. Damaged bytes, bytes of RollingOdometry or of
-  /// another version, and a saved run with another stated lever arm or lidar mounting are rejected.
+  /// (truncated bytes), `non_finite`, `degenerate` or `out_of_range`. load() rejects damaged bytes, and bytes that
+  /// another version or a RollingOdometry saved. load() also rejects a saved run with another stated lever arm or lidar
+  /// mounting.
   Status load(std::span<const std::byte> bytes, std::optional<PoseState>* last_pose = nullptr);
 
   struct Impl;  ///< private implementation
@@ -225,8 +227,8 @@ class TumblingOdometry {
   Indirect<Impl> impl_;
 };
 
-/// Saves a map: position, normal and standard deviation of each point, in the order of `points`. The saved bytes are
-/// equal on every machine. The bytes contain the version of the format, the number of points and a checksum. A point
+/// Saves a map: position, normal and standard deviation of each point, in the order of `points`. The saved bytes also
+/// contain the version of the format, the number of points and a checksum, and are equal on every machine. A point
 /// needs 28 bytes. Cost: O(points).
 std::vector<std::byte> save_map(std::span<const MapPoint> points);
 

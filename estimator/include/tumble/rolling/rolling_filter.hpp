@@ -24,8 +24,9 @@ namespace tumble {
 /// While the sphere is at rest, the reported position is constant, unless another hypothesis becomes the most probable
 /// one. Corrections of the position at rest are applied when motion resumes.
 ///
-/// In a gap of up to gap_max_s between samples, the rate is interpolated, the force is unknown, and the covariance
-/// grows. While the gyro is saturated, the rolling constraint is not used, and the covariance of the position grows.
+/// In a gap of up to gap_max_s between samples, the rate is interpolated, the specific force is unknown, and the
+/// covariance grows. While the gyro is saturated, the rolling constraint is not used, and the covariance of the
+/// position grows.
 ///
 /// RollingFilter assumes a rigid, unmoving floor. The heading drifts. The state needs 430 KiB of memory.
 class RollingFilter {
@@ -66,7 +67,7 @@ class RollingFilter {
     bool started_in_motion = false;
     std::int64_t gaps = 0;  ///< number of bridged gaps
     double gap_longest_s = 0.0;
-    // trajectory and constants about which all hypotheses are linearised
+    // The errors of all contact-mode hypotheses are linearised about the nominal trajectory and calibration.
     RollingNominal nominal;
     RollingIntegrals sums;
     ImuAverage average;  ///< average of the readings that are not yet processed

@@ -14,16 +14,17 @@
 namespace tumble {
 
 struct SaturationLevels {
-  RailDetector::State axis_aligned_rails;  ///< limits detected from equal readings, and limits from the data sheet
-  RailPlanes planes;                       ///< saturation planes of the gyro's sensing elements; empty if not observed
-  RailPlanes accel_planes;                 ///< saturation planes of the accelerometer
+  RailDetector::State axis_aligned_rails;       ///< limits detected from equal readings, and limits from the data sheet
+  RailPlanes planes;                            ///< planes of the gyro's saturated readings; empty if not observed
+  RailPlanes accel_planes;                      ///< planes of the accelerometer's saturated readings
   bool gyro_clips_after_compensation = false;   ///< the gyro clips after misalignment compensation, axis by axis
   bool accel_clips_after_compensation = false;  ///< the accelerometer clips after misalignment compensation
 
-  /// Returns the saturation planes that classify readings as clipped. If the device clips after misalignment
+  /// Returns the planes of saturated readings that classify readings as clipped. If the device clips after misalignment
   /// compensation, planes are returned only for sensing elements without a known saturation limit.
   RailPlanes planes_in_use(Triad triad = Triad::gyro) const;
-  /// `unknown_sigma` is the standard deviation of a cross-axis sensitivity that no saturation plane determines.
+  /// `unknown_sigma` is the standard deviation of a cross-axis sensitivity that no plane of saturated readings
+  /// determines.
   SensingDirections rows(Triad triad, double unknown_sigma) const;
   bool operator==(const SaturationLevels&) const = default;
 };
@@ -41,13 +42,13 @@ std::uint8_t clip_flags(const Clipping& clipping);
 /// ConfirmedSaturation contains the saturation limits that a frozen sensor cannot imitate. Limits from equal readings
 /// are excluded, because a frozen sensor also causes equal readings.
 struct ConfirmedSaturation {
-  RailPlanes gyro, accel;                                 ///< saturation planes used to classify readings
+  RailPlanes gyro, accel;                                 ///< planes of saturated readings used to classify readings
   double gyro_range_rad_s = 0.0, accel_range_m_s2 = 0.0;  ///< range from the data sheet; 0: unknown
   std::uint8_t flags(const ImuSample& sample, const Clipping& judged) const;
 };
 
 /// Finds the clipped readings of a recording from the device's clip flags, from equal readings (RailDetector) and from
-/// tilted saturation planes (RailPlaneFinder).
+/// tilted planes of saturated readings (RailPlaneFinder).
 class ClippingFinder {
  public:
   struct Params {

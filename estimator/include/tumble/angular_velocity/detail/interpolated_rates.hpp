@@ -37,8 +37,8 @@ std::vector<std::optional<InterpolatedRate>> rates_between_readings(std::span<co
                                                                     std::span<const std::uint8_t> hidden,
                                                                     const std::optional<RepeatedReadings>& repeated);
 
-/// Returns the force at the time of each sample, for an accelerometer that updates more slowly than the log. The result
-/// is empty if no reading repeats. Cost: O(N).
+/// Returns the specific force at the time of each sample, for an accelerometer that updates more slowly than the log.
+/// The result is empty if no reading repeats. Cost: O(N).
 std::vector<Eigen::Vector3d> forces_between_readings(std::span<const ImuSample> samples);
 
 }  // namespace tumble

@@ -13,11 +13,11 @@ namespace tumble {
 struct CalibratedRig {
   RigCalibration calibration;
   std::array<std::optional<double>, 6> rail;  ///< limits of gyro [rad/s], accelerometer [m/s^2]; empty: not observed
-  /// Intersections of the gyro's saturation planes with the axis of each sensing element, for the negative and the
-  /// positive sign; empty if not observed.
+  /// Intersections of the planes of the gyro's saturated readings with the axis of each sensing element, for the
+  /// negative and the positive sign; empty if not observed.
   using Planes = std::array<std::array<std::optional<double>, 2>, 3>;
   Planes gyro_planes_rad_s = {};
-  /// intersections of the accelerometer's saturation planes with the axes, and their cross-axis sensitivities
+  /// intersections of the planes of the accelerometer's saturated readings with the axes, and cross-axis sensitivities
   Planes accelerometer_planes_m_s2 = {};
   Eigen::Matrix<double, 6, 1> accelerometer_elements = Eigen::Matrix<double, 6, 1>::Zero();
   /// empty if not estimated
@@ -26,7 +26,7 @@ struct CalibratedRig {
   bool only_rails = false;
 
   RailPlanes planes(Triad triad = Triad::gyro) const;
-  /// Stores only certain saturation planes, because a few partly clipped readings can suggest a wrong plane.
+  /// Stores only certain planes of saturated readings, because a few partly clipped readings can suggest a wrong plane.
   void keep(const RailPlanes& planes, Triad triad = Triad::gyro);
 };
 
@@ -34,7 +34,7 @@ struct CalibratedRig {
 CalibratedRig learnt(const RateReport& report);
 
 /// Updates `before` by the certain saturation limits of a run that could not estimate the rig constants. Returns empty
-/// if no saturation plane is certain.
+/// if no plane of saturated readings is certain.
 std::optional<CalibratedRig> calibration_with_rails(const CalibratedRig& before, const SaturationLevels& rails);
 
 /// Applies a calibration to the next run. The covariance of the constants is multiplied by `trust`, because a rig may

@@ -111,7 +111,7 @@ class RailDetector {
     double run_first = 0.0;
     int run_length = 0;
     double before = 0.0;  ///< previous reading
-    double entry = 0.0;   ///< change of the reading at the start of the run; 0: first run
+    double entry = 0.0;   ///< change of the reading before the current equal readings; 0: no change yet
     double digit = 0.0;   ///< smallest observed change between two readings; 0: none yet
     double last = 0.0;
     bool clipped = false;

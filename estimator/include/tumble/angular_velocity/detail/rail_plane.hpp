@@ -11,10 +11,10 @@
 
 namespace tumble {
 
-/// RailPlane describes the saturation of one sensing element of a gyro as two parallel planes in the space of output
-/// readings: row . reading = offset -+ limit. The two saturation planes are tilted if the device clips first and then
-/// compensates scale and misalignment. The device also subtracts the bias of the sensing element, which shifts both
-/// planes. For an accelerometer, the unit is m/s^2 instead of rad/s.
+/// RailPlane contains the two parallel planes on which the output readings lie while one sensing element of a gyro is
+/// saturated: row . reading = offset -+ limit. The two planes are tilted if the device clips first and then compensates
+/// scale and misalignment. The device also subtracts the bias of the sensing element, which shifts both planes. For an
+/// accelerometer, the unit is m/s^2 instead of rad/s.
 struct RailPlane {
   /// sensing direction of the element: 1 along its own axis j, and a cross-axis sensitivity along each other axis
   Eigen::Vector3d row = Eigen::Vector3d::Zero();
@@ -29,8 +29,8 @@ struct RailPlane {
   double log_odds = 0.0;          ///< natural log odds of saturation against unsaturated motion
 
   bool seen(int sign) const { return samples[sign > 0 ? 1 : 0] > 0; }
-  /// Returns how far a reading is below the saturation plane of the given sign (-1 or 1) [rad/s]. The result is
-  /// negative if the reading is beyond the plane.
+  /// Returns how far a reading is below the plane with the given sign (-1 or 1) [rad/s]. The result is negative if the
+  /// reading is beyond the plane.
   double margin_rad_s(const Eigen::Vector3d& reading_rad_s, int sign) const {
     return distance_rad_s - sign * (row.dot(reading_rad_s) - offset_rad_s);
   }
@@ -58,8 +58,8 @@ struct SensingDirections {
   bool tilted() const { return rows != Eigen::Matrix3d::Identity(); }
   bool operator==(const SensingDirections&) const = default;
 };
-/// A sensing element without a saturation plane has an axis-aligned sensing direction with the standard deviation
-/// `unknown_sigma`.
+/// A sensing element without a plane of saturated readings has an axis-aligned sensing direction with the standard
+/// deviation `unknown_sigma`.
 SensingDirections sensing_directions(const RailPlanes& planes, double unknown_sigma);
 
 /// clipping per sensing element: -1 at the negative limit, 1 at the positive limit, 0 if unsaturated

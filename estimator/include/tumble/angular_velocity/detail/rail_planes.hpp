@@ -13,16 +13,16 @@
 
 namespace tumble {
 
-/// Finds the tilted saturation planes of a gyro or accelerometer in a whole recording, without clip flags and without
-/// the stated range of the sensor.
+/// Finds the planes on which the readings of saturated sensing elements lie, in a whole recording of a gyro or
+/// accelerometer. RailPlaneFinder needs neither clip flags nor the stated range of the sensor.
 ///
-/// A saturation plane is nearly axis-aligned, limits the readings, and has many readings just below the plane. The
-/// equations are in docs/maths/rails.md.
+/// A plane of saturated readings is nearly axis-aligned, and all readings are below the plane, many of them closely.
+/// The equations are in docs/maths/rails.md.
 ///
 /// RailPlaneFinder assumes constant saturation limits, with one limit per sensing element and sign. RailPlaneFinder
 /// assumes that the three sensing elements of a sensor are of one type, with similar saturation limits. RailPlaneFinder
-/// does not detect readings that overflow and change sign. Sensing elements without a saturation plane count as
-/// unsaturated.
+/// does not detect readings that overflow and change sign. Sensing elements without a plane of saturated readings count
+/// as unsaturated.
 class RailPlaneFinder {
  public:
   struct Params {
@@ -48,8 +48,8 @@ class RailPlaneFinder {
     double log_odds_before = -6.0;  ///< prior log odds of saturation for each element and sign
     double log_odds_min = 1.0;      ///< minimum log odds for accepting a plane
     double log_odds_keep = -3.0;    ///< minimum log odds for keeping an accepted plane
-    /// Saturation planes found in an earlier run of the same device. RailPlaneFinder uses known planes from the start
-    /// of a run until readings contradict the planes.
+    /// Planes of saturated readings found in an earlier run of the same device. RailPlaneFinder uses known planes from
+    /// the start of a run until readings contradict the planes.
     RailPlanes known = {};
 
     template <class Self, class Visitor>
@@ -86,10 +86,10 @@ class RailPlaneFinder {
   /// Throws InvalidParams if a parameter is out of bounds.
   explicit RailPlaneFinder(const Params& params);
 
-  /// Finds the saturation planes in the gyro or accelerometer readings of a recording. The samples must be finite and
-  /// in time order. Cost: O(N), plus some hundred tilted planes that are compared with the largest readings.
+  /// Finds the planes of saturated readings in the gyro or accelerometer readings of a recording. The samples must be
+  /// finite and in time order. Cost: O(N), plus some hundred tilted planes that are compared with the largest readings.
   RailPlanes find(std::span<const ImuSample> samples, Triad triad = Triad::gyro) const;
-  /// Finds the saturation planes in readings without time stamps [rad/s]. `before` contains the saturation planes that
+  /// Finds the planes of saturated readings in readings without time stamps [rad/s]. `before` contains the planes that
   /// were found in a subset of the readings.
   RailPlanes find(std::span<const Eigen::Vector3d> readings_rad_s, const RailPlanes& before,
                   Workspace& workspace) const;

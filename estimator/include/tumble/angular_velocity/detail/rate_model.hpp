@@ -70,8 +70,8 @@ class RateModel {
 
   Eigen::Matrix<double, 6, 1> unscaled(const arrow::StateVector& step) const;
   arrow::StateVector scaled(const Eigen::Matrix<double, 6, 1>& difference) const;
-  /// Returns the covariance to report: larger than the covariance of the fit in contact, and with the uncertain time of
-  /// the reading.
+  /// Returns the covariance to report, which includes the uncertain time of the reading. In contact, the reported
+  /// covariance is larger than the least-squares covariance `covariance_rad2_s2`.
   Eigen::Matrix3d reported(const Eigen::Matrix3d& covariance_rad2_s2, const RateObservation& observation,
                            const RateEstimate& estimate) const;
   double gyro_sigma_rad_s() const { return gyro_sigma_rad_s_; }
@@ -85,7 +85,7 @@ class RateModel {
     Eigen::Vector3d information;  ///< information (inverse variance) of each axis or element
   };
   /// Converts the flight residual to element directions if an accelerometer element clips. Returns variances from
-  /// uncertain sensing directions and from the saturation deficit of the force.
+  /// uncertain sensing directions and from the saturation deficit of the specific force.
   static Eigen::Vector3d read_accel_elements(const RateObservation& observation, RateFactor& flight);
   ForceFactor force_factor(const RateObservation& observation, const RateEstimate& estimate,
                            const RigConstants& rig) const;

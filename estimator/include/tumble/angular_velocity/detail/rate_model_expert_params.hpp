@@ -17,7 +17,7 @@ struct RateReadingParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.accel_scale_error, {"accel_scale_error", "1", 0.0, 1.0,
-                                "scale and misalignment error of the accelerometer, as a share of the force"});
+                                "scale and misalignment error of the accelerometer, as a share of the specific force"});
     visit(p.gyro_time_sigma_s,
           {"gyro_time_sigma_s", "s", 0.0, 0.1,
            "standard deviation of the time stamp of a gyro reading, caused by bandwidth and clock"});
@@ -57,7 +57,7 @@ struct RateContactParams {
   double lever_rad_m = 5.0;
   /// Ratio of the angular accelerations about a contact force and perpendicular to the contact force.
   double twist_ratio = 0.3;
-  /// standard deviation of the unknown contact force, relative to the force; 0: no assumption
+  /// standard deviation of the unknown contact force, relative to the specific force; 0: no assumption
   double force_share = 1.0;
 
   template <class Self, class Visitor>
@@ -77,7 +77,7 @@ struct RateContactParams {
            "perpendicular axes"});
     visit(p.force_share,
           {"contact_force_sigma_ratio", "1", 0.0, 1e3,
-           "standard deviation of the unknown contact force, as a share of the force; 0: no assumption"});
+           "standard deviation of the unknown contact force, as a share of the specific force; 0: no assumption"});
   }
 };
 

@@ -65,8 +65,8 @@ struct RateReport {
   bool calibration_at_prior = false;          ///< the rig constants were fixed at their prior
   std::array<std::optional<double>, 6> rail;  ///< saturation limits: gyro [rad/s], accelerometer [m/s^2]; empty: none
   std::array<bool, 6> rail_observed{};        ///< the limit was observed on this axis, not inferred from another axis
-  RailPlanes planes;                          ///< saturation planes of the gyro's sensing elements, where observed
-  RailPlanes accel_planes;                    ///< saturation planes of the accelerometer's sensing elements, in m/s^2
+  RailPlanes planes;                          ///< planes of the gyro's saturated readings, where observed
+  RailPlanes accel_planes;                    ///< planes of the accelerometer's saturated readings [m/s^2]
   KnownSensorErrors sensor_errors;
   double data_sheet_probability = 1.0, synchronous_probability = 1.0;  ///< see SensorErrorFit
   /// Standard deviation of a delay common to gyro and accelerometer [s]; 0 if the device agrees with its data sheet.
@@ -87,11 +87,11 @@ struct RateReport {
 ///
 /// RateSmoother estimates the rate and angular acceleration of each sample, and the rig constants of the run
 /// (RigConstants). Unclipped gyro readings measure the rate, and clipped readings give a lower bound on the rate, for
-/// any number of axes. In flight, the specific force and Euler's equation determine the rate. During contact, the force
-/// and Euler's equation have lower weights. Between samples, the angular jerk is white noise, whose density increases
-/// with the contact force. The equations are in docs/maths/rate_smoother.md.
+/// any number of axes. In flight, the specific force and Euler's equation determine the rate. During contact, the
+/// specific force and Euler's equation have lower weights. Between samples, the angular jerk is white noise, whose
+/// density increases with the contact force. The equations are in docs/maths/rate_smoother.md.
 ///
-/// A Gauss-Newton solver starts from the rates of a published method (Saave). An iteration costs O(N), including the
+/// A Gauss-Newton solver starts from the rates of the published method Saave. An iteration costs O(N), including the
 /// covariance.
 ///
 /// RateSmoother also estimates the constant errors of gyro and accelerometer (SensorErrors), and repeats the

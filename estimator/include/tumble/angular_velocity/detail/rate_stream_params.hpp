@@ -51,8 +51,8 @@ struct RateStreamParams {
                                           "maximum Mahalanobis distance between the estimated rig constants and their "
                                           "prior; a larger distance resets the calibration to the prior",
                                           FieldRank::basic});
-    visit(p.gap_max_s, {"gap_max_s", "s", 1e-6, 3600.0,
-                        "maximum time between two samples; a longer gap ends the run with an error"});
+    visit(p.gap_max_s,
+          {"gap_max_s", "s", 1e-6, 3600.0, "maximum time between two samples; a longer gap causes an error"});
     visit(p.step_s, {"step_s", "s", 0.0, 0.1,
                      "minimum time between two Gauss-Newton steps; a larger value costs less computing time; 0: one "
                      "step per sample"});

@@ -34,7 +34,7 @@ struct RateStreamForce {
 };
 
 struct RateStreamKnot {
-  RateObservation observation;  ///< with the force at the sample's own time; `read` has the received force
+  RateObservation observation;  ///< with the specific force at the sample's own time; `read` has the received force
   RateStreamForce read;
   Clipping by_axis_aligned_rails;  ///< clipping from flags and equal readings; the observation also uses planes
   RateEstimate estimate;

@@ -11,8 +11,8 @@
 
 namespace tumble {
 
-/// Detects when an IMU is stationary: the mean rate is within a plausible gyro bias, the force may be gravity, and rate
-/// and force are constant up to noise.
+/// Detects when an IMU is stationary: the mean rate is within a plausible gyro bias, the specific force may be gravity,
+/// and rate and force are constant up to noise.
 ///
 /// RestDetector first averages the readings over `reading_s`, so that the parameters do not depend on the sample rate.
 /// White noise of density n [unit/sqrt(Hz)] has the standard deviation n / sqrt(reading_s) after averaging. Set
@@ -51,11 +51,11 @@ class RestDetector {
     }
   };
   struct State {
-    // sums of the current run of readings that stay close to their mean
+    // sums of the latest consecutive readings that stay close to their mean
     Eigen::Vector3d rate_sum_rad_s = Eigen::Vector3d::Zero();
     Eigen::Vector3d force_sum_m_s2 = Eigen::Vector3d::Zero();
     double weight = 0.0;              ///< number of readings in the sums; older readings count less
-    TimeNs first_ns = 0;              ///< time of the run's first sample
+    TimeNs first_ns = 0;              ///< time of the first sample in the sums
     TimeNs last_mean_ns = 0;          ///< time of the last reading
     TimeNs within_bias_since_ns = 0;  ///< start of the time in which the mean rate is within the bias bound
     bool rests = false;               ///< true if the IMU is at rest, up to the last reading

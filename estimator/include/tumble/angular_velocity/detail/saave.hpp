@@ -22,10 +22,9 @@ namespace tumble {
 /// axes of the sample have the variance of an unclipped reading. The smoothing stage smooths the rates of all samples
 /// with a white-noise-on-jerk prior.
 ///
-/// The published method assumes free flight, an unclipped accelerometer, no bias, and no angular acceleration across
-/// the rotation axis. If the IMU is close to the rotation axis, the estimate has a large error that Saave does not
-/// detect. All recovered rates have the same variance. The smoothed rates of clipped axes may be below the saturation
-/// limit.
+/// Saave assumes free flight, an unclipped accelerometer, no bias, and no angular acceleration across the rotation
+/// axis. If the IMU is close to the rotation axis, the estimate has a large error that Saave does not detect. All
+/// recovered rates have the same variance. The smoothed rates of clipped axes may be below the saturation limit.
 class Saave {
  public:
   struct Params {
@@ -37,7 +36,7 @@ class Saave {
     double saturation_point_rad_s = 0.0;
     /// variance of an unclipped reading [(rad/s)^2]; default: (0.03 deg/s/sqrt(Hz) * sqrt(100 Hz))^2
     double variance_measured_rad2_s2 = 2.741e-5;
-    /// variance of a recovered rate [(rad/s)^2]: 0.2741 in the published code, 3.648 in the paper
+    /// variance of a recovered rate [(rad/s)^2]: 0.2741 in the code of the ICRA 2024 paper, 3.648 in the paper
     double variance_estimated_rad2_s2 = 0.2741;
     /// variance of a clipped axis whose rate Saave cannot recover [(rad/s)^2]
     double variance_rejected_rad2_s2 = 1e6;
@@ -58,15 +57,16 @@ class Saave {
             {"variance_measured_rad2_s2", "rad^2/s^2", 1e-12, 1e12, "variance of an unclipped reading"});
       visit(p.variance_estimated_rad2_s2,
             {"variance_estimated_rad2_s2", "rad^2/s^2", 1e-12, 1e12,
-             "variance of a recovered axis: 0.2741 as in the authors' code, 3.648 as printed in the paper",
+             "variance of a recovered axis: 0.2741 in the code of the ICRA 2024 paper, 3.648 in the paper",
              FieldRank::basic});
       visit(p.variance_rejected_rad2_s2,
             {"variance_rejected_rad2_s2", "rad^2/s^2", 1e-12, 1e12, "variance of a clipped axis without an estimate"});
-      visit(p.jerk_psd_rad2_s5,
-            {"jerk_psd_rad2_s5", "rad^2/s^5", 1e-12, 1e12,
-             "power spectral density of the smoother's white angular jerk (paper, sec. IV)", FieldRank::basic});
-      visit(p.gap_max_s, {"gap_max_s", "s", 1e-6, 3600.0,
-                          "maximum time between two samples; a longer gap ends the run with an error"});
+      visit(
+          p.jerk_psd_rad2_s5,
+          {"jerk_psd_rad2_s5", "rad^2/s^5", 1e-12, 1e12,
+           "power spectral density of the smoother's white angular jerk (ICRA 2024 paper, sec. IV)", FieldRank::basic});
+      visit(p.gap_max_s,
+            {"gap_max_s", "s", 1e-6, 3600.0, "maximum time between two samples; a longer gap causes an error"});
     }
   };
 

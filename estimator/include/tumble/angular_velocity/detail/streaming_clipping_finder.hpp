@@ -12,8 +12,8 @@
 
 namespace tumble {
 
-/// Detects saturation limits and saturation planes from all readings so far; causal form of ClippingFinder. Saturation
-/// is detected some samples after its first occurrence, so callers must classify earlier samples again.
+/// Detects saturation limits and planes of saturated readings from all readings so far; causal form of ClippingFinder.
+/// Saturation is detected some samples after its first occurrence, so callers must classify earlier samples again.
 class StreamingClippingFinder {
  public:
   struct Params {

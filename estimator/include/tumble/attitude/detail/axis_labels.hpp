@@ -15,7 +15,7 @@ struct AxisLabels {
   std::array<double, 3> sign = {1., 1., 1.};  ///< sign of each axis; the first sign is 1
   bool gyro_flipped = false;                  ///< all three rates are inverted
 
-  /// Returns the force in the axes of the gyro.
+  /// Returns the specific force in the axes of the gyro.
   Eigen::Vector3d relabelled(const Eigen::Vector3d& force) const {
     return {sign[0] * force[axis[0]], sign[1] * force[axis[1]], sign[2] * force[axis[2]]};
   }

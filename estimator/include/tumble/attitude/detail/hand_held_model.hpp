@@ -67,7 +67,7 @@ struct ReadingNoise {
   double bound = 1.0;                    ///< weight of the gyro's lower bounds; 1: full weight
   double force_bound = 1.0;              ///< weight of the accelerometer's lower bounds; 1: full weight
   double accel_m_s2 = 0.0;               ///< standard deviation of one force reading
-  double force_noise_ratio = 0.0;        ///< additional force noise / (magnitude of the force - gravity)
+  double force_noise_ratio = 0.0;        ///< additional force noise / (magnitude of the specific force - gravity)
   double rest_rad_s = 0.0;               ///< standard deviation of the rate at rest, per node
   double rest_m_s = 0.0;                 ///< standard deviation of the velocity at rest
   double rest_m_s2 = 0.0;                ///< standard deviation of the acceleration at rest

@@ -41,7 +41,7 @@ struct HandMotionParams {
 struct HandHeldReadingParams {
   double deficit_error_ratio = 0.02;    ///< error of an unclipped element / saturation deficit of a clipped element
   double rail_sigma_rad_s = 0.01;       ///< standard deviation of a saturation limit
-  double accel_error_ratio = 0.02;      ///< additional force noise / (magnitude of the force - gravity)
+  double accel_error_ratio = 0.02;      ///< additional force noise / (magnitude of the specific force - gravity)
   double rotation_error_sqrts = 1e-3;   ///< angle random walk per rad/s of rate, from scale errors
   double recovered_sigma_rad_s = 1.0;   ///< clipped rates with a smaller standard deviation count as recovered
   double recovered_tau_s = 0.005;       ///< correlation time of the error of a recovered rate
@@ -56,7 +56,7 @@ struct HandHeldReadingParams {
     visit(p.rail_sigma_rad_s, {"rail_sigma_rad_s", "rad/s", 1e-4, 1.0, "standard deviation of the saturation limit"});
     visit(p.accel_error_ratio,
           {"accel_error_ratio", "1", 0.0, 1.0,
-           "additional noise of the specific force, per m/s^2 of difference between the force and gravity"});
+           "additional noise of the specific force, per m/s^2 of difference between the specific force and gravity"});
     visit(p.rotation_error_sqrts, {"rotation_error_sqrts", "sqrt(s)", 0.0, 1.0,
                                    "angle random walk per rad/s of rate, caused by scale errors", FieldRank::basic});
     visit(p.recovered_sigma_rad_s, {"recovered_sigma_rad_s", "rad/s", 0.0, 1e4,
@@ -101,7 +101,7 @@ struct HandHeldExpertParams {
     visit(p.node_s, {"node_s", "s", 1e-3, 0.1, "time between two nodes of the smoother", FieldRank::basic});
     visit(p.iterations_max, {"iterations_max", "1", 1, 1000, "maximum number of Gauss-Newton steps", FieldRank::basic});
     visit(p.gap_max_s,
-          {"gap_max_s", "s", 1e-300, 1e4, "maximum time between two samples; a longer gap ends the run with an error"});
+          {"gap_max_s", "s", 1e-300, 1e4, "maximum time between two samples; a longer gap causes an error"});
     visit(p.jerk_inflation,
           {"jerk_inflation", "1", 1.0, 100.0,
            "factor on the assumed angular jerk in the computation of the reported covariances", FieldRank::basic});

@@ -51,8 +51,7 @@ struct ImuMergeParams {
     visit(p.accel_range_m_s2,
           {"accel_range_m_s2", "m/s^2", 1e-12, 1e5,
            "measuring range of the accelerometers; readings at or above this value count as saturated"});
-    visit(p.gap_max_s,
-          {"gap_max_s", "s", 1e-9, 1e4, "maximum time between two samples; a longer gap ends the run with an error"});
+    visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4, "maximum time between two samples; a longer gap causes an error"});
     visit.group("", p.expert);
   }
 };

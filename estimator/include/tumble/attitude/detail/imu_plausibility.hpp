@@ -50,8 +50,8 @@ class ImuPlausibility {
     bool in_range = true;           ///< whether all samples of the window are within the gyro's range
     double non_rest_force_s = 0.0;  ///< time with forces that exclude rest
     double unexplained_rad2 = 0.0;  ///< rotation of the force that the gyro does not explain
-    double force_rotation_rad2 = 0.0, gyro_rotation_rad2 = 0.0;  ///< sums over the windows in which the force rotated
-    double rotated_windows = 0.0;                                ///< number of windows in which the force rotated
+    double force_rotation_rad2 = 0.0, gyro_rotation_rad2 = 0.0;  ///< sums over windows with rotating specific force
+    double rotated_windows = 0.0;                                ///< number of windows with rotating specific force
     TimeNs last_time_ns = 0;
     bool started = false;
     bool operator==(const State&) const = default;
@@ -66,13 +66,13 @@ class ImuPlausibility {
   /// Reduces the weight of old samples to about a minute, so that a warning ends after its cause.
   static void limit_memory(State& state);
 
-  /// Returns the fraction of the force's rotation that the gyro does not explain, or 0 while unknown.
+  /// Returns the fraction of the specific force's rotation that the gyro does not explain, or 0 while unknown.
   double unexplained_rotation_ratio(const State& state) const;
-  /// Returns the slope of the regression of the force's rotation on the gyro's rotation: imu_merge.md (I20). The slope
-  /// is 1 for a correct gyro, 2 for a half-scale gyro, -1 for an inverted gyro, and 1 while unknown.
+  /// Returns the slope of the regression of the specific force's rotation on the gyro's rotation: imu_merge.md (I20).
+  /// The slope is 1 for a correct gyro, 2 for a half-scale gyro, -1 for an inverted gyro, and 1 while unknown.
   double rotation_slope(const State& state) const;
-  /// Returns the correlation of the gyro's rotation with the force's rotation, from -1 to 1. The correlation is 1 for a
-  /// gyro of any scale, -1 for an inverted gyro, about 0 for swapped axes, and 1 while unknown.
+  /// Returns the correlation of the gyro's rotation with the specific force's rotation, from -1 to 1. The correlation
+  /// is 1 for a gyro of any scale, -1 for an inverted gyro, about 0 for swapped axes, and 1 while unknown.
   double rotation_agreement(const State& state) const;
   /// Returns the longest time for which the gyro or the accelerometer was frozen [s], or 0 if both sensors always
   /// worked.

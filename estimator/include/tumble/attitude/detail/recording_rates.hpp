@@ -37,9 +37,9 @@ enum class ReplacedReadings : std::uint8_t {
 };
 
 /// Replaces clipped gyro readings by estimated rates plus the gyro bias, so that replaced and original readings have
-/// equal bias. All three axes of a reading are replaced, because a tilted saturation plane also corrupts the unclipped
-/// axes. If no reading clips or the estimation fails, all readings remain. With `unreliable`, the readings of a gyro
-/// that updates more slowly than the log are still interpolated. Cost: O(N).
+/// equal bias. All three axes of a reading are replaced, because a tilted plane of saturated readings also corrupts the
+/// unclipped axes. If no reading clips or the estimation fails, all readings remain. With `unreliable`, the readings of
+/// a gyro that updates more slowly than the log are still interpolated. Cost: O(N).
 RecoveredRates recover_rates(std::span<const ImuSample> samples, std::span<const AuxiliaryRecording> auxiliary_imus,
                              const RegimeSmoother::Params& params, ReplacedReadings replaced);
 

@@ -47,9 +47,10 @@ class RegimeEvidence {
       visit(p.flight_force_sigma_m_s2,
             {"flight_force_sigma_m_s2", "m/s^2", 1e-3, 10.0,
              "standard deviation of the force error of the flight model, caused by drag and sensor bandwidth"});
-      visit(p.flight_share, {"flight_share", "1", 0.0, 1.0,
-                             "additional standard deviation of the force in flight, as a share of the centripetal and "
-                             "tangential force at the lever arm"});
+      visit(p.flight_share,
+            {"flight_share", "1", 0.0, 1.0,
+             "additional standard deviation of the specific force in flight, as a share of the centripetal and "
+             "tangential force at the lever arm"});
       visit(p.hand_sigma_m_s2, {"hand_sigma_m_s2", "m/s^2", 0.1, 100.0, "standard deviation of a hand's acceleration"});
       visit(p.hand_distance_m,
             {"hand_distance_m", "m", 0.0, 1.0, "standard deviation of the distance between hand and IMU"});

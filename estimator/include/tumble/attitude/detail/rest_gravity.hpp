@@ -12,9 +12,10 @@
 
 namespace tumble {
 
-/// Checks estimated rates and the accelerometer with the force at rest, which must have the magnitude of gravity. A
-/// wrong magnitude reveals another unit of the accelerometer, for example g. Between two rests, the force rotated by
-/// the estimated rates must integrate to gravity times the duration: imu_merge.md (I23), (I24), (I25), (I26).
+/// Checks estimated rates and the accelerometer with the specific force at rest, which must have the magnitude of
+/// gravity. A wrong magnitude reveals another unit of the accelerometer, for example g. Between two rests, the specific
+/// force rotated by the estimated rates must integrate to gravity times the duration: imu_merge.md (I23), (I24), (I25),
+/// (I26).
 ///
 /// RestGravity does not detect wrong rates if the body returns to its initial attitude, rotates about the vertical, or
 /// rests less than twice. RestGravity does not detect an accelerometer with all axes flipped. RestGravity mistakes a
@@ -35,7 +36,7 @@ class RestGravity {
   };
   struct MagnitudeState {
     RestDetector::State rest, weightless, above_gravity;
-    double rest_s = 0.0, force_sum_m = 0.0;  ///< total duration of rests, and integral of the force at rest
+    double rest_s = 0.0, force_sum_m = 0.0;  ///< total duration of rests, and integral of the specific force at rest
     double weightless_s = 0.0;               ///< duration of rests without force
     TimeNs last_time_ns = 0;
     bool started = false, rests = false;
@@ -48,7 +49,7 @@ class RestGravity {
     double span_angle_rad = 0.0, variance_rad2 = 0.0;  ///< angle since the last rest, and variance of its error
     Eigen::Vector3d velocity_sum_m_s = Eigen::Vector3d::Zero();  ///< integrated force since the last rest
     double span_s = 0.0,
-           saturation_deficit_m_s = 0.0;  ///< time since the last rest; integrated saturation deficit of the force
+           saturation_deficit_m_s = 0.0;           ///< time since the last rest; integrated saturation deficit
     double segment_s = 0.0, segment_rad2_s = 0.0;  ///< duration and variance of the current run of unmeasured samples
     double velocity_error_ratio = 0.0, velocity_error_ratio_max = 0.0;  ///< velocity error of the worst pair, and limit
     std::size_t spans = 0;                                              ///< number of compared pairs of rests
@@ -59,14 +60,14 @@ class RestGravity {
 
   /// Cost: O(1), no allocation. Samples that are not finite or out of order are ignored.
   void step(const ImuSample& sample, const RateState& rate, State& state) const;
-  /// Checks only the magnitude of the force at rest.
+  /// Checks only the magnitude of the specific force at rest.
   void step(const ImuSample& sample, MagnitudeState& state) const { (void)follow(sample, state); }
 
   /// Reduces the weight of old rests to a minute, so that a warning ends after its cause.
   static void limit_memory(MagnitudeState& state);
 
-  /// Returns the mean magnitude of the force at rest as a fraction of gravity. Returns 0 if every rest of a second was
-  /// without force, and 1 if the body never rested.
+  /// Returns the mean magnitude of the specific force at rest as a fraction of gravity. Returns 0 if every rest of a
+  /// second was without force, and 1 if the body never rested.
   double magnitude_error_ratio(const MagnitudeState& state) const;
   /// Returns `out_of_range` if magnitude_error_ratio() differs from 1.
   Status magnitude_verdict(const MagnitudeState& state) const;

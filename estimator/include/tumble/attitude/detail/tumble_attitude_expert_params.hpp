@@ -80,8 +80,7 @@ struct TumbleAttitudeExpertParams {
     visit(p.recovered_tau_s, {"recovered_tau_s", "s", 1e-4, 1e4, "correlation time of the error of a recovered rate"});
     visit(p.node_s, {"node_s", "s", 1e-4, 1.0, "time between two filter corrections"});
     visit(p.reading_s, {"reading_s", "s", 0.0, 0.1, "duration over which readings are averaged; 0: no averaging"});
-    visit(p.gap_max_s,
-          {"gap_max_s", "s", 1e-9, 1e4, "maximum time between two samples; a longer gap ends the run with an error"});
+    visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4, "maximum time between two samples; a longer gap causes an error"});
     visit.group("rest_", p.rest);
     visit.group("", p.at_rest);
     visit.group("", p.rolling);

@@ -18,8 +18,8 @@ struct TumbleAttitudeState {
   Eigen::Vector3d bias_rad_s = Eigen::Vector3d::Zero();
   Eigen::Vector2d v_W_m_s = Eigen::Vector2d::Zero();
   Eigen::Vector2d displacement_W_m = Eigen::Vector2d::Zero();
-  /// Covariance of the errors in this order: tilt error (phi_x, phi_y) in W, bias in I, velocity, displacement, heading
-  /// error phi_z. The attitude error is defined by q_true = Exp(phi) q_WI.
+  /// Covariance of the errors in this order: tilt error (phi_x, phi_y) in world axes, bias in IMU axes, velocity,
+  /// displacement, heading error phi_z. The attitude error is defined by q_true = Exp(phi) q_WI.
   Covariance covariance = Covariance::Zero();
   ImuAverage average;  ///< average of the readings that are not yet processed
   Eigen::Matrix3d recovered_covariance_rad2_s2 = Eigen::Matrix3d::Zero();  ///< mean rate covariance in `average`

@@ -31,8 +31,7 @@ struct VqfParams {
           switch_field("motion_bias_estimation", "1: also estimate the gyro bias in motion", FieldRank::basic));
     visit(p.bias_sigma_start_rad_s, {"bias_sigma_start_rad_s", "rad/s", 1e-9, 1.0,
                                      "prior standard deviation of the gyro bias", FieldRank::basic});
-    visit(p.gap_max_s,
-          {"gap_max_s", "s", 1e-9, 1e4, "maximum time between two samples; a longer gap ends the run with an error"});
+    visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4, "maximum time between two samples; a longer gap causes an error"});
   }
 };
 
@@ -53,8 +52,8 @@ class Vqf {
     Eigen::Vector3d bias_rad_s = Eigen::Vector3d::Zero();
     Eigen::Matrix3d bias_covariance_rad2_s2 = Eigen::Matrix3d::Zero();
     LowPass<3> f_N_m_s2;
-    LowPass<9> R_WI;          ///< rotation matrix by columns, low-passed like the force
-    LowPass<2> bias_W_rad_s;  ///< horizontal bias in W, low-passed like the force
+    LowPass<9> R_WI;          ///< rotation matrix by columns, low-passed like the specific force
+    LowPass<2> bias_W_rad_s;  ///< horizontal bias in world axes, low-passed like the specific force
     LowPass<3> rest_rate_rad_s;
     LowPass<3> rest_force_m_s2;
     double rest_s = 0.0;
@@ -66,8 +65,8 @@ class Vqf {
 
   explicit Vqf(const Params& params);
 
-  /// The first sample sets the attitude from its specific force, with yaw 0. If the force is below 1e-6 m/s^2, step()
-  /// integrates the gyro without a correction. On error, the state is unchanged. Cost: O(1), no allocation.
+  /// The first sample sets the attitude from its specific force, with yaw 0. If the specific force is below 1e-6 m/s^2,
+  /// step() integrates the gyro without a correction. On error, the state is unchanged. Cost: O(1), no allocation.
   Status step(const ImuSample& sample, State& state) const;
 
  private:

@@ -26,10 +26,10 @@ struct MotionSample {
   Eigen::Vector3d rate_sigma_rad_s = Eigen::Vector3d::Zero();  ///< standard deviation of the rate, IMU axes
   std::uint8_t clipped_axes = 0;                               ///< bit j: gyro axis j was saturated
   std::uint8_t accel_saturated_axes = 0;                       ///< bit j: accelerometer axis j was saturated
-  bool at_rest = false;                 ///< the sample belongs to the rest at the start of the run
-  std::optional<TimeNs> rest_start_ns;  ///< first sample of the current rest, from the IMU alone
-  bool in_flight = false;               ///< f_I_m_s2 is the computed force of free flight, not a measurement
-  bool bridges_gap = false;             ///< the sample bridges a gap: the force is unknown, the velocity constant
+  bool at_rest = false;                                        ///< the sample belongs to the initial rest
+  std::optional<TimeNs> rest_start_ns;                         ///< first sample of the current rest, from the IMU alone
+  bool in_flight = false;    ///< f_I_m_s2 is the computed force of free flight, not a measurement
+  bool bridges_gap = false;  ///< the sample bridges a gap: unknown specific force, constant velocity
 };
 
 /// Motion of the IMU at one time. The covariance refers to position, attitude and velocity in world axes, with the
@@ -47,8 +47,8 @@ struct MotionState {
 /// Computes the motion of the IMU over a time segment by strapdown integration from a known start.
 ///
 /// The attitude is exact if the rate is constant in body axes over each sample. The mean force over a sample is exact
-/// if the force is constant in body axes, like the centripetal force of a spin. SweepTrajectory neglects sculling
-/// within a sample and the earth's rotation.
+/// if the specific force is constant in body axes, like the centripetal force of a spin. SweepTrajectory neglects
+/// sculling within a sample and the earth's rotation.
 ///
 /// The saturation deficit (true rate minus clipped reading) corrects the clipped gyro axes. The saturation deficit is a
 /// linear interpolation between kKnots support points, equally spaced over the segment. The equations are in
@@ -130,7 +130,7 @@ class SweepTrajectory {
   struct Interval {
     double start_s, length_s;
     Eigen::Quaterniond q_WI;
-    Eigen::Vector3d rate_I_rad_s, specific_force_W_m_s2;  // rate in body axes; mean specific force in W
+    Eigen::Vector3d rate_I_rad_s, specific_force_W_m_s2;  // rate in body axes; mean specific force in world axes
     Eigen::Vector3d preintegrated_velocity_m_s,
         preintegrated_position_m;    // integrals of the specific force up to start_s
     Eigen::Vector3d deficit_factor;  // factor s_j where axis j is clipped, 0 elsewhere

@@ -9,8 +9,8 @@
 
 namespace tumble {
 
-/// Order of the unknowns: position, attitude (left perturbation in W) and velocity at the start of the trajectory,
-/// saturation deficit of clipped axes, calibration.
+/// Order of the unknowns: position, attitude (left perturbation in world axes) and velocity at the start of the
+/// trajectory, saturation deficit of clipped axes, calibration.
 struct SweepUnknowns {
   static constexpr int kMotionSize = 9;  ///< position, attitude, velocity
   static constexpr int kDeficitStart =

@@ -55,9 +55,9 @@ struct RollingRailParams {
   /// Standard deviation of rates that ImuMerge recovered. A rate counts as recovered if it is beyond the range and has
   /// no clip flag. The value 0 means that ImuMerge recovers no rates.
   double recovered_rate_sigma_rad_s = 0.0;
-  /// Standard deviation of the force deficit due to saturation shorter than a sample, relative to the force. A short
-  /// impact may saturate the accelerometer within a sample although the mean stays below the range. The full standard
-  /// deviation applies above 0.6 of the range; below 0.3 of the range, the standard deviation is zero.
+  /// Standard deviation of the force deficit due to saturation shorter than a sample, relative to the specific force. A
+  /// short impact may saturate the accelerometer within a sample although the mean stays below the range. The full
+  /// standard deviation applies above 0.6 of the range; below 0.3 of the range, the standard deviation is zero.
   double subsample_saturation_ratio = 0.25;
 
   template <class Self, class Visitor>
@@ -65,25 +65,25 @@ struct RollingRailParams {
     visit(p.recovered_rate_sigma_rad_s,
           {"recovered_rate_sigma_rad_s", "rad/s", 0.0, 1e3,
            "standard deviation of a clipped rate that was recovered from several IMUs; 0: no recovery"});
-    visit(p.subsample_saturation_ratio,
-          {"subsample_saturation_ratio", "1", 0.0, 10.0,
-           "standard deviation of the force deficit due to saturation shorter than a sample, as a share of the force"});
+    visit(p.subsample_saturation_ratio, {"subsample_saturation_ratio", "1", 0.0, 10.0,
+                                         "standard deviation of the force deficit due to saturation shorter than a "
+                                         "sample, as a share of the specific force"});
   }
 };
 
 /// RollingGapParams contains the parameters of gaps in the readings. If two readings are further apart than
-/// gap_min_duration_s, the force between the readings is unknown. RollingFilter interpolates the rate linearly.
+/// gap_min_duration_s, the specific force between the readings is unknown. RollingFilter interpolates the rate
+/// linearly.
 struct RollingGapParams {
   double gap_min_duration_s = 0.06;
-  double gap_max_s = 1.0;  ///< a longer gap ends the run
+  double gap_max_s = 1.0;  ///< a longer gap ends the estimation
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.gap_min_duration_s,
           {"gap_min_duration_s", "s", 1e-9, 1.0,
-           "minimum time between two readings that counts as a gap, in which the force is unknown"});
-    visit(p.gap_max_s,
-          {"gap_max_s", "s", 1e-9, 1.0, "maximum time between two samples; a longer gap ends the run with an error"});
+           "minimum time between two readings that counts as a gap, in which the specific force is unknown"});
+    visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1.0, "maximum time between two samples; a longer gap causes an error"});
   }
 };
 

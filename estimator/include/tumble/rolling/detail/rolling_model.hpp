@@ -24,7 +24,7 @@ struct RollingEstimate {
   bool uncertain = false;  ///< the position is uncertain after an event (RollingModeParams::event_sigma_growth_m)
 };
 
-/// trajectory and constants about which the filter linearises its errors
+/// Nominal trajectory and calibration, about which the filter linearises its errors.
 struct RollingNominal {
   Eigen::Quaterniond q_WI = Eigen::Quaterniond::Identity();
   Eigen::Vector3d v_WI_m_s = Eigen::Vector3d::Zero();

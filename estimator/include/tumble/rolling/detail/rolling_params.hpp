@@ -17,8 +17,8 @@ struct RollingExpertParams {
   double node_s = 0.02;  ///< time between two measurement updates
   /// averaging time of the readings; 0: no averaging
   double reading_s = 4e-3;
-  /// The rest detector processes the mean reading of each node. With a rate limit of 0.02 instead of 0.0115 rad/s per
-  /// axis, the drift of a sphere that comes to rest would be 1.5 times as large.
+  /// The rest detector processes the mean reading of each time step `node_s`. With a rate limit of 0.02 instead of
+  /// 0.0115 rad/s per axis, the drift of a sphere that comes to rest would be 1.5 times as large.
   RestDetector::Params rest = {
       .rate_max_rad_s = 0.0115, .rate_spread_rad_s = 0.016, .force_spread_m_s2 = 0.15, .rest_s = 0.4, .memory_s = 0.1};
   RollingPriorParams prior = {};

@@ -32,7 +32,7 @@ class RollingSmoother {
     double lag_s = kWholeRun;    ///< delay of an estimate behind the newest sample
     double block_s = 0.2;        ///< RollingSmoother reports estimates in blocks of this duration
     double rate_max_hz = 500.0;  ///< sample rate for which memory is allocated in advance
-    /// Measured horizontal distance of the centre between start and end of the run, and its standard deviation; 0: not
+    /// Measured horizontal distance of the centre between first and last sample, and its standard deviation; 0: not
     /// measured. A measured distance corrects the radius of the sphere.
     double known_distance_m = 0.0, known_distance_sigma_m = 5e-3;
 
@@ -42,10 +42,9 @@ class RollingSmoother {
       visit(p.final_pass_noise_ratio,
             {"final_pass_noise_ratio", "1", 1e-6, 1.0,
              "process noise of the smoother, as a share of the process noise of RollingFilter"});
-      visit(p.lag_s,
-            {"lag_s", "s", 1e-3, 1e9,
-             "maximum delay of a pose; a longer delay makes poses more accurate; 1e9: until the end of the run",
-             FieldRank::basic});
+      visit(p.lag_s, {"lag_s", "s", 1e-3, 1e9,
+                      "maximum delay of a pose; a longer delay makes poses more accurate; 1e9: until the last sample",
+                      FieldRank::basic});
       visit(p.block_s, {"block_s", "s", 1e-3, 1e3, "length of the blocks in which estimates are reported"});
       visit(p.rate_max_hz,
             {"rate_max_hz", "Hz", 1e-3, 1e5, "sample rate for which the memory of the delay is allocated in advance"});
@@ -100,12 +99,13 @@ class RollingSmoother {
   /// Returns the filter that updates State::live.
   const RollingFilter& filter() const { return filter_; }
 
-  /// Appends the estimates that are older than the lag to `out`. On error, the state is unchanged.
+  /// Appends the estimates that are older than `lag_s` to `out`. On error, the state is unchanged.
   ///
-  /// The first call allocates the memory for samples within the lag. Later calls allocate memory only for `out` and for
-  /// smoothing, at the last sample of a block of `block_s`. Smoothing temporarily needs 14 KiB per node of lag and
-  /// block, or 4 MiB plus 0.3 KiB per node if there are many nodes. The memory of the state grows with the duration (64
-  /// bytes per sample, 152 per node) with kWholeRun, above rate_max_hz, or beyond a million samples in the lag.
+  /// The first call allocates the memory for the samples of the last `lag_s`. Later calls allocate memory only for
+  /// `out` and for smoothing, at the last sample of a block of `block_s`. Smoothing temporarily needs 14 KiB per node
+  /// of lag and block, or 4 MiB plus 0.3 KiB per node if there are many nodes. The memory of the state grows with the
+  /// duration (64 bytes per sample, 152 per node) with kWholeRun, above rate_max_hz, or beyond a million samples in
+  /// `lag_s`.
   Status step(const ImuSample& sample, State& state, std::vector<RollingEstimate>& out) const;
 
   /// Smooths the remaining estimates with all data, and passes the estimates to `take` in time order. For a whole run
@@ -114,8 +114,8 @@ class RollingSmoother {
   void finish(State& state, const EstimateCallback& take) const;
   void finish(State& state, std::vector<RollingEstimate>& out) const;
 
-  /// Ends the run with externally known contact modes. `known` contains one contact mode per sample of a run that was
-  /// processed with kWholeRun.
+  /// Smooths all estimates with externally known contact modes. `known` contains one contact mode per sample of a run
+  /// that was processed with kWholeRun.
   void finish(std::span<const RollingMode> known, State& state, const EstimateCallback& take) const;
 
  private:
