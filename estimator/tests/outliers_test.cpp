@@ -98,6 +98,34 @@ TEST(Outliers, OneWildReadingCostsOneReading) {
   }
 }
 
+/// `count` wild readings, each `step` samples after the one before: equal ones, or of either sign and growing.
+std::vector<ImuSample> with_wild_readings(std::vector<ImuSample> imu, Wild wild, std::size_t count, std::size_t step,
+                                          bool equal) {
+  for (std::size_t k = 0; k < count; ++k, wild.k += step) {
+    imu = with_wild(std::move(imu), wild);
+    if (!equal) wild.value *= -1.3;
+  }
+  return imu;
+}
+
+TEST(Outliers, SeveralWildReadingsCostAsManyReadings) {
+  const ThrownBody body;
+  const std::vector<ImuSample> imu = test::noisy(body.imu(), body.rail_rad_s);
+  const Flight clean = run_tumbling(body, imu);
+  for (const Wild& wild :
+       {Wild{"at rest", 80, Reading::rate, 1, 6.0}, Wild{"at rest", 60, Reading::force, 0, 150.0},
+        Wild{"in flight", 160, Reading::rate, 2, 60.0}, Wild{"in flight", 180, Reading::force, 1, -8000.0}}) {
+    const std::size_t kCases[][2] = {{2, 1}, {2, 3}, {5, 1}};  // count, step
+    for (const auto& [count, step] : kCases) {
+      const bool equal = count == 2;
+      const Flight run = run_tumbling(body, with_wild_readings(imu, wild, count, step, equal));
+      const std::string name = name_of(wild) + ", count " + std::to_string(count) + ", step " + std::to_string(step);
+      EXPECT_LT(run.end_error_m, std::max(1.2 * clean.end_error_m, clean.end_error_m + 0.005)) << name;
+      EXPECT_EQ(run.rejected, count) << name;
+    }
+  }
+}
+
 TEST(Outliers, TheNewestPoseWaitsForTheNextReading) {
   const ThrownBody body;
   const std::vector<ImuSample> imu = test::noisy(body.imu(), body.rail_rad_s);
@@ -146,6 +174,23 @@ TEST(Outliers, MotionAndImpactsPass) {
   railed[10].angular_velocity_rad_s.x() += 8.0;
   railed[9].device_clip_flags = kClipAccelZ;  // the force may have been any
   EXPECT_EQ(rejected_of(railed), 0u);
+}
+
+TEST(Outliers, AJumpThatLastsForSixSamplesPasses) {
+  for (std::size_t count = 1; count <= 7; ++count) {
+    std::vector<ImuSample> samples = at_rest(40);
+    for (std::size_t k = 10; k < 10 + count; ++k) samples[k].angular_velocity_rad_s.z() += 8.0;
+    EXPECT_EQ(rejected_of(samples), count <= OutlierFilter::kDelayedMax ? count : 0u) << count;
+  }
+}
+
+TEST(Outliers, WildReadingsAtTheStartAreRejected) {
+  for (const double second : {1.0, -1.3}) {
+    std::vector<ImuSample> samples = at_rest(40);
+    samples[0].angular_velocity_rad_s.x() = 20.0;
+    samples[1].angular_velocity_rad_s.x() = second * 20.0;
+    EXPECT_EQ(rejected_of(samples), 2u) << second;
+  }
 }
 
 TEST(Outliers, WhatLastsIsNoOutlierWhateverTheSheetSays) {
@@ -243,6 +288,9 @@ TEST(Outliers, OneWildReadingMovesNoSphere) {
       const double error_m = rolling_error_m(harmed, rejected);
       EXPECT_LT(error_m, std::max(1.2 * clean_m, clean_m + 0.005)) << name_of(wild) << ", units " << count;
       EXPECT_EQ(rejected, 1u) << name_of(wild) << ", units " << count;
+      harmed.back() = with_wild_readings(units.back(), wild, 3, 1, true);
+      EXPECT_LT(rolling_error_m(harmed, rejected), std::max(1.2 * clean_m, clean_m + 0.005)) << name_of(wild);
+      EXPECT_EQ(rejected, 3u) << name_of(wild) << ", units " << count;
     }
   }
 }

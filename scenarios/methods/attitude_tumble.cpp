@@ -5,7 +5,7 @@
 #include "scenarios/methods/attitude_tumble.hpp"
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/imu_check.hpp"
-#include "scenarios/methods/recovered_rates.hpp"
+#include "scenarios/methods/rate_tumble.hpp"
 #include "scenarios/methods/registry.hpp"
 #include "scenarios/methods/report_rates.hpp"
 #include "scenarios/methods/sample_times.hpp"

@@ -9,9 +9,8 @@
 #include "scenarios/methods/imu_check.hpp"
 #include "scenarios/methods/method.hpp"
 #include "scenarios/methods/rate_baseline.hpp"
-#include "scenarios/methods/recovered_rates.hpp"
+#include "scenarios/methods/rate_tumble.hpp"
 #include "scenarios/methods/registry.hpp"
-#include "scenarios/methods/report_rails.hpp"
 #include "scenarios/methods/report_rates.hpp"
 #include "scenarios/methods/sample_times.hpp"
 #include "scenarios/methods/settings.hpp"
@@ -26,11 +25,6 @@ namespace {
 void report_carried(const HandHeldSmoother::Report& report, std::map<std::string, double>& health) {
   health["iterations"] = report.iterations;
   health["converged"] = report.converged ? 1.0 : 0.0;
-  health["hand_mahalanobis"] = report.hand_acceleration_ratio;
-  health["revolutions_asked"] = report.revolutions_tested;
-  health["revolutions_taken"] = report.revolutions_corrected;
-  health["revolutions_open"] = report.revolutions_ambiguous;
-  health["revolutions_failed"] = report.revolutions_failed;
 }
 
 const Settings<HandHeldSmoother::Params>& carried_settings() {

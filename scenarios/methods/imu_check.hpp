@@ -3,8 +3,11 @@
 
 #include <optional>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "scenarios/methods/method.hpp"
+#include "scenarios/recordings/import.hpp"
 #include "tumble/common/imu.hpp"
 #include "tumble/odometry/detail/imu_findings.hpp"
 
@@ -20,5 +23,9 @@ ImuFindings check_imu(const sim::Sensors& sensors, std::span<const ImuSample> sa
 /// Only methods that process the whole recording may call inflate_rates, because live results must not depend on later
 /// readings.
 void inflate_rates(const ImuFindings& findings, std::span<const ImuSample> samples, Estimate& estimate);
+
+/// Returns a caution about units, signs or axes of the readings, or an empty text.
+std::string imu_note(const sim::ImuRecord& imu, double gravity_m_s2);
+std::vector<std::string> imu_notes(const Imported& recording);
 
 }  // namespace tumble::scenarios

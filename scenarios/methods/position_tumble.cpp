@@ -67,16 +67,8 @@ sim::ContactLabel contact_label(double radius_m, const RollingOdometry::Pose& po
   return slip_or_slide(radius_m, pose.pose.q_WA, pose.angular_velocity_rad_s, pose.pose.v_WA_m_s);
 }
 
-void report_whole(const MergedFindings& whole, std::span<const std::string> names, Estimate& estimate) {
+void report_whole(const MergedFindings& whole, Estimate& estimate) {
   if (whole.merged.lever_arm_agreement) estimate.health["imu_arm_share"] = *whole.merged.lever_arm_agreement;
-  estimate.health["imu_readings_left_out"] = static_cast<double>(whole.merged.excluded_readings);
-  if (whole.merged.units.size() < 2) return;
-  for (const MergedRecordings::Unit& unit : whole.merged.units) {
-    const std::string& name = names[unit.unit];
-    estimate.health[name + "_time_offset_s"] = unit.time_offset_s;
-    estimate.health[name + "_time_offset_sigma_s"] = unit.time_offset_sigma_s;
-    estimate.health[name + "_rate_bias_rad_s"] = unit.rate_bias_rad_s;
-  }
 }
 
 Status replay(const std::vector<UnitRecording>& recordings, RollingOdometry& odometry, double radius_m,
@@ -112,24 +104,10 @@ Status replay(const std::vector<UnitRecording>& recordings, RollingOdometry& odo
 }
 
 void report(const RollingOdometry& odometry, const RollingOdometry::Params& params, Estimate& estimate) {
-  if (odometry.bridged_gaps() > 0) {
-    estimate.health["gaps_bridged"] = static_cast<double>(odometry.bridged_gaps());
-    estimate.health["gap_longest_s"] = odometry.longest_gap_s();
-  }
   if (odometry.restart_count() > 0) estimate.health["gaps"] = static_cast<double>(odometry.restart_count());
-  if (odometry.started_in_motion()) estimate.health["started_in_motion"] = 1.0;
   if (odometry.rejected_readings() > 0)
     estimate.health["rejected_readings"] = static_cast<double>(odometry.rejected_readings());
-  if (params.lag_s <= 0.0) return;
-  const RollingOdometry::Calibration calibration = odometry.calibration();
-  estimate.centre_B_m = calibration.centre_B_m;
-  estimate.health["centre_x_m"] = estimate.centre_B_m.x();
-  estimate.health["centre_y_m"] = estimate.centre_B_m.y();
-  estimate.health["centre_z_m"] = estimate.centre_B_m.z();
-  if (calibration.radius_sigma_m > 0.0) {
-    estimate.health["radius_m"] = calibration.radius_m;
-    estimate.health["radius_sigma_m"] = calibration.radius_sigma_m;
-  }
+  if (params.lag_s > 0.0) estimate.centre_B_m = odometry.calibration().centre_B_m;
 }
 
 Estimate run(const char* method, const Settings<RollingOdometry::Params>& settings, const sim::Sensors& sensors,
@@ -145,7 +123,7 @@ Estimate run(const char* method, const Settings<RollingOdometry::Params>& settin
   RollingOdometry odometry(params);
   estimate.status = replay(units.recordings, odometry, params.radius_m, units.names, estimate);
   estimate.health["imus"] = static_cast<double>(params.units.size());
-  if (odometry.recording() != nullptr) report_whole(*odometry.recording(), units.names, estimate);
+  if (odometry.recording() != nullptr) report_whole(*odometry.recording(), estimate);
   report_beyond_range(units.beyond_range, estimate);
   report(odometry, params, estimate);
   return estimate;

@@ -14,7 +14,6 @@
 #include "scenarios/methods/rate_tumble.hpp"
 #include "scenarios/methods/report_rates.hpp"
 #include "scenarios/methods/sample_times.hpp"
-#include "tumble/attitude/detail/recording_rates.hpp"
 
 namespace tumble::scenarios {
 
@@ -125,6 +124,16 @@ RegimeSmoother::Params regime_params(const sim::Sensors& sensors, const RateSmoo
   RegimeSmoother::Params out;
   out.rate = rate;
   out.evidence.gravity_m_s2 = out.hand_held.gravity_m_s2 = sensors.gravity_m_s2;
+  return out;
+}
+
+RecoveredRates recovered_readings(const sim::Sensors& sensors, std::span<const ImuSample> samples,
+                                  ReplacedReadings replaced, Estimate& estimate) {
+  const RateSmoother::Params rate = stated_params(sensors.imus.front(), rate_tumble_settings().defaults());
+  std::vector<AuxiliaryRecording> auxiliary_imus;
+  if (!auxiliary_recordings(sensors, auxiliary_imus).ok()) auxiliary_imus.clear();
+  const RecoveredRates out = recover_rates(samples, auxiliary_imus, regime_params(sensors, rate), replaced);
+  report_rails(out.rails, estimate.health);
   return out;
 }
 

@@ -15,6 +15,7 @@
 #include "sim/recording.hpp"
 #include "tumble/angular_velocity/detail/auxiliary_recording.hpp"
 #include "tumble/angular_velocity/detail/rate_smoother.hpp"
+#include "tumble/attitude/detail/recording_rates.hpp"
 #include "tumble/attitude/detail/regime_smoother.hpp"
 
 namespace tumble::scenarios {
@@ -32,6 +33,10 @@ RateSmoother::Params smoother_params(const sim::ImuRecord& record, const Setting
 RegimeSmoother::Params regime_params(const sim::Sensors& sensors, const RateSmoother::Params& rate);
 
 Status auxiliary_recordings(const sim::Sensors& sensors, std::vector<AuxiliaryRecording>& out);
+
+/// If the data of one auxiliary IMU are invalid, no auxiliary IMU is used.
+RecoveredRates recovered_readings(const sim::Sensors& sensors, std::span<const ImuSample> samples,
+                                  ReplacedReadings replaced, Estimate& estimate);
 
 /// Starts from the saved calibration `given`, and writes the new calibration to `found`; both may be null. If the run
 /// fails, or estimates neither rig constants nor a saturation limit, `found` stays unchanged. The covariance of the

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -9,7 +8,6 @@
 #include "scenarios/methods/imu_check.hpp"
 #include "scenarios/methods/rate_tumble.hpp"
 #include "scenarios/methods/registry.hpp"
-#include "scenarios/methods/report_rails.hpp"
 #include "scenarios/methods/report_rates.hpp"
 #include "scenarios/methods/sample_times.hpp"
 #include "tumble/angular_velocity/rate_stream.hpp"
@@ -98,27 +96,10 @@ Estimate rates_of_stream(const sim::Sensors& sensors, const sim::Values& paramet
   report_gaps(samples, estimate);
   const RateStream::State& state = all.rate;
   estimate.health["calibration_at_prior"] = is_at_prior(stream, state) ? 1.0 : 0.0;
-  estimate.health["rig_resets"] = static_cast<double>(state.rig_resets);
-  estimate.health["device_unlike"] = state.device.front().posterior.uncalibrated_probability;
-  const KnownSensorErrors device = stream.sensor_errors(state);
-  constexpr int kDelay = SensorErrors::kDelay;
-  estimate.health["accel_delay_s"] = device.errors.accel_delay_s;
-  estimate.health["accel_delay_sigma_s"] = std::sqrt(device.covariance(kDelay, kDelay));
-  estimate.health["steps_skipped"] = static_cast<double>(state.failures);
+  estimate.health["accel_delay_s"] = stream.sensor_errors(state).errors.accel_delay_s;
   report_rails(state.rails.known, estimate.health);
-  std::optional<double> carried_share;
-  if (all.reported > 0) {
-    const double each = 1.0 / static_cast<double>(all.reported);
-    estimate.health["regime_flight_share"] = each * all.sum.flight;
-    estimate.health["regime_contact_share"] = each * all.sum.contact;
-    carried_share = each * all.sum.hand_held;
-    estimate.health["regime_carried_share"] = *carried_share;
-  }
-  estimate.health["regime_carried_joined"] = static_cast<double>(all.combined_samples);
-  estimate.health["regime_carried_starts"] = static_cast<double>(all.starts);
-  if (all.spin_samples > 0) estimate.health["regime_spin_samples"] = static_cast<double>(all.spin_samples);
-  estimate.health["carried_steps_skipped"] = static_cast<double>(all.hand_held.failures);
-  estimate.health["carried_revolutions_open"] = static_cast<double>(all.hand_held.revolutions_ambiguous);
+  const std::optional<double> carried_share =
+      all.reported > 0 ? std::optional(all.sum.hand_held / static_cast<double>(all.reported)) : std::nullopt;
   if (estimate.status.ok() && found != nullptr) {
     if (std::optional<CalibratedRig> rig = learnt(stream, params.rate, given, state)) *found = std::move(rig);
   }

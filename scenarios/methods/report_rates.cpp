@@ -2,71 +2,63 @@
 #include "scenarios/methods/report_rates.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <array>
 #include <cstddef>
-#include <map>
-#include <string>
 
 #include "scenarios/methods/bridge.hpp"
-#include "scenarios/methods/report_rails.hpp"
 
 namespace tumble::scenarios {
 
 namespace {
 
-void report_smoother(const RateReport& report, Estimate& result) {
-  std::map<std::string, double>& health = result.health;
+constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
+
+void report_level(std::size_t axis, double level_rad_s, std::map<std::string, double>& health) {
+  health[std::string("learnt_gyro_rail_") + kAxes[axis] + "_rad_s"] = level_rad_s;
+}
+
+void report_smoother(const RateReport& report, std::map<std::string, double>& health) {
   health["iterations"] = report.iterations;
   health["converged"] = report.converged ? 1.0 : 0.0;
-  health["restarts"] = report.restarts;
   health["calibration_mahalanobis"] = report.calibration_mahalanobis;
   health["calibration_at_prior"] = report.calibration_at_prior ? 1.0 : 0.0;
-  health["flight_share"] = report.flight_share;
   health["readings_missing"] = static_cast<double>(report.missing_readings);
   health["rails_disagreeing"] = static_cast<double>(
       std::count(report.contradicts_stated_range.begin(), report.contradicts_stated_range.end(), true));
-  constexpr int kDelay = SensorErrors::kDelay;
   health["accel_delay_s"] = report.sensor_errors.errors.accel_delay_s;
-  health["accel_delay_sigma_s"] = std::sqrt(report.sensor_errors.covariance(kDelay, kDelay));
   health["device_calibrated"] = report.data_sheet_probability;
   health["triads_together"] = report.synchronous_probability;
   health["error_rounds"] = report.error_rounds;
-  health["gyro_update_s"] = report.gyro_update_s;
-  health["accel_update_s"] = report.accel_update_s;
-  health["rails_upright"] = report.clips_after_compensation ? 1.0 : 0.0;
-  const char* const names[] = {"x", "y", "z"};
-  for (int j = 0; j < 3; ++j) {
-    const std::string axis = names[j];
-    health["learnt_lever_arm_" + axis + "_m"] = report.calibration.constants.lever_arm_m[j];
-    health["learnt_lever_arm_sigma_" + axis + "_m"] = std::sqrt(report.calibration.covariance(j, j));
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    health[std::string("learnt_lever_arm_") + kAxes[axis] + "_m"] =
+        report.calibration.constants.lever_arm_m[static_cast<Eigen::Index>(axis)];
+    if (report.rail_observed[axis]) report_level(axis, *report.rail[axis], health);
   }
-  report_rails(report, health);
 }
 
 }  // namespace
+
+void report_rails(const SaturationLevels& rails, std::map<std::string, double>& health) {
+  const RailPlanes in_use = rails.planes_in_use();
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double level_rad_s = rails.axis_aligned_rails.channels[axis].rail;
+    if (in_use.element[axis]) {
+      report_level(axis, in_use.element[axis]->distance_rad_s, health);
+    } else if (level_rad_s > 0.0) {
+      report_level(axis, level_rad_s, health);
+    }
+  }
+}
 
 std::optional<double> carried_share(const RegimeSmoother::Report& report) {
   return report.judged ? std::optional(report.probabilities.hand_held) : std::nullopt;
 }
 
 void report_rates(const RegimeSmoother::Report& report, Estimate& result) {
-  report_smoother(report.rate, result);
+  report_smoother(report.rate, result.health);
   if (!report.judged) return;
-  std::map<std::string, double>& health = result.health;
-  health["regime_flight_share"] = report.probabilities.flight;
-  health["regime_contact_share"] = report.probabilities.contact;
-  health["regime_carried_share"] = report.probabilities.hand_held;
-  health["regime_carried_clipped_max"] = report.hand_held_probability_max;
-  health["regime_carried_asked"] = report.hand_held_smoother_ran ? 1.0 : 0.0;
-  if (report.spin_samples > 0) health["regime_spin_samples"] = static_cast<double>(report.spin_samples);
-  if (!report.hand_held_smoother_ran) return;
-  health["carried_iterations"] = report.hand_held.iterations;
-  health["carried_converged"] = report.hand_held.converged ? 1.0 : 0.0;
-  health["carried_hand_mahalanobis"] = report.hand_held.hand_acceleration_ratio;
-  health["carried_revolutions_asked"] = report.hand_held.revolutions_tested;
-  health["carried_revolutions_taken"] = report.hand_held.revolutions_corrected;
-  health["carried_revolutions_open"] = report.hand_held.revolutions_ambiguous;
-  health["carried_revolutions_failed"] = report.hand_held.revolutions_failed;
+  result.health["regime_carried_asked"] = report.hand_held_smoother_ran ? 1.0 : 0.0;
+  if (report.hand_held_smoother_ran) result.health["carried_converged"] = report.hand_held.converged ? 1.0 : 0.0;
 }
 
 void report_gaps(std::span<const ImuSample> samples, Estimate& estimate) {

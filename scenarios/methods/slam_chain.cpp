@@ -134,11 +134,7 @@ bool run_slam_chain(const sim::Sensors& sensors, std::span<const ImuSample> samp
   estimate.status = mapped.status;
   if (!append_sweeps(mapped.sweeps, estimate) || !estimate.status.ok()) return false;
   SweepScale scale;
-  if (chain.calibration) {
-    report_passes(mapped, estimate.health);
-    report_calibration(mapped.mapper, sensors, estimate.health);
-    scale = find_sweep_scale(samples, estimate.sweeps, sensors.gravity_m_s2);
-  }
+  if (chain.calibration) scale = find_sweep_scale(samples, estimate.sweeps, sensors.gravity_m_s2);
   SensorHealth health;
   mapped.add_findings(scale, health);
   add_findings(health, {}, estimate);

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <utility>
 
-#include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/sweep_log.hpp"
 
 namespace tumble::scenarios {
@@ -39,22 +38,6 @@ bool conclude(const LidarInertialOdometry& odometry, Estimate& estimate) {
   estimate.map = odometry.map();
   estimate.status = any_registered(estimate.sweeps);
   return localised && estimate.status.ok();
-}
-
-void report_calibration(const LidarInertialOdometry& odometry, const sim::Sensors& sensors,
-                        std::map<std::string, double>& health) {
-  SweepCalibration given;
-  given.T_IL = bridge::T_IL(sensors.imus.front(), sensors.lidars.front());
-  const auto moved = odometry.calibration().minus(given);
-  health["calibration_rotation_rad"] = moved.head<3>().norm();
-  health["calibration_translation_m"] = moved.segment<3>(3).norm();
-  health["calibration_time_offset_s"] = moved[6];
-}
-
-void report_passes(const MappedRecording& mapped, std::map<std::string, double>& health) {
-  if (mapped.passes > 1) health["passes"] = mapped.passes;
-  health["lidar_calibration_mahalanobis"] = mapped.calibration_deviations;
-  health["calibration_unconverged"] = mapped.calibration_converged ? 0.0 : 1.0;
 }
 
 }  // namespace tumble::scenarios

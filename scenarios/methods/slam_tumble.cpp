@@ -11,7 +11,6 @@
 #include "scenarios/methods/bridge.hpp"
 #include "scenarios/methods/imu_check.hpp"
 #include "scenarios/methods/registry.hpp"
-#include "scenarios/methods/report_rails.hpp"
 #include "scenarios/methods/report_rates.hpp"
 #include "scenarios/methods/robot_presets.hpp"
 #include "scenarios/methods/settings.hpp"
@@ -76,8 +75,8 @@ using SweepProgress = TumblingOdometry::SweepProgress;
 
 class Collector {
  public:
-  Collector(Output output, const TumblingOdometry::Params& params, std::string imu, Estimate& estimate)
-      : output_(output), given_(params.stated_calibration()), estimate_(estimate), names_{std::move(imu)} {}
+  Collector(Output output, std::string imu, Estimate& estimate)
+      : output_(output), estimate_(estimate), names_{std::move(imu)} {}
 
   void observe(const TumblingOdometry& odometry) {
     PoseState pose;
@@ -102,7 +101,6 @@ class Collector {
       for (std::vector<PoseState>& open : odometry.mapper().window_trajectories()) apply_next(std::move(open));
     }
     if (output_ == Output::live) replace_by_live();
-    estimate_.health["lidar_calibration_mahalanobis"] = given_.deviations(odometry.mapper().calibration());
     found_.observe(odometry.health());
     add_findings(found_, names_, estimate_);
     scenarios::conclude(odometry.mapper(), estimate_);
@@ -127,7 +125,6 @@ class Collector {
   }
 
   Output output_;
-  StatedCalibration given_;
   Estimate& estimate_;
   std::vector<std::string> names_;
   SensorHealth found_;
@@ -186,8 +183,6 @@ void report_whole(const RecordingEstimate& whole, const sim::Sensors& sensors, E
   count_sources(estimate.rates, estimate.health);
   if (whole.corrected_jitter_s > 0.0) estimate.health["stamps_mended_s"] = whole.corrected_jitter_s;
   for (std::size_t left = whole.mapped.unfinished_sweeps; left > 0; --left) leave_out_unfinished(estimate);
-  report_passes(whole.mapped, estimate.health);
-  report_calibration(whole.mapped.mapper, sensors, estimate.health);
 }
 
 void report_stream(const TumblingOdometry& odometry, Estimate& estimate) {
@@ -220,7 +215,7 @@ Estimate run(Output output, const Settings<TumblingOdometry::Params>& settings, 
   TumblingOdometry odometry(params);
   if (map != nullptr) estimate.status = odometry.use_map(*map);
   if (!estimate.status.ok()) return estimate;
-  Collector collector(output, params, sensors.imus.front().name, estimate);
+  Collector collector(output, sensors.imus.front().name, estimate);
   estimate.status = replay(sensors, samples, output == Output::whole, odometry, collector, on_sweep, estimate);
   if (odometry.recording()) report_whole(*odometry.recording(), sensors, estimate);
   if (!estimate.status.ok()) return estimate;

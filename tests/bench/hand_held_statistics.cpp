@@ -42,7 +42,7 @@ double quantile(std::vector<double> values, double share) {
 
 void print_health(const scenarios::Estimate& estimate) {
   for (const auto& [name, value] : estimate.health) {
-    if (!name.starts_with("gyro_rail") && !name.starts_with("rail")) std::printf(" %s %.3g", name.c_str(), value);
+    std::printf(" %s %.3g", name.c_str(), value);
   }
   std::printf("\n");
 }

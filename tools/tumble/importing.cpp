@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "scenarios/errors.hpp"
-#include "scenarios/methods/imu_notes.hpp"
+#include "scenarios/methods/imu_check.hpp"
 #include "tools/tumble/arguments.hpp"
 
 namespace tumble::tools {

@@ -24,6 +24,7 @@ constexpr double kRotatedWindowsMin = 5.0;
 // A fault of the gyro's scale is found only if a scaled rotation leaves at most this fraction of the unexplained
 // rotation. Pushes resemble a slope from 0 to 1, imu_merge.md (I20), so such slopes have the smaller limit.
 constexpr double kScaledResidualMax = 0.75, kReducedResidualMax = 0.33;
+constexpr double kSlow_rad_s = 0.4;  // zero offset of a gyro, and rocking on the ground while pushes tilt the force
 constexpr double kFrozen_s = 1.0, kRepetitionRatio = 10.0;
 constexpr double kUnmeasuredMin = 0.5;      // share of gravity's rotation that a gyro without changing readings leaves
 constexpr double kStandstillRad2 = 1e-6;    // largest squared rotation of a gyro at rest
@@ -183,8 +184,12 @@ double ImuPlausibility::rotation_agreement(const State& state) const {
 bool ImuPlausibility::fits_better(const State& state) const {
   const double slope = rotation_slope(state), agreement = rotation_agreement(state);
   const double left = state.force_rotation_rad2 * (1.0 - agreement * agreement);
-  const bool low = slope > 0.0 && slope < 1.0;
-  const double most = low ? kReducedResidualMax : kScaledResidualMax;
+  // Pushes of the body often reduce the regression slope, but rarely invert it or increase it by half. If the gyro
+  // measures slow rotation only, pushes cause any slope.
+  const double slow_rad = kSlow_rad_s * kGravityWindow_s;
+  const bool pushed =
+      (slope > 0.0 && slope < 1.0) || state.gyro_rotation_rad2 < state.rotated_windows * slow_rad * slow_rad;
+  const double most = pushed ? kReducedResidualMax : kScaledResidualMax;
   return left < most * state.unexplained_rad2;
 }
 

@@ -14,7 +14,6 @@ namespace {
 
 // The limits of the rest detector accept any unit of the specific force and any plausible gyro bias.
 constexpr RestDetector::Params kRests{.rate_max_rad_s = 0.15, .force_min_m_s2 = 0.3};
-constexpr double kMagnitudeErrorMax = 0.15;  // covers 80 mg of bias and 3 % of scale
 // The tolerance of the angle between measured and expected gravity covers gyro bias and pushes at rest.
 constexpr double kAngleMax_sigmas = 5.0, kAngleToleranceMin_rad = 0.3, kAngleToleranceMax_rad = 0.6;
 constexpr double kCorrelation_s = 0.1;        // minimum correlation time of a rate's error
@@ -154,14 +153,14 @@ void RestGravity::limit_memory(MagnitudeState& state) {
   state.force_sum_m *= 0.5;
 }
 
-Status RestGravity::magnitude_verdict(const MagnitudeState& state) const {
+Status RestGravity::magnitude_verdict(const MagnitudeState& state, double error_max) const {
   const double size = magnitude_error_ratio(state);
-  if (std::abs(size - 1.0) > kMagnitudeErrorMax) {
+  if (std::abs(size - 1.0) > error_max) {
     const bool unit = size > 0.0 && (size < 1.0 / kWrongUnitRatio || size > kWrongUnitRatio);
     return {ErrorCode::out_of_range,
             unit ? "accelerometer unit: specific force at rest (share of gravity)"
                  : "specific force at rest (share of gravity)",
-            size, 1.0 + std::copysign(kMagnitudeErrorMax, size - 1.0)};
+            size, 1.0 + std::copysign(error_max, size - 1.0)};
   }
   return {};
 }

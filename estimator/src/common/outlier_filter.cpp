@@ -29,6 +29,8 @@ constexpr double kStampStepMax_periods = 1.75;
 constexpr double kAtRange = 0.95;
 constexpr double kRepeats_rad_s = 1.0, kRepeats_m_s2 = 15.0;
 
+constexpr std::size_t kFirstMax = 2;  // largest number of outliers at the start of a run that is detected
+
 constexpr double kUnknown = std::numeric_limits<double>::infinity();
 
 struct Triad {
@@ -66,7 +68,7 @@ double step_s(const ImuSample& from, const ImuSample& to) {
 
 /// last accepted samples and samples under test, oldest first
 struct Sequence {
-  std::array<const ImuSample*, 4> samples{};
+  std::array<const ImuSample*, 3 + OutlierFilter::kDelayedMax> samples{};
   std::size_t count = 0;
 
   void add(const ImuSample& sample) { samples[count++] = &sample; }
@@ -75,9 +77,16 @@ struct Sequence {
 
 Sequence recent_sequence(const OutlierFilter::State& state) {
   Sequence out;
-  if (state.count == 2 && step_s(state.recent_inliers[0], state.recent_inliers[1]) <= kNear_s)
+  if (state.count >= 2 && step_s(state.recent_inliers[0], state.recent_inliers[1]) <= kNear_s)
     out.add(state.recent_inliers[0]);
   out.add(state.recent_inliers[1]);
+  return out;
+}
+
+Sequence sequence_until(const ImuSample& last, std::span<const ImuSample> delayed, const OutlierFilter::State& state) {
+  Sequence out = recent_sequence(state);
+  for (const ImuSample& sample : delayed) out.add(sample);
+  out.add(last);
   return out;
 }
 
@@ -143,32 +152,49 @@ double accel_threshold(const OutlierFilter::Device& device, const Sequence& sequ
 void OutlierFilter::pass(const ImuSample& sample, State& state) {
   state.recent_inliers[0] = state.recent_inliers[1];
   state.recent_inliers[1] = sample;
-  state.count = std::min<std::size_t>(state.count + 1, state.recent_inliers.size());
+  state.count = std::min(state.count + 1, kFirstMax + 1);
 }
 
 void OutlierFilter::finish(State& state) {
-  state.rejected += state.delayed ? 1 : 0;
-  state.delayed.reset();
+  state.rejected += std::exchange(state.delayed_count, 0);
 }
 
-std::optional<ImuSample> OutlierFilter::filter_sample(const ImuSample& next, State& state) const {
-  if (!state.delayed) return std::nullopt;
-  const bool confirmed = confirms(next, state);
-  const std::optional<ImuSample> delayed = std::exchange(state.delayed, std::nullopt);
-  if (confirmed) return delayed;
-  ++state.rejected;
-  return std::nullopt;
+OutlierFilter::Verdict OutlierFilter::judge(const ImuSample& next, const State& state) const {
+  const std::span<const ImuSample> delayed = state.delayed_samples();
+  if (next.time_ns <= delayed.back().time_ns) return Verdict::rejected;
+  if (is_implausible(next)) return Verdict::delayed;
+  bool all = true;
+  for (std::size_t k = 0; k < delayed.size(); ++k) all = all && is_outlier(k, next, state);
+  if (all) return Verdict::rejected;
+  const bool lasts = state.count > 0 && delayed.size() < kDelayedMax && jumps(delayed.front(), {}, state) &&
+                     jumps(next, delayed, state);
+  return lasts ? Verdict::delayed : Verdict::confirmed;
+}
+
+std::span<const ImuSample> OutlierFilter::filter_sample(const ImuSample& next, State& state) const {
+  if (state.delayed_count == 0) return {};
+  const Verdict verdict = judge(next, state);
+  if (verdict == Verdict::rejected) finish(state);
+  if (verdict != Verdict::confirmed) return {};
+  return {state.delayed.data(), std::exchange(state.delayed_count, 0)};
+}
+
+bool OutlierFilter::first_is_outlier(const ImuSample& next, const State& state) const {
+  return state.count >= 1 && state.count <= kFirstMax && state.delayed_count >= state.count &&
+         jumps(state.delayed.front(), {}, state) && judge(next, state) != Verdict::rejected;
+}
+
+bool OutlierFilter::is_implausible(const ImuSample& sample) const {
+  return gyro_of(device_).largest(sample) > kRateMax_rad_s || accel_of(device_).largest(sample) > kForceMax_m_s2;
 }
 
 bool OutlierFilter::must_delay(const ImuSample& sample, State& state) const {
-  const bool beyond_all =
-      gyro_of(device_).largest(sample) > kRateMax_rad_s || accel_of(device_).largest(sample) > kForceMax_m_s2;
-  if (beyond_all) {
+  if (is_implausible(sample)) {
     ++state.rejected;
     return true;
   }
   if (!is_suspicious(sample, state)) return false;
-  state.delayed = sample;
+  state.delayed[state.delayed_count++] = sample;
   return true;
 }
 
@@ -183,28 +209,25 @@ bool OutlierFilter::is_suspicious(const ImuSample& sample, const State& state) c
   if (state.count == 0) return false;
   const double after_s = step_s(state.recent_inliers[1], sample);
   if (after_s > device_.gap_max_s) return false;
-  return after_s > kStampStepMax_periods * period_s(state) || jumps(sample, state);
+  return after_s > kStampStepMax_periods * period_s(state) || jumps(sample, state.delayed_samples(), state);
 }
 
 /// Returns whether a reading jumps further than the reading of the other sensor explains: outliers.md (O5).
-bool OutlierFilter::jumps(const ImuSample& sample, const State& state) const {
-  const double after_s = step_s(state.recent_inliers[1], sample);
-  if (after_s > kNear_s) return false;
-  const double step = std::max(after_s, device_.period_s);
-  Sequence sequence = recent_sequence(state);
-  sequence.add(sample);
+bool OutlierFilter::jumps(const ImuSample& sample, std::span<const ImuSample> delayed, const State& state) const {
+  if (step_s(state.recent_inliers[1], sample) > kNear_s) return false;
+  const ImuSample& before = delayed.empty() ? state.recent_inliers[1] : delayed.back();
+  const double step = std::max(step_s(before, sample), device_.period_s);
+  const Sequence sequence = sequence_until(sample, delayed, state);
   return distance(sample, state, gyro_of(device_)) > gyro_threshold(device_, sequence, sample, step) ||
          distance(sample, state, accel_of(device_)) > accel_threshold(device_, sequence, sample, step);
 }
 
 /// See outliers.md (O6).
-bool OutlierFilter::is_outlier(const ImuSample& delayed, const ImuSample& after, const State& state) const {
-  const ImuSample& before = state.recent_inliers[1];
+bool OutlierFilter::is_outlier(std::size_t index, const ImuSample& after, const State& state) const {
+  const ImuSample &before = state.recent_inliers[1], &delayed = state.delayed[index];
   if (state.count == 0 || step_s(before, delayed) > kNear_s || step_s(delayed, after) > kNear_s) return false;
-  const double step = std::max(step_s(before, delayed), device_.period_s);
-  Sequence sequence = recent_sequence(state);
-  sequence.add(delayed);
-  sequence.add(after);
+  const double step = std::max(step_s(index == 0 ? before : state.delayed[index - 1], delayed), device_.period_s);
+  const Sequence sequence = sequence_until(after, state.delayed_samples(), state);
   const auto stands_out = [&](const Triad& triad, double threshold) {
     const double by = distance_from_neighbours(triad.of(before), triad.of(delayed), triad.of(after));
     return by > threshold && by > kOutlierRatio * distance(after, state, triad);
@@ -216,22 +239,24 @@ bool OutlierFilter::is_outlier(const ImuSample& delayed, const ImuSample& after,
 std::vector<bool> find_inliers(const OutlierFilter& filter, std::span<const ImuSample> samples) {
   std::vector<bool> out(samples.size(), false);
   OutlierFilter::State state;
-  std::size_t delayed = 0;
+  std::vector<std::size_t> delayed;  // indices of state.delayed
   for (std::size_t k = 0; k < samples.size(); ++k) {
     if (filter.first_is_outlier(samples[k], state)) {
-      std::fill(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(delayed), false);
+      std::fill(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(delayed.front()), false);
       state.count = 0;
     }
-    if (const std::optional<ImuSample> confirmed = filter.filter_sample(samples[k], state)) {
-      OutlierFilter::pass(*confirmed, state);
-      out[delayed] = true;
+    for (const ImuSample& confirmed : filter.filter_sample(samples[k], state)) {
+      OutlierFilter::pass(confirmed, state);
+      out[delayed.front()] = true;
+      delayed.erase(delayed.begin());
     }
-    if (filter.must_delay(samples[k], state)) {
-      delayed = k;
-      continue;
+    if (state.delayed_count == 0) delayed.clear();
+    if (!filter.must_delay(samples[k], state)) {
+      OutlierFilter::pass(samples[k], state);
+      out[k] = true;
+    } else if (state.delayed_count > delayed.size()) {
+      delayed.push_back(k);
     }
-    OutlierFilter::pass(samples[k], state);
-    out[k] = true;
   }
   return out;
 }

@@ -14,11 +14,11 @@ namespace tumble {
 
 namespace {
 
-constexpr double kLeast = 0.02, kScaleDeviations = 5.0;
+constexpr double kLeast = 0.02, kScaleDeviations = 3.5;
 // Over short time spans, the IMU's weight in the mapping hides errors of the lidar's scale. If ranges are 10 % too
 // long, velocity changes over 0.4 s give the scale 1.08, but changes over 0.1 s only 1.02 to 1.03.
 constexpr double kSpan_s = 0.4;
-constexpr double kChange_m_s = 0.5;  // minimum change of velocity; noise dominates smaller changes
+constexpr double kChange_m_s = 0.2;  // minimum change of velocity; noise dominates smaller changes
 constexpr std::size_t kChangesMin = 5, kChangesMax = 1000;
 constexpr int kDisjointMin = 4;       // minimum number of changes without a common sweep; fewer do not determine sigma
 constexpr std::size_t kSpanMax = 64;  // maximum number of buffered sweeps

@@ -36,16 +36,11 @@ RestGravity rest_gravity(const CheckedImu& imu) {
 
 /// Returns whether the gyro agrees with the measured rotation of gravity.
 bool check_readings(const CheckedImu& imu, std::span<const ImuSample> samples, SensorHealth& health) {
-  const RestGravity gravity = rest_gravity(imu);
-  RestGravity::MagnitudeState at_rest;
   const ImuPlausibility plausibility(plausibility_params(imu.gravity_m_s2, imu.merged ? 0.0 : imu.gyro_range_rad_s));
   ImuPlausibility::State state;
-  for (const ImuSample& sample : samples) {
-    gravity.step(sample, at_rest);
-    plausibility.step(sample, state);
-  }
+  for (const ImuSample& sample : samples) plausibility.step(sample, state);
   add_findings(plausibility, state, kImu, health);
-  health.add(Kind::force_at_rest, gravity.magnitude_verdict(at_rest), kImu);
+  health.add(Kind::force_at_rest, check_force_at_rest(imu, samples, RestGravity::kMagnitudeErrorMax), kImu);
   if (!imu.merged) {  // several IMUs are on a sphere, which does not rotate about a pivot
     const PivotCheck pivots = PivotCheck::of(samples, imu.gravity_m_s2, imu.gyro_range_rad_s, imu.accel_range_m_s2);
     health.add(Kind::rotation, pivots.verdict(), kImu);
@@ -92,6 +87,13 @@ void add_findings(const ImuPlausibility& plausibility, const ImuPlausibility::St
 bool confirms_gyro(const ImuPlausibility& plausibility, const ImuPlausibility::State& state) {
   return std::abs(plausibility.rotation_slope(state) - 1.0) < kSlopeTolerance &&
          plausibility.rotation_agreement(state) > kSlopeAgreementMin;
+}
+
+Status check_force_at_rest(const CheckedImu& imu, std::span<const ImuSample> samples, double error_max) {
+  const RestGravity gravity = rest_gravity(imu);
+  RestGravity::MagnitudeState state;
+  for (const ImuSample& sample : samples) gravity.step(sample, state);
+  return gravity.magnitude_verdict(state, error_max);
 }
 
 SensorHealth check_readings(const CheckedImu& imu, std::span<const ImuSample> samples) {

@@ -66,7 +66,9 @@ class OdometryPass {
   const RegimeStream::State& rate_state() const { return rate_state_; }
   const LidarInertialOdometry& mapper() const { return mapper_; }
   /// Returns `out_of_range` if the magnitude of the specific force at rest contradicts gravity.
-  Status check_force_at_rest() const { return rest_gravity_.magnitude_verdict(rest_gravity_state_); }
+  Status check_force_at_rest() const {
+    return rest_gravity_.magnitude_verdict(rest_gravity_state_, RestGravity::kMappingErrorMax);
+  }
   const SweepScale& sweep_scale() const { return scale_.scale(); }
   const Localisation& localisation() const { return localisation_; }
   const std::optional<RateState>& smoothed_rate() const { return smoothed_; }

@@ -2,6 +2,7 @@
 #include "rolling_odometry_impl.hpp"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <utility>
 
@@ -79,20 +80,27 @@ Status RollingOdometry::Impl::add_imus(std::span<const ImuSample> samples) {
   if (const Status status = add_delayed_samples(samples); !status.ok()) return status;
   UnitRails::Samples judged;
   std::copy(samples.begin(), samples.end(), judged.begin());
-  bool holds = false;
+  std::array<bool, ImuMerge::kImus> delayed{};
   for (std::size_t k = 0; k < samples.size(); ++k) {
     if (!check_sample(samples[k]).ok()) continue;
-    if (!outlier_filters_[k].must_delay(at_time(samples.front().time_ns, samples[k]), outlier_filter_state_[k]))
-      continue;
-    if (outlier_filter_state_[k].delayed) {
-      holds = true;
-    } else {
-      mark_absent(judged[k]);
-    }
+    OutlierFilter::State& state = outlier_filter_state_[k];
+    const std::size_t before = state.delayed_count;
+    if (!outlier_filters_[k].must_delay(at_time(samples.front().time_ns, samples[k]), state)) continue;
+    delayed[k] = state.delayed_count > before;
+    if (!delayed[k]) mark_absent(judged[k]);
   }
-  if (holds) delayed_samples_ = judged;
   const std::span<const ImuSample> inliers = std::span(judged).first(samples.size());
-  return holds || !any_reading(inliers) ? Status{} : add_inliers(inliers);
+  if (!any_reading(inliers)) return {};
+  if (delayed_count_ > 0 || std::find(delayed.begin(), delayed.end(), true) != delayed.end()) {
+    delayed_samples_[delayed_count_++] = judged;
+  } else if (const Status status = add_inliers(inliers); !status.ok()) {
+    return status;
+  }
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    if (!delayed[k] && check_sample(judged[k]).ok())
+      OutlierFilter::pass(at_time(samples.front().time_ns, judged[k]), outlier_filter_state_[k]);
+  }
+  return {};
 }
 
 Status RollingOdometry::Impl::add_imu(std::size_t unit, const ImuSample& sample) {
@@ -116,20 +124,38 @@ Status RollingOdometry::Impl::add_aligned(bool ended) {
   return first;
 }
 
-/// Processes the samples that the outlier filter delayed. The next samples decide which delayed readings are outliers.
+/// Processes the samples that the outlier filters delayed, if the next samples decide which readings are outliers. All
+/// readings wait for the IMU whose readings are decided last.
 Status RollingOdometry::Impl::add_delayed_samples(std::span<const ImuSample> next) {
-  if (!delayed_samples_) return {};
-  for (std::size_t k = 0; k < next.size(); ++k) {
-    if (!outlier_filter_state_[k].delayed) continue;
-    const bool follows = check_sample(next[k]).ok();
-    const bool confirmed =
-        follows && outlier_filters_[k].filter_sample(at_time(next.front().time_ns, next[k]), outlier_filter_state_[k]);
-    if (!follows) OutlierFilter::finish(outlier_filter_state_[k]);
-    if (!confirmed) mark_absent((*delayed_samples_)[k]);
+  bool open = false;
+  for (std::size_t k = 0; k < next.size(); ++k) open = is_delayed_after(next, k) || open;
+  if (open) return {};
+  const std::size_t count = std::exchange(delayed_count_, 0);
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::span<const ImuSample> inliers = std::span(delayed_samples_[k]).first(next.size());
+    if (!any_reading(inliers)) continue;
+    if (const Status status = add_inliers(inliers); !status.ok()) return status;
   }
-  const UnitRails::Samples held = *std::exchange(delayed_samples_, std::nullopt);
-  const std::span<const ImuSample> inliers = std::span(held).first(next.size());
-  return any_reading(inliers) ? add_inliers(inliers) : Status{};
+  return {};
+}
+
+/// Returns whether readings of a unit remain delayed. Marks the rejected readings of the unit as absent.
+bool RollingOdometry::Impl::is_delayed_after(std::span<const ImuSample> next, std::size_t unit) {
+  OutlierFilter::State& state = outlier_filter_state_[unit];
+  if (state.delayed_count == 0) return false;
+  const TimeNs first_ns = state.delayed.front().time_ns;
+  const bool follows = check_sample(next[unit]).ok(), full = delayed_count_ == delayed_samples_.size();
+  std::span<const ImuSample> confirmed;
+  if (follows) confirmed = outlier_filters_[unit].filter_sample(at_time(next.front().time_ns, next[unit]), state);
+  if (!follows) OutlierFilter::finish(state);
+  if (state.delayed_count > 0 && !full) return true;
+  if (state.delayed_count > 0) confirmed = {state.delayed.data(), std::exchange(state.delayed_count, 0)};
+  for (const ImuSample& sample : confirmed) OutlierFilter::pass(sample, state);
+  if (!confirmed.empty()) return false;
+  for (UnitRails::Samples& samples : std::span(delayed_samples_).first(delayed_count_)) {
+    if (samples.front().time_ns >= first_ns) mark_absent(samples[unit]);
+  }
+  return false;
 }
 
 Status RollingOdometry::Impl::add_inliers(std::span<const ImuSample> samples) {
@@ -161,10 +187,6 @@ Status RollingOdometry::Impl::add_inliers(std::span<const ImuSample> samples) {
     RestGravity::limit_memory(checks_.rest_gravity_state[k]);
   }
   rails_.observe(samples, rails_state_);
-  for (std::size_t k = 0; k < samples.size(); ++k) {
-    if (check_sample(samples[k]).ok())
-      OutlierFilter::pass(at_time(samples.front().time_ns, samples[k]), outlier_filter_state_[k]);
-  }
   StampOrder::accept(samples.front().time_ns, stamp_order_state_);
   return {};
 }
@@ -227,7 +249,7 @@ Status RollingOdometry::Impl::finish() {
 /// Ends a run, and smooths the poses of the last `lag_s`.
 void RollingOdometry::Impl::end_run() {
   for (OutlierFilter::State& unit : outlier_filter_state_) OutlierFilter::finish(unit);
-  delayed_samples_.reset();
+  delayed_count_ = 0;
   const std::size_t before = results_.size();
   if (!live_ && !finished_) smoother_.finish(*state_, results_);
   for (std::size_t k = before; k < results_.size(); ++k) results_[k] = transform_to_world(results_[k]);
@@ -247,10 +269,10 @@ void RollingOdometry::Impl::start_run() {
   rails_state_ = rails_.start();
   frozen_ = {};
   for (OutlierFilter::State& unit : outlier_filter_state_) {
-    unit.delayed.reset();
+    unit.delayed_count = 0;
     unit.count = 0;
   }
-  delayed_samples_.reset();
+  delayed_count_ = 0;
   checks_.rest_gravity_state = {};
   checks_.plausibility_state = {};
   whole_.reset();

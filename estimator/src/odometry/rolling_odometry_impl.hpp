@@ -53,6 +53,7 @@ struct RollingOdometry::Impl {
   void initialise_pose();
   RollingEstimate transform_to_world(RollingEstimate estimate) const;
   Status add_delayed_samples(std::span<const ImuSample> next);
+  bool is_delayed_after(std::span<const ImuSample> next, std::size_t unit);
   Status add_inliers(std::span<const ImuSample> samples);
   Status process_accepted_sample(const ImuSample& merged);
   Status add_aligned(bool ended);
@@ -79,8 +80,10 @@ struct RollingOdometry::Impl {
   UnitRails::State rails_state_;
   std::vector<OutlierFilter> outlier_filters_;  ///< one filter per IMU
   Outliers outlier_filter_state_{};
-  std::optional<UnitRails::Samples> delayed_samples_;  ///< samples of all IMUs while OutlierFilter delays one IMU
-  std::vector<FrozenAxes> frozen_axis_detectors_;      ///< one detector per IMU
+  std::array<UnitRails::Samples, OutlierFilter::kDelayedMax>
+      delayed_samples_{};                          ///< samples of all IMUs while OutlierFilter delays one IMU
+  std::size_t delayed_count_ = 0;                  ///< number of valid elements of `delayed_samples_`
+  std::vector<FrozenAxes> frozen_axis_detectors_;  ///< one detector per IMU
   Frozen frozen_{};
   MergedChecks checks_;                          ///< checks of the merged IMUs, with their states
   std::shared_ptr<const MergedFindings> whole_;  ///< set by finish() with kWholeRecording

@@ -62,8 +62,8 @@ Status TumblingOdometry::Impl::add_imu(const ImuSample& sample) {
   if (verdict == StampOrder::Verdict::restarts_after_gap) restart_rates();
   if (verdict == StampOrder::Verdict::restarts_after_step_back) restart_at_newest();
   if (outlier_filter_.first_is_outlier(sample, outlier_filter_state_)) restart_without_first_sample();
-  if (const std::optional<ImuSample> confirmed = outlier_filter_.filter_sample(sample, outlier_filter_state_)) {
-    if (const Status status = process_accepted_sample(*confirmed); !status.ok()) return status;
+  for (const ImuSample& confirmed : outlier_filter_.filter_sample(sample, outlier_filter_state_)) {
+    if (const Status status = process_accepted_sample(confirmed); !status.ok()) return status;
   }
   if (outlier_filter_.must_delay(sample, outlier_filter_state_)) return {};
   if (const Status status = process_accepted_sample(sample); !status.ok()) return status;
@@ -273,7 +273,7 @@ void TumblingOdometry::Impl::restart_at_newest() {
   if (!offset_rad_s.isZero(0.0)) set_gyro_offset(offset_rad_s);
 }
 
-/// Restarts a run whose only sample is an outlier.
+/// Restarts a run whose only samples are outliers.
 void TumblingOdometry::Impl::restart_without_first_sample() {
   const std::optional<Eigen::Isometry3d> start = mapper().start();
   std::deque<WaitingSweep> waiting = std::move(waiting_);
@@ -285,8 +285,7 @@ void TumblingOdometry::Impl::restart_without_first_sample() {
   waiting_ = std::move(waiting);
   further_lidars_ = std::move(further);
   sweep_end_ns_ = sweep_end_ns;
-  outliers.count = 0;
-  ++outliers.rejected;
+  outliers.rejected += std::exchange(outliers.count, 0);
   outlier_filter_state_ = outliers;
 }
 

@@ -100,6 +100,8 @@ Status TumblingOdometry::Impl::finish_whole_recording(const SweepProgress& on_sw
   }
   whole->mapped.sweeps.clear();
   whole->health = whole->findings.health;
+  whole->health.add(HealthFinding::Kind::force_at_rest,
+                    check_force_at_rest(checked_imu(params_), samples, RestGravity::kMappingErrorMax), "imu");
   if (!waiting_.empty()) whole->mapped.add_findings(whole->scale, whole->health);
   whole_ = whole;
   return whole->mapped.status;

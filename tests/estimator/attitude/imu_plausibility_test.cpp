@@ -99,6 +99,29 @@ TEST(ImuPlausibility, OfABodyThatFliesAndSpinsTheTurningIsNotAsked) {
   EXPECT_EQ(plausibility.unexplained_rotation_ratio(of_a_throw(12.0, 0.1)), 0.0);
 }
 
+/// Returns the verdict on a body that never rotates. Quick pushes tilt the measured force by 0.3 rad about x (12 times)
+/// or y (8 times), and the force returns slowly. The gyro measures `rate_rad_s` about x.
+Status of_pushes(double rate_rad_s) {
+  const ImuPlausibility plausibility({});
+  ImuPlausibility::State state;
+  ImuSample sample;
+  for (int k = 0; k < 2000; ++k) {
+    const double t_s = 0.01 * (k % 100), tilt_rad = 0.3 * (t_s < 0.2 ? 5.0 * t_s : 1.25 * (1.0 - t_s));
+    const Eigen::Vector3d axis = k / 100 % 10 < 8 ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::UnitY();
+    sample.time_ns = TimeNs{k} * 10'000'000;
+    sample.angular_velocity_rad_s = {rate_rad_s, 0.0, k % 2 == 0 ? 1e-3 : -1e-3};
+    sample.specific_force_m_s2 = so3::exp(Eigen::Vector3d(-tilt_rad * axis)) * Eigen::Vector3d(0.0, 0.0, 9.80665);
+    plausibility.step(sample, state);
+  }
+  return plausibility.verdict(state);
+}
+
+TEST(ImuPlausibility, AZeroOffsetOfTheGyroDoesNotExplainPushes) {
+  for (const double offset_deg_s : {1.0, 5.0, 8.0})
+    EXPECT_TRUE(of_pushes(offset_deg_s / 57.29578).ok()) << of_pushes(offset_deg_s / 57.29578).message();
+  EXPECT_FALSE(of_pushes(0.5).ok());  // negative control: no gyro has this zero offset
+}
+
 // Returns the state after the motion of a pendulum. A hand lifts the pendulum twice far aside and back, then a little
 // aside, and releases it. The force of a free pendulum always points along its rod.
 ImuPlausibility::State of_a_pendulum(double gyro_scale) {

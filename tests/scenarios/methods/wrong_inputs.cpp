@@ -57,10 +57,8 @@ std::size_t hardest_impact(const sim::ImuRecord& imu) {
   return hardest;
 }
 
-/// Removes the samples of all IMUs for a time about the hardest impact.
-void silence_imus(sim::Sensors& sensors, std::int64_t for_ns) {
-  if (sensors.imus.empty() || sensors.imus.front().time_ns.empty()) return;
-  const std::int64_t from_ns = sensors.imus.front().time_ns[hardest_impact(sensors.imus.front())] - for_ns / 2;
+/// Removes the samples of all IMUs in [from_ns, from_ns + for_ns).
+void leave_out(sim::Sensors& sensors, std::int64_t from_ns, std::int64_t for_ns) {
   for (sim::ImuRecord& imu : sensors.imus) {
     const std::vector<std::int64_t> time_ns = imu.time_ns;
     const auto keep = [&](auto& rows) {
@@ -72,6 +70,18 @@ void silence_imus(sim::Sensors& sensors, std::int64_t for_ns) {
     };
     keep(imu.time_ns), keep(imu.gyro_rad_s), keep(imu.accel_m_s2), keep(imu.clip_flags), keep(imu.magnetic_field_t);
   }
+}
+
+/// Removes the samples of all IMUs for a time about the hardest impact.
+void silence_imus(sim::Sensors& sensors, std::int64_t for_ns) {
+  if (sensors.imus.empty() || sensors.imus.front().time_ns.empty()) return;
+  leave_out(sensors, sensors.imus.front().time_ns[hardest_impact(sensors.imus.front())] - for_ns / 2, for_ns);
+}
+
+/// Adds a zero offset to the x axis of all gyros, whose recordings start 1.3 s late.
+void offset_late_gyros(sim::Sensors& sensors, double offset_deg_s) {
+  each_reading(sensors, [&](Eigen::Vector3d& w, Eigen::Vector3d&) { w.x() += offset_deg_s / kDegree; });
+  leave_out(sensors, 0, 1'300'000'000);
 }
 
 /// Removes the sweeps of all lidars for a time about the hardest impact.
@@ -146,6 +156,9 @@ const std::map<std::string, std::function<void(sim::Sensors&)>>& wrong_inputs() 
   static const std::map<std::string, std::function<void(sim::Sensors&)>> all = {
       {"none", [](sim::Sensors&) {}},
       {"accel_in_g", [](sim::Sensors& s) { each_reading(s, [](Vector&, Vector& f) { f /= kOneG_m_s2; }); }},
+      {"accel_scale_5_percent", [](sim::Sensors& s) { each_reading(s, [](Vector&, Vector& f) { f *= 1.05; }); }},
+      {"gyros_late_offset_5_deg_s", [](sim::Sensors& s) { offset_late_gyros(s, 5.0); }},
+      {"gyros_late_offset_8_deg_s", [](sim::Sensors& s) { offset_late_gyros(s, 8.0); }},
       {"accel_flipped", [](sim::Sensors& s) { each_reading(s, [](Vector&, Vector& f) { f = -f; }); }},
       {"accel_x_y_swapped",
        [](sim::Sensors& s) { each_reading(s, [](Vector&, Vector& f) { std::swap(f.x(), f.y()); }); }},

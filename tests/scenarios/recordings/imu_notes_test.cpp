@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The test checks what an import reports about readings that cannot be what their names state.
-#include "scenarios/methods/imu_notes.hpp"
+#include "scenarios/methods/imu_check.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -112,8 +112,8 @@ class RollingOdometry {
   ~RollingOdometry();
 
   /// Processes simultaneous readings of all IMUs, with the time stamp of the first IMU. SampleClock corrects time
-  /// stamps with jitter. Pass NaN for an IMU without a reading. OutlierFilter rejects single outliers of each IMU, and
-  /// may delay the samples of all IMUs by one. newest() is then one sample older. On error, the state is unchanged. The
+  /// stamps with jitter. Pass NaN for an IMU without a reading. OutlierFilter rejects outliers of each IMU, and may
+  /// delay the samples of all IMUs by one to five. newest() is then older. On error, the state is unchanged. The
   /// errors are `too_few` (wrong number of IMUs, or no reading), `time_order`, `degenerate` (no gravity in the first
   /// sample), `gap` and `out_of_range`. `out_of_range` means that the run has finished, the time stamp exceeds
   /// kStampMax_ns, or the only IMU with readings has a frozen axis.

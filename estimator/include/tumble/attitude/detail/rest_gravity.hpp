@@ -23,6 +23,11 @@ namespace tumble {
 /// ground and another in a steadily moving vehicle, RestGravity mistakes correct rates for wrong rates.
 class RestGravity {
  public:
+  static constexpr double kMagnitudeErrorMax = 0.15;  ///< covers 80 mg of bias and 3 % of scale
+  /// Velocity and position integrate the force, so they need a more accurate accelerometer than rates and attitudes.
+  /// 4 % cover three standard deviations of 1 % of scale and 5 mg of bias, as of a low-cost accelerometer.
+  static constexpr double kMappingErrorMax = 0.04;
+
   struct Params {
     double gravity_m_s2 = 9.80665;
     double accel_range_m_s2 = 0.0;  ///< range from the data sheet; 0: unknown
@@ -69,8 +74,8 @@ class RestGravity {
   /// Returns the mean magnitude of the specific force at rest as a fraction of gravity. Returns 0 if every rest of a
   /// second was without force, and 1 if the body never rested.
   double magnitude_error_ratio(const MagnitudeState& state) const;
-  /// Returns `out_of_range` if magnitude_error_ratio() differs from 1.
-  Status magnitude_verdict(const MagnitudeState& state) const;
+  /// Returns `out_of_range` if magnitude_error_ratio() differs from 1 by more than `error_max`.
+  Status magnitude_verdict(const MagnitudeState& state, double error_max = kMagnitudeErrorMax) const;
   /// Returns the error of magnitude_verdict(), if any. Otherwise returns `out_of_range` if the velocity, integrated
   /// between two rests, contradicts zero velocity at both rests.
   Status verdict(const State& state) const;

@@ -11,16 +11,18 @@
 
 namespace tumble {
 
-/// Rejects single outliers among the readings of an IMU, as caused by bus faults. An outlier is far from two neighbours
-/// that agree with each other, without a change of the other sensor (gyro or accelerometer): outliers.md (O1) to (O6).
+/// Rejects up to five consecutive outliers among the readings of an IMU, as caused by bus faults. Outliers are far from
+/// the readings before and after them, without a change of the other sensor (gyro or accelerometer): outliers.md (O1)
+/// to (O6).
 ///
-/// The filter delays an unexplained jump by one sample, until the next reading confirms or refutes the jump. All other
-/// readings pass without delay, unchanged. OutlierFilter does not detect two outliers in a row, or an outlier during a
-/// hard impact. Cost: O(1) per reading, no allocation.
+/// The filter delays an unexplained jump until the readings return, confirm the jump, or five samples are delayed. All
+/// other readings pass without delay, unchanged. OutlierFilter does not detect outliers during a hard impact. Cost:
+/// O(1) per reading, no allocation.
 class OutlierFilter {
  public:
   /// implausible readings of a robot's IMU (57 000 deg/s, 10 000 g), which never pass
   static constexpr double kRateMax_rad_s = 1000.0, kForceMax_m_s2 = 1e5;
+  static constexpr std::size_t kDelayedMax = 5;  ///< longest sequence of outliers that is detected
   /// maximum reading of a device, as a multiple of the range in its data sheet
   static constexpr double kStatedRangesMax = 2.0;
 
@@ -34,22 +36,23 @@ class OutlierFilter {
 
   struct State {
     std::array<ImuSample, 2> recent_inliers{};  ///< last samples that passed; the newest is last
-    std::size_t count = 0;                      ///< number of valid samples in `recent_inliers`
-    std::optional<ImuSample> delayed;
-    std::size_t rejected = 0;  ///< number of samples rejected since the start
+    std::size_t count = 0;                      ///< samples that passed since the start, at most 3
+    std::array<ImuSample, kDelayedMax> delayed{};
+    std::size_t delayed_count = 0;  ///< number of valid samples in `delayed`
+    std::size_t rejected = 0;       ///< number of samples rejected since the start
+
+    std::span<const ImuSample> delayed_samples() const { return {delayed.data(), delayed_count}; }
   };
 
   explicit OutlierFilter(const Device& device) : device_(device) {}
 
-  /// Returns the delayed sample if `next` confirms the delayed sample; empty if the delayed sample is rejected or
-  /// absent. `next` must be later than all samples that passed. After the call, no sample is delayed.
-  std::optional<ImuSample> filter_sample(const ImuSample& next, State& state) const;
+  /// Returns the delayed samples if `next` confirms them; empty if they are rejected, remain delayed, or are absent.
+  /// The result is valid until the next call of must_delay(). `next` must be later than all samples that passed.
+  std::span<const ImuSample> filter_sample(const ImuSample& next, State& state) const;
 
-  /// Returns true if the next samples show that the first sample of a run is an outlier. The run should then restart
-  /// with the second sample. Call first_is_outlier() before filter_sample().
-  bool first_is_outlier(const ImuSample& next, const State& state) const {
-    return state.count == 1 && state.delayed && jumps(*state.delayed, state) && confirms(next, state);
-  }
+  /// Returns true if the next samples show that the first samples of a run are outliers. The run should then restart
+  /// without them. Call first_is_outlier() before filter_sample().
+  bool first_is_outlier(const ImuSample& next, const State& state) const;
 
   /// Returns true if a finite sample must not be used now, because the sample is delayed or implausibly large. Call
   /// filter_sample() before must_delay().
@@ -58,17 +61,17 @@ class OutlierFilter {
   /// Call pass() for each sample that filter_sample() returned or for which must_delay() returned false.
   static void pass(const ImuSample& sample, State& state);
 
-  /// Rejects the delayed sample at the end of a run.
+  /// Rejects the delayed samples at the end of a run.
   static void finish(State& state);
 
  private:
-  bool confirms(const ImuSample& next, const State& state) const {
-    return next.time_ns > state.delayed->time_ns && !is_outlier(*state.delayed, next, state);
-  }
+  enum class Verdict { rejected, delayed, confirmed };
+  Verdict judge(const ImuSample& next, const State& state) const;
+  bool is_implausible(const ImuSample& sample) const;
   double period_s(const State& state) const;
-  bool jumps(const ImuSample& sample, const State& state) const;
+  bool jumps(const ImuSample& sample, std::span<const ImuSample> delayed, const State& state) const;
   bool is_suspicious(const ImuSample& sample, const State& state) const;
-  bool is_outlier(const ImuSample& delayed, const ImuSample& after, const State& state) const;
+  bool is_outlier(std::size_t delayed, const ImuSample& after, const State& state) const;
 
   Device device_;
 };

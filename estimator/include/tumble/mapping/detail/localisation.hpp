@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <optional>
 
 #include "tumble/common/status.hpp"
@@ -11,8 +12,9 @@ namespace tumble {
 
 /// Detects tracking failure from the reports of LidarInertialOdometry for each sweep (docs/maths/mapping.md, heading
 /// "Localisation check"). Tracking has failed if the standard deviation of the position exceeded the matching distance.
-/// Tracking has also failed if the poses of two or more sweeps contradict their predicted poses. Localisation does not
-/// detect a map of wrong scale (see SweepScale), or errors of clocks or mounting that the calibration explains.
+/// Tracking has also failed if the poses of two or more sweeps contradict their predicted poses, or if few points of
+/// many sweeps fit the map. Localisation does not detect a map of wrong scale (see SweepScale), or errors of clocks or
+/// mounting that the calibration explains.
 class Localisation {
  public:
   static constexpr double kMemory_s = 30.0;
@@ -32,9 +34,15 @@ class Localisation {
   std::optional<TimeNs> lost_since_ns() const { return lost_since_ns_ ? lost_since_ns_ : previous_contradicted_ns_; }
 
  private:
+  void observe_fit(const SweepReport& sweep);
+  Status fit_verdict() const;
+
   double matched_m_;
   bool map_started_ = false;
   double largest_sigma_m_ = 0.0, largest_innovation_ = 0.0, second_largest_innovation_ = 0.0;
+  std::size_t aligned_sweeps_ = 0;                          ///< number of averaged sweeps
+  double mean_inlier_ratio_ = 0.0, mean_innovation_ = 0.0;  ///< means over the last sweeps
+  double smallest_inlier_ratio_ = 1.0;                      ///< smallest mean that failed the check
   double sigma_m_ = 0.0;  ///< standard deviation of the newest position, relative to the map
   TimeNs newest_ns_ = 0;
   std::optional<TimeNs> lost_since_ns_;  ///< first sweep of the period with uncertain position

@@ -47,6 +47,9 @@ void add_findings(const ImuPlausibility& plausibility, const ImuPlausibility::St
 /// about 1 ms per second of data at 100 Hz.
 SensorHealth check_readings(const CheckedImu& imu, std::span<const ImuSample> samples);
 
+/// Checks the magnitude of the force at rest with the tolerance `error_max` (see RestGravity). Cost: O(N).
+Status check_force_at_rest(const CheckedImu& imu, std::span<const ImuSample> samples, double error_max);
+
 /// Cost: O(N).
 ImuFindings check_frozen(const CheckedImu& imu, std::span<const ImuSample> samples);
 
