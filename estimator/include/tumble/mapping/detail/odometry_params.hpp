@@ -24,7 +24,6 @@ struct OdometryExpertParams {
   StandstillParams standstill = {};
   InertialNoiseParams prior = {};
   SaturatedImuParams rails = {};
-  FlightParams flight = {};
   LocalMapParams map = {};
   MatchingParams matching = {};
   TrackingParams tracking = {};
@@ -47,7 +46,6 @@ struct OdometryExpertParams {
                             "number of newest sweeps that are refined together; each pose is final after this number "
                             "minus one of later sweeps",
                             FieldRank::basic});
-    visit.group("", p.flight);
     visit.group("", p.tracking);
     visit.group("start_", p.start);
     visit.group("standstill_", p.standstill);

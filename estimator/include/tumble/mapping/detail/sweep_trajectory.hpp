@@ -28,7 +28,6 @@ struct MotionSample {
   std::uint8_t accel_saturated_axes = 0;                       ///< bit j: accelerometer axis j was saturated
   bool at_rest = false;                 ///< the sample belongs to the rest at the start of the run
   std::optional<TimeNs> rest_start_ns;  ///< first sample of the current rest, from the IMU alone
-  bool in_flight = false;               ///< f_I_m_s2 is the computed force of free flight, not a measurement
   bool bridges_gap = false;             ///< the sample bridges a gap: the force is unknown, the velocity constant
 };
 
