@@ -161,7 +161,7 @@ Status LidarInertialOdometry::Impl::dead_reckon(TimeNs end_ns) {
     levelled.time_ns = end_ns;
     if (!track.has_not_moved()) {
       mapping::unknowns::variances(levelled.covariance, mapping::unknowns::velocity)
-          .setConstant(std::pow(params.expert.standstill.creep_max_m_s, 2));
+          .setConstant(std::pow(Standstill::kCreepMax_m_s, 2));
     }
     boundary = mapping::SweepBoundary{.state_estimate = mapping::estimate_before_map(params, levelled)};
   }

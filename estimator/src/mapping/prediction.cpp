@@ -125,9 +125,9 @@ Prediction predict(const Params& params, const SweepBoundary& boundary, const Mo
   carry_deficit(params, boundary, trajectory, next);
   if (window.samples.front().at_rest) next.zero_velocity_update(kStartSigma_m_s);
   // The speed limit creep_max_m_s excludes constant motion, which the IMU cannot distinguish from rest.
-  const bool creeps = boundary.state_estimate.mean.state.v_WI_m_s.norm() < params.expert.standstill.creep_max_m_s;
+  const bool creeps = boundary.state_estimate.mean.state.v_WI_m_s.norm() < Standstill::kCreepMax_m_s;
   if (window.resting_sweeps >= kRestingSweepsMin && !boundary.constrained && creeps)
-    next.zero_velocity_update(params.expert.standstill.sigma_m_s);
+    next.zero_velocity_update(Standstill::kSigma_m_s);
   apply_velocity_prior(known, next);
   const std::uint8_t axes = params.expert.rails.estimate_deficit ? trajectory.clipped_axes() : 0;
   MotionNoise within = inertial_noise(params, trajectory, window.samples, axes);
@@ -145,7 +145,7 @@ Prediction predict(const Params& params, const SweepBoundary& boundary, const Mo
 }
 
 void predict_rest(const Params& params, const SweepBoundary& boundary, Prediction& prediction) {
-  prediction.zero_velocity_update(params.expert.standstill.sigma_m_s);
+  prediction.zero_velocity_update(Standstill::kSigma_m_s);
   prediction.compose(boundary.state_estimate);
 }
 

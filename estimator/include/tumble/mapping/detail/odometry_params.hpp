@@ -21,13 +21,11 @@ struct OdometryExpertParams {
   int window_sweeps = 2;
   RestBoundsParams rest = {};
   OdometryStartParams start = {};
-  StandstillParams standstill = {};
   InertialNoiseParams prior = {};
   SaturatedImuParams rails = {};
   LocalMapParams map = {};
   MatchingParams matching = {};
   TrackingParams tracking = {};
-  RelocalisationParams search = {};
   WorldCovarianceParams world = {};
 
   template <class Self, class Visitor>
@@ -48,8 +46,6 @@ struct OdometryExpertParams {
                             FieldRank::basic});
     visit.group("", p.tracking);
     visit.group("start_", p.start);
-    visit.group("standstill_", p.standstill);
-    visit.group("search_", p.search);
     visit.group("world_", p.world);
   }
 };
