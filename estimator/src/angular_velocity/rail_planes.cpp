@@ -194,7 +194,6 @@ struct SideSearch {
 RailPlaneFinder::RailPlaneFinder(const Params& params) : params_(params) {
   require_valid_fields(params);
   if (params.stated_rad_s) require_within("stated_rad_s", *params.stated_rad_s, 1e-6, 1000.0);
-  require_within("log_odds_keep", params.kLogOddsKeep, -100.0, params.kLogOddsMin);
 }
 
 void RailPlaneFinder::Workspace::reserve(std::size_t readings) {

@@ -29,7 +29,7 @@ constexpr double kDeficitCarryMax = 3.0;
 constexpr double kKnotSigmaRatio = 0.05;
 // Standard deviation of the velocity during the initial rest.
 constexpr double kStartSigma_m_s = 0.01;
-// Minimum number of consecutive sweeps at rest before creep_max_m_s applies.
+// Minimum number of consecutive sweeps at rest before kCreepMax_m_s applies.
 constexpr int kRestingSweepsMin = 3;
 
 namespace u = unknowns;
@@ -124,7 +124,7 @@ Prediction predict(const Params& params, const SweepBoundary& boundary, const Mo
   next.prior.mean.calibration = boundary.state_estimate.mean.calibration;
   carry_deficit(params, boundary, trajectory, next);
   if (window.samples.front().at_rest) next.zero_velocity_update(kStartSigma_m_s);
-  // The speed limit creep_max_m_s excludes constant motion, which the IMU cannot distinguish from rest.
+  // The speed limit kCreepMax_m_s excludes constant motion, which the IMU cannot distinguish from rest.
   const bool creeps = boundary.state_estimate.mean.state.v_WI_m_s.norm() < Standstill::kCreepMax_m_s;
   if (window.resting_sweeps >= kRestingSweepsMin && !boundary.constrained && creeps)
     next.zero_velocity_update(Standstill::kSigma_m_s);

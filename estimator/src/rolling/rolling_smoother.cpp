@@ -161,7 +161,6 @@ bool RollingSmoother::State::operator==(const State& other) const {
 RollingSmoother::RollingSmoother(const Params& p) : params_(p), filter_(p.filter) {
   require_valid_fields(p);
   require_within("lag_s", p.lag_s, p.filter.expert.node_s, kWholeRun);
-  require_within("block_s", p.kBlock_s, p.filter.expert.node_s, 1e3);
   final_pass_params_ = scale_noise(p.filter, p.kFinalPassNoiseRatio);
   lag_nodes_ = static_cast<std::size_t>(std::ceil(p.lag_s / p.filter.expert.node_s - 1e-9));
   block_nodes_ = static_cast<std::size_t>(std::ceil(p.kBlock_s / p.filter.expert.node_s - 1e-9));
