@@ -144,7 +144,7 @@ Prediction predict(const Params& params, const SweepBoundary& boundary, const Mo
   return next;
 }
 
-void predict_rest(const Params& params, const SweepBoundary& boundary, Prediction& prediction) {
+void predict_rest(const SweepBoundary& boundary, Prediction& prediction) {
   prediction.zero_velocity_update(Standstill::kSigma_m_s);
   prediction.compose(boundary.state_estimate);
 }
