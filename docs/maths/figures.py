@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Draws the figures of the notes on rates, rails, hand-held motion, flight and clocks.
+"""Draws the figures of the notes on rates, rails, hand-held motion and clocks.
 
     python3 docs/maths/figures.py [NAME]
 
@@ -205,42 +205,6 @@ def rotation(angle):
     return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
 
 
-def flight_arc():
-    """Plots paths over a gap with a constant rate about y, and the error of A10 by the trapezoid rule compared with A11."""
-    figure, (paths, errors) = panels(2)
-    gravity, rate, lever = np.array([0.0, -9.81]), 12.0, np.array([0.12, 0.0])
-    start, velocity = np.array([0.0, 1.0]), np.array([2.0, 2.5])
-
-    def centre(t):
-        return start + velocity * t + 0.5 * gravity * t**2
-
-    t = np.linspace(0.0, 0.6, 200)
-    body = np.array([centre(s) for s in t])
-    imu = np.array([centre(s) + rotation(rate * s) @ lever for s in t])
-    paths.plot(*body.T, color=GREY, label="centre of mass")
-    paths.plot(*imu.T, color=BLUE, label="IMU")
-    for s in t[::25]:
-        paths.plot(*np.array([centre(s), centre(s) + rotation(rate * s) @ lever]).T, color="#bbbbbb", lw=0.8, zorder=0)
-    paths.set(xlabel="x [m]", ylabel="z [m]", aspect="equal")
-    paths.legend(fontsize=8)
-    paths.set_title("gap of 0.6 s at 12 rad/s", fontsize=10)
-    for step, colour in [(0.005, GREEN), (0.01, BLUE), (0.02, RED)]:
-        count = int(0.6 / step)
-        relative = [rate * rotation(rate * k * step) @ np.array([0.0, lever[0]]) for k in range(count + 1)]
-        position, error = np.zeros(2), [0.0]
-        for k in range(count):
-            position = position + 0.5 * step * (relative[k] + relative[k + 1])
-            error.append(np.linalg.norm(position - (rotation(rate * (k + 1) * step) @ lever - lever)))
-        at = step * np.arange(count + 1)
-        bound = (rate * step) ** 2 / 12 * np.array([np.linalg.norm(rotation(rate * s) @ lever - lever) for s in at])
-        errors.plot(at, 1e3 * np.array(error), color=colour, label=f"dt = {1e3 * step:.0f} ms")
-        errors.plot(at, 1e3 * bound, ":", color="black", lw=0.8, label="A11" if step == 0.02 else None)
-    errors.set(xlabel="time [s]", ylabel="position error [mm]")
-    errors.legend(fontsize=8)
-    errors.set_title("error of the IMU's position (lever arm 0.12 m)", fontsize=10)
-    return figure
-
-
 def saave():
     """Plots the geometry of S1, and the sensitivity S4."""
     figure, (geometry, sensitivity) = panels(2)
@@ -305,7 +269,7 @@ def sample_clock():
     return figure
 
 
-FIGURES = {f.__name__: f for f in (rate_smoother, rails, rate_stream, carried, flight_arc, saave, sample_clock)}
+FIGURES = {f.__name__: f for f in (rate_smoother, rails, rate_stream, carried, saave, sample_clock)}
 
 
 def main(names):

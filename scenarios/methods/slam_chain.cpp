@@ -35,7 +35,6 @@ LidarInertialOdometry::Params odometry_params(const sim::Sensors& sensors, const
     odometry.expert.matching.correction_max_rad = chain.along->correction_max_rad;
   }
   stage.settings.apply(stage.parameters, params);
-  if (params.flight_arc) odometry.expert.flight.body.emplace().p_IB_I_m = -bridge::lever_arm_I_m(sensors.imus.front());
   return odometry;
 }
 

@@ -11,18 +11,12 @@ namespace tumble::scenarios {
 
 struct SlamParams {
   LidarInertialOdometry::Params odometry = on_the_rig();
-  bool flight_arc = false;  ///< the robot's calibration gives odometry.body
 
   static LidarInertialOdometry::Params on_the_rig();
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit.group("", p.odometry);
-    visit(p.flight_arc,
-          switch_field("flight_arc",
-                       "1: in flight, the position follows the ballistic arc of the calibrated centre of mass; "
-                       "0: the position follows the accelerometer",
-                       FieldRank::basic));
   }
 };
 

@@ -31,10 +31,10 @@ Settings<TumblingOdometry::Params> odometry_settings(double lag_s, std::vector<s
   params.lag_s = lag_s;
   params.expert->mapping.own_body_L = presets::rig_body_L();
   fixed.insert(fixed.end(),
-               {"rate_lever_arm_sigma_m", "rate_gyro_noise_density", "rate_accel_noise_density", "rate_rails_stated_*",
-                "rate_period_s", "rate_lag_s", "rate_evidence_gravity_m_s2", "rate_carried_gravity_m_s2",
-                "rate_carried_gap_max_s", "rate_carried_period_s", "rate_carried_lag_s", "mapping_mount_sigma_*",
-                "mapping_time_offset_sigma_s", "mapping_gravity_m_s2", "mapping_range_*"});
+               {"rate_lever_arm_sigma_m", "rate_gyro_noise_density", "rate_accel_noise_density", "rate_period_s",
+                "rate_lag_s", "rate_evidence_gravity_m_s2", "rate_carried_gravity_m_s2", "rate_carried_gap_max_s",
+                "rate_carried_period_s", "rate_carried_lag_s", "mapping_mount_sigma_*", "mapping_time_offset_sigma_s",
+                "mapping_gravity_m_s2", "mapping_range_*"});
   return Settings<TumblingOdometry::Params>(
       params, {.stated = {"imu_*", "lever_arm_x_m", "lever_arm_y_m", "lever_arm_z_m", "gravity_m_s2",
                           "mapping_accel_rail_m_s2"},
@@ -42,12 +42,11 @@ Settings<TumblingOdometry::Params> odometry_settings(double lag_s, std::vector<s
 }
 
 const Settings<TumblingOdometry::Params>& whole_settings() {
-  static const auto all =
-      odometry_settings(TumblingOdometry::kWholeRecording,
-                        {"lag_s", "sweeps_max", "second_pass_*", "rate_accel_bias_sigma_m_s2", "rate_inertia_sigma",
-                         "rate_step_s", "rate_initial_threshold_factor", "rate_step_max_rad_s", "rate_bound_*",
-                         "rate_flight_run_min", "rate_rig_inflation*", "rate_contact_inflation", "rate_contact_slopes",
-                         "rate_uncalibrated", "rate_carried_window_s"});
+  static const auto all = odometry_settings(
+      TumblingOdometry::kWholeRecording,
+      {"lag_s", "sweeps_max", "second_pass_*", "rate_accel_bias_sigma_m_s2", "rate_inertia_sigma", "rate_step_s",
+       "rate_initial_threshold_factor", "rate_bound_*", "rate_flight_run_min", "rate_rig_inflation*",
+       "rate_contact_inflation", "rate_contact_slopes", "rate_uncalibrated", "rate_carried_window_s"});
   return all;
 }
 

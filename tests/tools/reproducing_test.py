@@ -16,7 +16,7 @@ import numpy as np
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, sys.argv.pop(1))
-from reproducing import figures, page, rig, runs, saturation, sphere  # noqa: E402
+from reproducing import ablation, figures, page, rig, runs, saturation, sphere  # noqa: E402
 
 SCHEMA = """
 CREATE TABLE scores (scenario TEXT, seed INTEGER, kind TEXT, method TEXT, status TEXT, metric TEXT, value REAL);
@@ -52,6 +52,56 @@ class ReadingScores(Case):
         scores = self.scores((1, "slam", "published", "ok", "ate_m", 2.0))
         self.assertEqual(scores.of("slam/published", "ate_m"), {1: 2.0})
         self.assertEqual(scores.of(rig.MAPS[rig.TUNED], "ate_m"), {1: 0.5})
+
+
+class Ablation(unittest.TestCase):
+    METRIC = {"rate/tumble": "error"}
+
+    def compared(self, on: list, off: list) -> dict:
+        """Returns the row of a mechanism with these errors by seed; None: the run failed."""
+        path = self.folder / "rates.db"
+        path.unlink(missing_ok=True)
+        rows = [("scores", "", on), ("curves", "rate/tumble.gain", off)]
+        with sqlite3.connect(path) as database:
+            database.executescript(SCHEMA)
+            for table, varied, errors in rows:
+                for seed, error in enumerate(errors):
+                    run = ("hill", seed, "rate", "tumble", "failed" if error is None else "ok", "error", error)
+                    values = run if table == "scores" else (varied, 0.0, *run)
+                    database.execute(f"INSERT INTO {table} VALUES ({','.join('?' * len(values))})", values)
+        sweep = {"scenarios": ["hill"], "metrics": self.METRIC}
+        return ablation.compared("gain", {"without": {"rate/tumble.gain": 0}}, sweep, self.folder, figures.read_scores(self.folder))[0]
+
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.folder = pathlib.Path(scratch.name)
+
+    def test_a_mechanism_that_halves_the_error_of_each_run_changes_median_and_tail_by_100_percent(self):
+        row = self.compared([1.0, 2.0, 3.0, 4.0], [2.0, 4.0, 6.0, 8.0])
+        self.assertEqual([row[key] for key in ("median", "median_low", "median_high", "tail")], [100.0] * 4)
+        self.assertTrue(ablation.matters(row) and not ablation.is_small(row))
+
+    def test_a_mechanism_without_effect_is_small(self):
+        row = self.compared([1.0, 2.0, 3.0], [1.0, 2.0, 3.0])
+        self.assertTrue(ablation.is_small(row) and not ablation.matters(row))
+        self.assertEqual(row["equal"], 3)
+
+    def test_a_failed_run_counts(self):
+        row = self.compared([1.0, 2.0, 3.0], [1.0, 2.0, None])
+        self.assertEqual((row["failed_on"], row["failed_off"], row["tail"]), (0, 1, float("inf")))
+        self.assertTrue(ablation.matters(row))
+
+    def test_one_method_cannot_have_two_values(self):
+        with self.assertRaises(SystemExit):
+            ablation.keys_of("rate/tumble", {"rate/tumble.a": 0, "rate/tumble.b": 1})
+
+    def test_the_description_names_known_sweeps_and_existing_files(self):
+        described = ablation.yaml.safe_load(ablation.FILE.read_text())
+        for mechanism in described["mechanisms"].values():
+            metrics = described["sweeps"][mechanism["sweep"]]["metrics"]
+            self.assertTrue(any(ablation.keys_of(method, mechanism["without"]) for method in metrics))
+            self.assertGreaterEqual(ablation.lines_of(mechanism), 0)
 
 
 class SaturatedSpin(unittest.TestCase):

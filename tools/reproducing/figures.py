@@ -32,19 +32,20 @@ def sweep_command(name, sweep, program, folder, jobs):
     suite.parent.mkdir(parents=True, exist_ok=True)
     suite.write_text(yaml.safe_dump({"name": name, "doc": f"Sweep '{name}' of docs/figures.yaml.", "scenarios": sweep["scenarios"],
                                      "seeds": {"first": first, "last": last}, "methods": sweep["methods"],
-                                     "timeout_s": sweep.get("timeout_s", 300)}, sort_keys=False))
+                                     "timeout_s": sweep.get("timeout_s", 300), **({"vary": sweep["vary"]} if "vary" in sweep else {})}, sort_keys=False))
     database = folder / name / f"{name}.db"
     database.parent.mkdir(exist_ok=True)
     return [str(program), "sweep", str(suite), "--jobs", str(jobs), "--examples", "0", "--failures", "0", "--db", str(database)], folder / name
 
 
-def read_scores(folder):
-    """Returns (status, {metric: value}) for each (scenario, seed, kind/method), from all databases of a folder."""
+def read_scores(folder, varied=""):
+    """Returns (status, {metric: value}) for each (scenario, seed, kind/method), from all databases of a folder; with the keys `varied` set to other values."""
     scores = {}
     for file in sorted(folder.glob("*.db")):
         with sqlite3.connect(f"file:{file}?mode=ro", uri=True) as database:
+            columns = "SELECT scenario, seed, kind, method, status, metric, value FROM "
             for scenario, seed, kind, method, status, metric, value in database.execute(
-                    "SELECT scenario, seed, kind, method, status, metric, value FROM scores WHERE method <> ''"):
+                    columns + ("curves WHERE method <> '' AND varied = ?" if varied else "scores WHERE method <> '' AND '' = ?"), (varied,)):
                 values = scores.setdefault((scenario, seed, f"{kind}/{method}"), (status, {}))[1]
                 if metric:
                     values[metric] = value

@@ -10,6 +10,20 @@ namespace tumble {
 
 namespace {
 
+constexpr int kPlateauSamples = 4;  // minimum number of readings of a plateau
+// largest spread of the readings of a plateau, relative to the saturation limit
+constexpr double kPlateauSpreadRatio = 2e-5;
+// A gyro plateau (run of equal readings) below this rate needs twice as many readings, and a jump at its start or end.
+constexpr double kLowGyroPlateau_rad_s = 1.0;
+constexpr double kGyroPlateauMin_rad_s = 0.02;
+constexpr double kAccelPlateauMin_m_s2 = 15.0;  // above gravity
+// minimum jump at the start or end of a low plateau, in steps of the sensor's resolution
+constexpr double kJumpMinDigits = 8.0;
+// Readings above (1 - kClipEnterRatio) times the saturation limit are clipped; their neighbours are clipped above
+// (1 - kClipLeaveRatio) times the limit.
+constexpr double kClipEnterRatio = 0.003, kClipLeaveRatio = 0.02;
+constexpr double kRangeContradictionRatio = 0.02;  // minimum relative difference that contradicts the stated range
+
 double reading(const ImuSample& sample, int c) {
   return c < 3 ? sample.angular_velocity_rad_s[c] : sample.specific_force_m_s2[c - 3];
 }
@@ -23,8 +37,6 @@ void set_bit(std::uint8_t& bits, int j) {
 RailDetector::RailDetector(const Params& params) : params_(params) {
   if (params.stated_gyro_rad_s) require_within("stated_gyro_rad_s", *params.stated_gyro_rad_s, 1e-6, 1000.0);
   if (params.stated_accel_m_s2) require_within("stated_accel_m_s2", *params.stated_accel_m_s2, 1e-6, 1e5);
-  require_valid_fields(params);
-  require_within("clip_leave_ratio", params.clip_leave_ratio, params.clip_enter_ratio, 0.5);
 }
 
 RailDetector::State RailDetector::start() const {
@@ -41,7 +53,7 @@ void RailDetector::observe(const ImuSample& sample, State& state) const {
   for (int c = 0; c < 6; ++c) {
     Channel& channel = state.channels[static_cast<std::size_t>(c)];
     const double value = reading(sample, c), magnitude = std::abs(value);
-    const double spread = params_.expert.plateau.plateau_spread_ratio * magnitude;
+    const double spread = kPlateauSpreadRatio * magnitude;
     const double change = std::abs(value - channel.before);
     const bool continues = channel.run_length > 0 && std::abs(value - channel.run_first) <= spread;
     if (channel.run_length > 0 && !continues) {
@@ -49,8 +61,7 @@ void RailDetector::observe(const ImuSample& sample, State& state) const {
       if (magnitude < channel.peak && plateau(c, channel, change)) channel.rail = std::abs(channel.run_first);
     }
     channel.peak = std::max(channel.peak, magnitude);
-    if (channel.rail > 0.0 && channel.peak > channel.rail * (1.0 + params_.range_contradiction_ratio))
-      channel.rail = 0.0;
+    if (channel.rail > 0.0 && channel.peak > channel.rail * (1.0 + kRangeContradictionRatio)) channel.rail = 0.0;
     if (!continues) {
       channel.entry = channel.run_length > 0 ? change : 0.0;
       channel.run_first = value;
@@ -63,19 +74,18 @@ void RailDetector::observe(const ImuSample& sample, State& state) const {
 
 bool RailDetector::plateau(int c, const Channel& channel, double jump) const {
   const double magnitude = std::abs(channel.run_first);
-  if (magnitude < channel.peak * (1.0 - params_.range_contradiction_ratio)) return false;
-  if (channel.run_length < params_.expert.plateau.samples) return false;
-  if (c >= 3) return magnitude >= params_.expert.plateau.accel_plateau_min_m_s2;
-  if (magnitude >= params_.expert.plateau.low_gyro_plateau_rad_s) return true;
-  return magnitude >= params_.expert.plateau.gyro_plateau_min_rad_s &&
-         channel.run_length >= 2 * params_.expert.plateau.samples &&
-         jump > params_.expert.plateau.jump_min_digits * channel.digit;
+  if (magnitude < channel.peak * (1.0 - kRangeContradictionRatio)) return false;
+  if (channel.run_length < kPlateauSamples) return false;
+  if (c >= 3) return magnitude >= kAccelPlateauMin_m_s2;
+  if (magnitude >= kLowGyroPlateau_rad_s) return true;
+  return magnitude >= kGyroPlateauMin_rad_s && channel.run_length >= 2 * kPlateauSamples &&
+         jump > kJumpMinDigits * channel.digit;
 }
 
 std::optional<double> RailDetector::rail(const State& state, int c) const {
   const Channel& channel = state.channels[static_cast<std::size_t>(c)];
   if (channel.rail > 0.0) return channel.rail;
-  const double below = channel.peak / (1.0 + params_.range_contradiction_ratio);
+  const double below = channel.peak / (1.0 + kRangeContradictionRatio);
   double sibling = 0.0;
   for (int i = c / 3 * 3; i < c / 3 * 3 + 3; ++i) {
     sibling = std::max(sibling, state.channels[static_cast<std::size_t>(i)].rail);
@@ -90,8 +100,8 @@ bool RailDetector::disagrees(const State& state, int c) const {
   const std::optional<double> given = stated(c);
   if (!given) return false;
   const Channel& channel = state.channels[static_cast<std::size_t>(c)];
-  if (channel.peak > *given * (1.0 + params_.range_contradiction_ratio)) return true;
-  return channel.rail > 0.0 && channel.rail < *given * (1.0 - params_.range_contradiction_ratio);
+  if (channel.peak > *given * (1.0 + kRangeContradictionRatio)) return true;
+  return channel.rail > 0.0 && channel.rail < *given * (1.0 - kRangeContradictionRatio);
 }
 
 Clipping RailDetector::classify(const ImuSample& sample, State& state) const {
@@ -102,7 +112,7 @@ Clipping RailDetector::classify(const ImuSample& sample, State& state) const {
     bool clipped = (sample.device_clip_flags >> c & 1u) != 0;
     bool flipped = false;
     if (const std::optional<double> level = rail(state, c)) {
-      const double share = channel.clipped ? params_.clip_leave_ratio : params_.clip_enter_ratio;
+      const double share = channel.clipped ? kClipLeaveRatio : kClipEnterRatio;
       clipped = clipped || std::abs(value) >= *level * (1.0 - share);
       // A change from the positive to the negative saturation level within one sample is a numeric overflow, not a
       // motion.
@@ -133,7 +143,7 @@ void RailDetector::add_rising_edge(const ImuSample& sample, const ImuSample& nex
     const std::optional<double> level = rail(state, c);
     if (!level) continue;
     const double value = reading(sample, c);
-    const bool near = std::abs(value) >= *level * (1.0 - params_.clip_leave_ratio) && value * reading(next, c) > 0.0;
+    const bool near = std::abs(value) >= *level * (1.0 - kClipLeaveRatio) && value * reading(next, c) > 0.0;
     if (near) set_bit(c < 3 ? clipping.gyro : clipping.accel, c % 3);
   }
 }

@@ -47,19 +47,19 @@ double log_normal_ratio(double value, double sigma) {
 double level_log_odds(const RailPlaneFinder::Params& params, const DistinctReadings& readings, const RailPlanes& known,
                       const Side& side) {
   const double level = side.facet.level;
-  double odds = params.log_odds_before;
+  double odds = params.kLogOddsBefore;
   if (level < params.distance_min_rad_s) return kImpossibleLogOdds;
   for (int other = 0; other < 3; ++other) {
     const auto& rail = known.element[static_cast<std::size_t>(other)];
     if (rail && other == side.axis) {
-      odds += kOppositeSignLogOdds + log_normal_ratio(level - rail->distance_rad_s, params.offset_sigma_ratio * level);
+      odds += kOppositeSignLogOdds + log_normal_ratio(level - rail->distance_rad_s, params.kOffsetSigmaRatio * level);
     } else if (rail) {
       odds +=
-          kNearElementLogOdds + log_normal_ratio(level - rail->distance_rad_s, 2.0 * params.offset_sigma_ratio * level);
+          kNearElementLogOdds + log_normal_ratio(level - rail->distance_rad_s, 2.0 * params.kOffsetSigmaRatio * level);
     }
     if (other == side.axis) continue;
     const double beyond = readings.peak[other] / level - 1.0 - kElementLevelRatio;
-    if (beyond > 0.0) odds += log_normal_ratio(beyond, params.offset_sigma_ratio);
+    if (beyond > 0.0) odds += log_normal_ratio(beyond, params.kOffsetSigmaRatio);
   }
   if (const auto& rail = params.known.element[static_cast<std::size_t>(side.axis)]) {
     const double apart = level - rail->distance_rad_s - side.sign * rail->offset_rad_s;
@@ -79,8 +79,8 @@ RailPlane joined(const RailPlaneFinder::Params& params, const DistinctReadings& 
   Eigen::Vector4d g = Eigen::Vector4d::Zero();
   const int axis = (plus != nullptr ? plus : minus)->axis;
   const double level = (plus != nullptr ? plus : minus)->facet.level;
-  const double slope_information = 1.0 / (params.slope_sigma * params.slope_sigma);
-  H.diagonal() << slope_information, slope_information, 0.0, 1.0 / std::pow(params.offset_sigma_ratio * level, 2);
+  const double slope_information = 1.0 / (params.kSlopeSigma * params.kSlopeSigma);
+  H.diagonal() << slope_information, slope_information, 0.0, 1.0 / std::pow(params.kOffsetSigmaRatio * level, 2);
   RailPlane out;
   double squares = 0.0, weights = 0.0;
   for (const Side* side : {minus, plus}) {
@@ -151,16 +151,16 @@ struct SideSearch {
     if (const auto& rail = known.element[element]) {
       const Matrix2d of_slopes = rail->covariance.topLeftCorner<2, 2>();
       const FacetPrior prior{others(rail->row, axis), (of_slopes + 1e-6 * Matrix2d::Identity()).inverse()};
-      const double range = std::min(params.slope_max, 3.0 * std::sqrt(of_slopes.trace()) + 1e-3);
+      const double range = std::min(params.kSlopeMax, 3.0 * std::sqrt(of_slopes.trace()) + 1e-3);
       return about(axis, sign, known, prior, range);
     }
-    const Matrix2d unknown = Matrix2d::Identity() / (params.slope_sigma * params.slope_sigma);
-    const Side side = about(axis, sign, known, {Vector2d::Zero(), unknown}, params.slope_max);
+    const Matrix2d unknown = Matrix2d::Identity() / (params.kSlopeSigma * params.kSlopeSigma);
+    const Side side = about(axis, sign, known, {Vector2d::Zero(), unknown}, params.kSlopeMax);
     const auto& earlier = params.known.element[element];
     if (!earlier) return side;
     const Matrix2d changed =
         earlier->covariance.topLeftCorner<2, 2>() + kKnownSlopeSigma * kKnownSlopeSigma * Matrix2d::Identity();
-    const double range = std::min(params.slope_max, 3.0 * std::sqrt(changed.trace()));
+    const double range = std::min(params.kSlopeMax, 3.0 * std::sqrt(changed.trace()));
     const Side same = about(axis, sign, known, {others(earlier->row, axis), changed.inverse()}, range);
     return same.log_odds > side.log_odds ? same : side;
   }
@@ -168,7 +168,7 @@ struct SideSearch {
   bool add(int axis, std::size_t i, bool kept, const RailPlanes& found, Pair& pair) const {
     const int sign = i == 0 ? -1 : 1;
     const Side side = search_side(axis, sign, found);
-    if (side.log_odds >= (kept ? params.log_odds_keep : params.log_odds_min)) {
+    if (side.log_odds >= (kept ? params.kLogOddsKeep : params.kLogOddsMin)) {
       pair[i] = side;
       return true;
     }
@@ -181,7 +181,7 @@ struct SideSearch {
     supposed.element[static_cast<std::size_t>(axis)] = joined(params, readings, alone);
     const Side other = search_side(axis, -sign, supposed);
     // The planes of positive and negative saturation share one prior: rails.md (R68).
-    if (side.log_odds + other.log_odds - params.log_odds_before < params.log_odds_min) return false;
+    if (side.log_odds + other.log_odds - params.kLogOddsBefore < params.kLogOddsMin) return false;
     pair[i] = side;
     pair[1 - i] = other;
     return true;
@@ -193,7 +193,6 @@ struct SideSearch {
 RailPlaneFinder::RailPlaneFinder(const Params& params) : params_(params) {
   require_valid_fields(params);
   if (params.stated_rad_s) require_within("stated_rad_s", *params.stated_rad_s, 1e-6, 1000.0);
-  require_within("log_odds_keep", params.log_odds_keep, -100.0, params.log_odds_min);
 }
 
 void RailPlaneFinder::Workspace::reserve(std::size_t readings) {

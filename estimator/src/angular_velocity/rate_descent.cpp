@@ -54,7 +54,7 @@ bool run_gauss_newton(const RateSmoother::Params& params, const RateModel& model
     if (!solution.iteration.factorise(model, estimates, solution.rig)) return false;
     solution.rig_covariance = solution.iteration.rig_covariance();
     health.last_step_rad_s =
-        solution.iteration.apply(model, params.expert.descent.step_max_rad_s, estimates, solution.rig);
+        solution.iteration.apply(model, params.expert.descent.kStepMax_rad_s, estimates, solution.rig);
     ++health.iterations;
 
     const bool converged =
@@ -63,7 +63,7 @@ bool run_gauss_newton(const RateSmoother::Params& params, const RateModel& model
     if (soft > 0) {
       solution.iteration.for_each_conditional([&](std::size_t k, const arrow::Conditional& conditional) {
         model.update_bounds(observations[k], solution.rig, conditional, solution.rig_covariance,
-                            params.expert.descent.bound_damping, estimates[k]);
+                            params.expert.descent.kBoundDamping, estimates[k]);
       });
     }
     if (soft > 0 || converged ||

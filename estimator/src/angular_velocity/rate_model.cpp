@@ -139,7 +139,7 @@ RateModel::RateModel(const RateModelParams& params, double period_s) : params_(p
   gyro_sigma_rad_s_ = params.gyro_noise_density * std::sqrt(bandwidth_hz);  // gyro noise: rate_smoother.md (R6)
   accel_noise_m_s2_ = params.accel_noise_density * std::sqrt(bandwidth_hz);
   accel_sigma_m_s2_ = std::hypot(params.expert.flight.sigma_m_s2, accel_noise_m_s2_);
-  share_ = std::min(1.0, period_s / params.expert.model_error_s);
+  share_ = std::min(1.0, period_s / params.expert.kModelError_s);
   uses_raw_readings_ = params.errors == SensorErrors{};
   prior_constants_ = params.calibration ? params.calibration->constants : params.nominal;
   prior_covariance_ = covariance_of(params);
@@ -159,7 +159,7 @@ void RateModel::compute_flight_weight(const RateObservation& observation, const 
   const double r2 = normalised(flight, flight_spread(flight, rig_covariance), accel_sigma_m_s2(observation), hidden) +
                     normalised(euler, euler_spread(euler, rig_covariance), params_.expert.flight.euler_sigma_rad_s2) +
                     jump;
-  const double threshold = threshold_factor * params_.expert.flight.threshold;
+  const double threshold = threshold_factor * params_.expert.flight.kThreshold;
   // Geman-McClure weight: rate_smoother.md (R18)
   const double ratio = 1.0 / (1.0 + r2 / (threshold * threshold));
   estimate.flight_weight = ratio * ratio;
@@ -168,8 +168,7 @@ void RateModel::compute_flight_weight(const RateObservation& observation, const 
 }
 
 double RateModel::accel_sigma_m_s2(const RateObservation& observation) const {
-  return std::hypot(accel_sigma_m_s2_,
-                    params_.expert.readings.accel_scale_error * observation.sample.specific_force_m_s2.norm());
+  return std::hypot(accel_sigma_m_s2_, params_.expert.kAccelScaleError * observation.sample.specific_force_m_s2.norm());
 }
 
 // Model errors that last longer than a sample do not average out.
@@ -182,7 +181,7 @@ double RateModel::accel_variance_of_sum(const RateObservation& observation) cons
 double RateModel::jump(const RateKnot& from, const RateKnot& to, double dt_s) const {
   const Vector3d e0 = from.rate_rad_s + dt_s * from.acceleration_rad_s2 - to.rate_rad_s;
   const Vector3d e1 = dt_s * (from.acceleration_rad_s2 - to.acceleration_rad_s2);
-  const double scale = 1.0 / (params_.expert.flight.jerk_psd_rad2_s5 * dt_s * dt_s * dt_s);
+  const double scale = 1.0 / (params_.expert.flight.kJerkPsd_rad2_s5 * dt_s * dt_s * dt_s);
   return scale * (12.0 * e0.squaredNorm() - 12.0 * e0.dot(e1) + 4.0 * e1.squaredNorm());
 }
 
@@ -191,7 +190,7 @@ double RateModel::gyro_information(const RateObservation& observation, const Rat
   if (observation.gyro_age_s > 0.0) {
     // A contact force may change the rate between a gyro reading and its time stamp: rate_smoother.md (R7).
     const double change =
-        params_.expert.contact.gain_rad_m * estimate.contact_force_m_s2.norm() * observation.gyro_age_s;
+        params_.expert.contact.kGain_rad_m * estimate.contact_force_m_s2.norm() * observation.gyro_age_s;
     const double lost =
         (observation.partly_saturated_axes() >> axis & 1u) != 0 ? observation.expected_deficit_sigma_rad_s[axis] : 0.0;
     return 1.0 / (gyro_sigma_rad_s_ * gyro_sigma_rad_s_ + change * change + lost * lost);
@@ -265,7 +264,7 @@ void RateModel::add_sample(const RateObservation& observation, const RateEstimat
 
   add_auxiliary_imus(observation, estimate, rig, block);
 
-  const double rate_sigma = observation.at_rest ? params_.expert.rest_sigma_rad_s : params_.rate_max_rad_s;
+  const double rate_sigma = observation.at_rest ? params_.expert.kRestSigma_rad_s : params_.rate_max_rad_s;
   const double rate_information = share_ / (rate_sigma * rate_sigma);
   const double largest = params_.acceleration_max_rad_s2 * time_scale_s_;
   const double acceleration_information = share_ / (largest * largest);
@@ -280,7 +279,7 @@ void RateModel::add_sample(const RateObservation& observation, const RateEstimat
 // A force through one point of the body exerts no torque about its own direction: rate_smoother.md (R21).
 Eigen::Matrix3d RateModel::euler_information(const RateEstimate& estimate) const {
   const double flight = params_.expert.flight.euler_sigma_rad_s2 * params_.expert.flight.euler_sigma_rad_s2;
-  const double force = estimate.contact_force_m_s2.norm(), lever = params_.expert.contact.lever_rad_m * force;
+  const double force = estimate.contact_force_m_s2.norm(), lever = params_.expert.contact.kLever_rad_m * force;
   const double across = share_ / (flight + lever * lever);
   if (!(force > 0.0)) return across * Eigen::Matrix3d::Identity();
   const double twist = params_.expert.contact.twist_ratio * lever;
@@ -293,10 +292,9 @@ void RateModel::add_step(const RateEstimate& from, const RateEstimate& to, doubl
   const double h = time_scale_s_, ratio = dt_s / h;
   // See rate_smoother.md (R5).
   const double change =
-      params_.expert.contact.gain_rad_m * std::max(from.contact_force_m_s2.norm(), to.contact_force_m_s2.norm());
-  const double psd = params_.expert.flight.jerk_psd_rad2_s5 + share_ * change * change / dt_s;
-  // The process noise of rate and scaled angular acceleration has the information matrix [a, b; b, c]: rate_smoother.md
-  // (R4).
+      params_.expert.contact.kGain_rad_m * std::max(from.contact_force_m_s2.norm(), to.contact_force_m_s2.norm());
+  const double psd = params_.expert.flight.kJerkPsd_rad2_s5 + share_ * change * change / dt_s;
+  // inverse of the scaled process noise covariance Q = psd [dt^3/3, dt^2 h/2; dt^2 h/2, dt h^2]: rate_smoother.md (R4)
   const double a = 12.0 / (psd * dt_s * dt_s * dt_s), b = -6.0 / (psd * dt_s * dt_s * h),
                c = 4.0 / (psd * dt_s * h * h);
   for (int j = 0; j < 3; ++j) {

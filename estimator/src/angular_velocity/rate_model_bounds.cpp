@@ -95,10 +95,9 @@ void RateModel::update_bounds(const RateObservation& observation, const RigConst
     const Vector3d by_state = conditional.state.topLeftCorner<3, 3>().lazyProduct(row);
     // See rate_smoother.md (R22), (R35).
     const NormalMoments marginal{sign * off.residual[j], row.dot(by_state) + cross.dot(jacobian_calibration)};
-    const GaussianSite site =
-        refined_bound(marginal, {estimate.bound_precision[j], sign * estimate.bound_shift[j]}, 0.0,
-                      params_.expert.readings.rail_sigma_rad_s * params_.expert.readings.rail_sigma_rad_s,
-                      params_.rate_max_rad_s * params_.rate_max_rad_s, damping);
+    const GaussianSite site = refined_bound(marginal, {estimate.bound_precision[j], sign * estimate.bound_shift[j]},
+                                            0.0, params_.expert.kRailSigma_rad_s * params_.expert.kRailSigma_rad_s,
+                                            params_.rate_max_rad_s * params_.rate_max_rad_s, damping);
     estimate.bound_precision[j] = site.precision;
     estimate.bound_shift[j] = sign * site.shift;
   }

@@ -63,7 +63,7 @@ void RateModel::add_elements(const RateObservation& observation, const RateEstim
     } else if ((observation.clipping.gyro >> j & 1u) != 0) {
       const bool kept = gyro.residual[j] * observation.sample.angular_velocity_rad_s[j] >= 0.0;
       if (kept && !estimate.soft_bounds) continue;  // the hard bound is satisfied: rate_smoother.md (R9)
-      information = 1.0 / (params_.expert.readings.rail_sigma_rad_s * params_.expert.readings.rail_sigma_rad_s);
+      information = 1.0 / (params_.expert.kRailSigma_rad_s * params_.expert.kRailSigma_rad_s);
       pull = information * gyro.residual[j];
       if (estimate.soft_bounds) {
         information = estimate.bound_precision[j];

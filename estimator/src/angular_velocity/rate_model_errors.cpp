@@ -124,18 +124,18 @@ void RateModel::add_errors(const RateObservation& observation, const RateEstimat
 // See rate_smoother.md (R49).
 Eigen::Matrix3d RateModel::reported(const Eigen::Matrix3d& covariance, const RateObservation& observation,
                                     const RateEstimate& estimate) const {
-  const double factor = 1.0 + (params_.expert.contact.sigma_factor - 1.0) * (1.0 - estimate.flight_weight);
+  const double factor = 1.0 + (params_.expert.contact.kSigmaFactor - 1.0) * (1.0 - estimate.flight_weight);
   Vector3d wider = Vector3d::Ones();
   for (int j = 0; j < 3; ++j) {
     if ((observation.clipping.gyro >> j & 1u) != 0 || (observation.clipping.unusable_gyro >> j & 1u) != 0)
       wider[j] = factor;
   }
-  const Vector3d late = params_.expert.readings.gyro_time_sigma_s * estimate.knot.acceleration_rad_s2;
+  const Vector3d late = params_.expert.kGyroTimeSigma_s * estimate.knot.acceleration_rad_s2;
   Eigen::Matrix3d timed = covariance + late * late.transpose();
   if (observation.is_element_clipped()) {
     // A contact force also changes the rate of unclipped axes within the averaging window of a sample.
-    const double struck = params_.expert.readings.gyro_time_sigma_s * params_.expert.contact.gain_rad_m *
-                          estimate.contact_force_m_s2.norm();
+    const double struck =
+        params_.expert.kGyroTimeSigma_s * params_.expert.contact.kGain_rad_m * estimate.contact_force_m_s2.norm();
     timed.diagonal().array() += struck * struck;
   }
   return wider.asDiagonal() * timed * wider.asDiagonal();

@@ -42,7 +42,7 @@ void mark_possibly_clipped(const RailPlaneFinder::Params& expected, const Clippi
     inflate_possible_saturation(planes, least, noise_rad_s, before, observations[k], after);
   }
   if (!rails.gyro_clips_after_compensation)
-    inflate_motion_plateaus(planes, least, expected.offset_sigma_ratio, noise_rad_s, observations);
+    inflate_motion_plateaus(planes, least, expected.kOffsetSigmaRatio, noise_rad_s, observations);
 }
 
 void mark_repeated(const std::optional<RepeatedReadings>& gyro, const std::optional<RepeatedReadings>& accel,

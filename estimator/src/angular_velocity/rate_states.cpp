@@ -41,7 +41,7 @@ double rate_change_rad_s2(const RateModelParams& params, std::span<const RateObs
   const RateObservation &from = observations[k], &to = observations[k + 1];
   if (from.at_rest && to.at_rest) return 0.0;
   if (((from.clipping.gyro | from.possibly_saturated_axes()) | (to.clipping.gyro | to.possibly_saturated_axes())) != 0)
-    return params.expert.contact.gain_rad_m *
+    return params.expert.contact.kGain_rad_m *
            std::max(estimates[k].contact_force_m_s2.norm(), estimates[k + 1].contact_force_m_s2.norm());
   const double dt_s = seconds(to.sample.time_ns - from.sample.time_ns);
   return (estimates[k + 1].knot.rate_rad_s - estimates[k].knot.rate_rad_s).norm() / dt_s;

@@ -326,12 +326,12 @@ bool RateStream::step(State& state) const {
     x = arrow::back_substitute(blocks[k], last ? nullptr : &x, rig_step);
     conditional = arrow::back_conditional(blocks[k], last ? nullptr : &conditional);
     const Eigen::Matrix<double, 6, 1> physical = model_.unscaled(x);
-    const double share = std::min(1.0, params_.expert.step_max_rad_s / std::max(1e-300, physical.head<3>().norm()));
+    const double share = std::min(1.0, params_.expert.kStepMax_rad_s / std::max(1e-300, physical.head<3>().norm()));
     knot.estimate.knot.rate_rad_s += share * physical.head<3>();
     knot.estimate.knot.acceleration_rad_s2 += share * physical.tail<3>();
     knot.covariance_rad2_s2 = arrow::rate_covariance(conditional, rig_spread) + device_covariance(k, state);
     if (knot.estimate.soft_bounds) {
-      model_.update_bounds(knot.observation, state.rig, conditional, rig_covariance, params_.expert.bound_damping,
+      model_.update_bounds(knot.observation, state.rig, conditional, rig_covariance, params_.expert.kBoundDamping,
                            knot.estimate);
     }
     ++knot.age;
@@ -343,7 +343,7 @@ bool RateStream::step(State& state) const {
 RigConstants::Matrix RateStream::inflated(const State& state) const {
   if (params_.model.calibration) return state.rig_covariance;
   const double samples = static_cast<double>(state.calibration_samples) * model_.independent_reading_ratio() /
-                         params_.expert.inflation.samples;
+                         params_.expert.inflation.kSamples;
   const double largest = std::sqrt(1.0 + params_.expert.inflation.covariance / (1.0 + samples));
   RigConstants::Vector factor;
   for (int i = 0; i < RigConstants::kSize; ++i) {

@@ -116,7 +116,7 @@ Matrix3d RateStream::device_covariance(std::size_t k, const State& state) const 
   Matrix3d out = considered(device.moved[k], device.posterior.covariance, params_.model.rate_max_rad_s);
   const double shared_s2 = device_.common_delay_variance_s2(device.posterior);
   const Eigen::Vector3d& alpha = knot.estimate.knot.acceleration_rad_s2;
-  const double struck = params_.model.expert.contact.gain_rad_m * knot.estimate.contact_force_m_s2.norm();
+  const double struck = params_.model.expert.contact.kGain_rad_m * knot.estimate.contact_force_m_s2.norm();
   out += shared_s2 * (alpha * alpha.transpose() + struck * struck * Matrix3d::Identity());
   return out;
 }

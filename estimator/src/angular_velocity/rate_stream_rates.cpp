@@ -44,7 +44,7 @@ Eigen::Matrix3d RateStream::suspect_covariance(std::size_t at, const State& stat
   Eigen::Matrix3d out = knot.covariance_rad2_s2;
   if (knot.estimate.flight_weight >= 0.5) return out;
   const double samples = static_cast<double>(state.calibration_samples) * model_.independent_reading_ratio() /
-                         params_.expert.inflation.samples;
+                         params_.expert.inflation.kSamples;
   const double share = params_.model.calibration ? 0.0 : params_.expert.inflation.contact / (1.0 + samples);
   for (int j = 0; j < 3; ++j) {
     if ((knot.observation.unmeasured_axes() & knot.observation.clipping.gyro & 1u << j) == 0) continue;

@@ -42,7 +42,7 @@ Status Saave::step(const ImuSample& sample, State& state, Recovered& out) const 
 
   const Eigen::Vector3d& reading = sample.angular_velocity_rad_s;
   out.rate_rad_s = reading;
-  out.variance_rad2_s2.setConstant(params_.variance_measured_rad2_s2);
+  out.variance_rad2_s2.setConstant(params_.kVarianceMeasured_rad2_s2);
   out.clipped_axes = axes_beyond(reading, params_.saturation_point_rad_s);
   out.accepted = true;
   if (out.clipped_axes != 0) {
@@ -57,9 +57,9 @@ Status Saave::step(const ImuSample& sample, State& state, Recovered& out) const 
     if (out.accepted) {
       const double magnitude = std::max(std::sqrt(squared - others), std::abs(reading[j]));
       out.rate_rad_s[j] = std::copysign(magnitude, reading[j]);
-      out.variance_rad2_s2[j] = params_.variance_estimated_rad2_s2;
+      out.variance_rad2_s2[j] = params_.kVarianceEstimated_rad2_s2;
     } else {
-      out.variance_rad2_s2[j] = params_.variance_rejected_rad2_s2;
+      out.variance_rad2_s2[j] = params_.kVarianceRejected_rad2_s2;
     }
   }
   const double norm = out.rate_rad_s.norm();

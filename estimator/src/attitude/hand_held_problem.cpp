@@ -11,6 +11,10 @@ using Eigen::Vector3d;
 
 namespace {
 
+constexpr double kRestSigma_rad_s = 0.01;  // standard deviation of the rate at rest, per node
+constexpr double kRestSigma_m_s = 0.02;    // standard deviation of the velocity at rest
+constexpr double kRestSigma_m_s2 = 0.1;    // standard deviation of the acceleration at rest
+
 // largest change of an attitude for which the linearisation is valid
 constexpr double kRotationMax_rad = 0.8;
 constexpr double kConvergenceTolerance = 1e-3;  // attitudes [rad]; ten times for rates [rad/s]
@@ -27,10 +31,10 @@ Motion::Params motion_params(const HandHeldSmoother::Params& p, double jerk) {
   Motion::Params out;
   out.step_s = p.expert.node_s;
   out.jerk_rad_s3_sqrts = jerk * p.jerk_rad_s3_sqrts;
-  out.rotation_error_sqrts = p.expert.readings.rotation_error_sqrts;
-  out.hand_sigma_m_s2 = p.hand_sigma_m_s2, out.hand_tau_s = p.expert.hand.hand_tau_s;
-  out.velocity_m_s = p.velocity_m_s, out.velocity_tau_s = p.expert.hand.velocity_tau_s;
-  out.position_m = p.position_m, out.position_tau_s = p.expert.hand.position_tau_s,
+  out.rotation_error_sqrts = p.expert.readings.kRotationError_sqrts;
+  out.hand_sigma_m_s2 = p.hand_sigma_m_s2, out.hand_tau_s = p.expert.hand.kHandTau_s;
+  out.velocity_m_s = p.velocity_m_s, out.velocity_tau_s = p.expert.hand.kVelocityTau_s;
+  out.position_m = p.position_m, out.position_tau_s = p.expert.hand.kPositionTau_s,
   out.position_leak_s = p.expert.hand.position_leak_s;
   return out;
 }
@@ -39,13 +43,13 @@ ReadingNoise reading_noise(const HandHeldSmoother::Params& p, double period_s) {
   const double root_rate = 1.0 / std::sqrt(period_s);
   ReadingNoise out;
   out.gyro_rad_s = p.gyro_noise_density * root_rate;
-  out.deficit_error_ratio = p.expert.readings.deficit_error_ratio;
-  out.rail_rad_s = p.expert.readings.rail_sigma_rad_s;
+  out.deficit_error_ratio = p.expert.readings.kDeficitErrorRatio;
+  out.rail_rad_s = p.expert.readings.kRailSigma_rad_s;
   out.accel_m_s2 = p.accel_noise_density * root_rate;
-  out.force_noise_ratio = p.expert.readings.accel_error_ratio;
-  out.rest_rad_s = p.expert.still.rest_sigma_rad_s;
-  out.rest_m_s = p.expert.still.rest_sigma_m_s;
-  out.rest_m_s2 = p.expert.still.rest_sigma_m_s2;
+  out.force_noise_ratio = p.expert.readings.kAccelErrorRatio;
+  out.rest_rad_s = kRestSigma_rad_s;
+  out.rest_m_s = kRestSigma_m_s;
+  out.rest_m_s2 = kRestSigma_m_s2;
   return out;
 }
 
@@ -170,11 +174,11 @@ void Problem::adapt_process_noise() {
   const double assumed = 3.0 * params_.hand_sigma_m_s2 * params_.hand_sigma_m_s2;
   for (std::size_t i = 0; i < count; ++i)
     hand_power_[i + 1] = hand_power_[i] + nodes_[i].a_W_m_s2.squaredNorm() / assumed;
-  const auto half = static_cast<std::size_t>(0.5 * params_.expert.hand.hand_window_s / params_.expert.node_s);
+  const auto half = static_cast<std::size_t>(0.5 * params_.expert.hand.kHandWindow_s / params_.expert.node_s);
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t a = i > half ? i - half : 0, b = std::min(count, i + half + 1);
     const double local = (hand_power_[b] - hand_power_[a]) / static_cast<double>(b - a);
-    hand_[i] = std::max(params_.expert.hand.hand_noise_floor_ratio,
+    hand_[i] = std::max(params_.expert.hand.kHandNoiseFloorRatio,
                         1.0 + params_.expert.hand.hand_noise_adaptation * (local - 1.0));
   }
 }
@@ -259,7 +263,7 @@ Status Problem::covariances(HandHeldSmoother::Report& report) {
 double Problem::hand_acceleration_ratio() const {
   const auto window = static_cast<std::size_t>(std::max(1.0, kHandAveraging_s / params_.expert.node_s));
   const double span = static_cast<double>(window) * params_.expert.node_s,
-               ratio = params_.expert.hand.hand_tau_s / span;
+               ratio = params_.expert.hand.kHandTau_s / span;
   const double variance =
       params_.hand_sigma_m_s2 * params_.hand_sigma_m_s2 * 2.0 * ratio * (1.0 - ratio * (1.0 - std::exp(-1.0 / ratio)));
   double largest = 0.0;

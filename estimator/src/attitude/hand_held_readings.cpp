@@ -191,7 +191,7 @@ void correct_partial_saturation(double noise_rad_s, const Eigen::Matrix3d& rows,
 
 // Recovered rates have correlated errors: carried.md (C15).
 void recovered_readings(const HandHeldSmoother::Params& params, const ClippedElements& clipped, GyroReadings& rates) {
-  const double nodes = std::sqrt(2.0 * params.expert.readings.recovered_tau_s / params.expert.node_s);
+  const double nodes = std::sqrt(2.0 * params.expert.readings.kRecoveredTau_s / params.expert.node_s);
   for (std::size_t k = 0; k < clipped.recovered_covariance_rad2_s2.size(); ++k) {
     const Eigen::Matrix3d along = clipped.rows * clipped.recovered_covariance_rad2_s2[k] * clipped.rows.transpose();
     Vector3d& subsample_sigma_rad_s = rates.subsample_sigma_rad_s[rates.of_sample[k]];

@@ -113,7 +113,7 @@ Status HandHeldSmoother::estimate(std::span<const ImuSample> samples, const Clip
     rates[k].w_WI_I_rad_s = node.w_WI_I_rad_s + centre * node.angular_acceleration_rad_s2;
     rates[k].covariance_rad2_s2 = covariance.block<3, 3>(hand_held::kRate, hand_held::kRate);
     rates[k].clipped_axes = clipped_axes(collected.rates, k);
-    rates[k].source = source(rates[k], params_.expert.readings.recovered_sigma_rad_s);
+    rates[k].source = source(rates[k], params_.expert.readings.kRecoveredSigma_rad_s);
     const Eigen::Vector3d turn = end * node.w_WI_I_rad_s + 0.5 * end * end * node.angular_acceleration_rad_s2;
     attitudes[k].q_WA = node.q_WI * so3::exp(turn);
     const Eigen::Matrix3d R = node.q_WI.toRotationMatrix();

@@ -246,7 +246,7 @@ void HandHeldStream::predict(const Node& before, const Eigen::Matrix3d& rows, Kn
 
 // See carried.md (C41).
 double HandHeldStream::hand(const State& state) const {
-  return std::max(params_.body.expert.hand.hand_noise_floor_ratio,
+  return std::max(params_.body.expert.hand.kHandNoiseFloorRatio,
                   1.0 + params_.body.expert.hand.hand_noise_adaptation * (state.acceleration_power_ratio - 1.0));
 }
 
@@ -290,7 +290,7 @@ void HandHeldStream::marginalise_oldest(State& state) const {
   state.prior_node = next;
   state.prior_constants = state.constants;
   const double assumed = 3.0 * params_.body.hand_sigma_m_s2 * params_.body.hand_sigma_m_s2;
-  const double share = std::min(1.0, 2.0 * params_.body.expert.node_s / params_.body.expert.hand.hand_window_s);
+  const double share = std::min(1.0, 2.0 * params_.body.expert.node_s / params_.body.expert.hand.kHandWindow_s);
   state.acceleration_power_ratio +=
       share * (oldest.node.a_W_m_s2.squaredNorm() / assumed - state.acceleration_power_ratio);
   ++state.first_node;

@@ -68,7 +68,7 @@ RateState HandHeldStream::to_rate(const Reading& reading, const State& state, co
   if (out.clipped_axes == 0) return out;
   const double variance = covariance.selfadjointView<Eigen::Lower>().eigenvalues().maxCoeff();
   const double recovered =
-      params_.body.expert.readings.recovered_sigma_rad_s * params_.body.expert.readings.recovered_sigma_rad_s;
+      params_.body.expert.readings.kRecoveredSigma_rad_s * params_.body.expert.readings.kRecoveredSigma_rad_s;
   out.source = variance < recovered ? RateSource::recovered_contact : RateSource::bounded_only;
   return out;
 }

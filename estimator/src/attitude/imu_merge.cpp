@@ -356,7 +356,7 @@ void ImuMerge::calibrate(const Vectors& rates, State& state) const {
     state.lever_arm_effect_m2_s3 += state.length_s * by_rotation.squaredNorm();
   }
   if (acceleration.norm() < kRotating_rad_s2) return;
-  const double variance = params_.rate_noise_rad_s * params_.rate_noise_rad_s;
+  const double variance = params_.kRateNoise_rad_s * params_.kRateNoise_rad_s;
   for (std::size_t k = 0; k < count; ++k) {
     Unit& unit = state.units[k];
     const Eigen::Vector3d residual = unit.last_rate_rad_s - mean;

@@ -9,7 +9,7 @@ namespace tumble {
 
 namespace {
 
-constexpr double kAccelerationSpan_s = 0.01;  // = model_error_s of the rate model
+constexpr double kAccelerationSpan_s = 0.01;  // = kModelError_s of the rate model
 constexpr double kResetFraction = 0.5;
 
 HandHeldStream::Params joined(const RegimeStream::Params& params) {

@@ -15,6 +15,8 @@ namespace tumble {
 
 namespace {
 
+constexpr double kRollingVelocitySigma_m_s = 0.03;  // when rolling without slip, per node
+
 constexpr double kAccelerationNoise_m_s_sqrts = 0.01;  // velocity random walk
 // Velocity residual above which slip starts; slip ends below half of this value.
 constexpr double kSlipVelocity_m_s = 0.12;
@@ -134,7 +136,7 @@ void TumbleAttitude::process_average(State& state) const {
 bool TumbleAttitude::rotates_within_bias(const State& state) const {
   const Eigen::Array3d off_rad_s = (state.rest.mean_rate_rad_s() - state.bias_rad_s).array();
   const Eigen::Array3d variance = state.covariance.diagonal().segment<3>(kBias).array() +
-                                  squared(params_.expert.at_rest.rate_sigma_rad_sqrts);  // variance of a mean over 1 s
+                                  squared(params_.expert.at_rest.kRateSigma_rad_sqrts);  // variance of a mean over 1 s
   return (off_rad_s.square() <= squared(params_.expert.at_rest.rate_sigmas) * variance).all();
 }
 
@@ -182,7 +184,7 @@ void TumbleAttitude::bridge_gap(const ImuSample& after, const Eigen::Matrix3d& r
     const double turn =
         squared(gap_s) / 12.0 * ((to - from).squaredNorm() / 3.0 + squared(gap.rate_walk_rad_s_sqrts) * gap_s);
     state.recovered_variance_rad2.array() += turn;
-    state.covariance.diagonal().segment<2>(kVelocity).array() += squared(gap.velocity_walk_m_s_sqrts) * gap_s;
+    state.covariance.diagonal().segment<2>(kVelocity).array() += squared(gap.kVelocityWalk_m_s_sqrts) * gap_s;
   }
   predict_node(state);
   // A sphere that gripped before the gap is assumed to roll without slip after the gap.
@@ -206,7 +208,7 @@ void TumbleAttitude::end_node(State& state) const {
 }
 
 double TumbleAttitude::body_velocity_variance_m2_s2(double power_m2_s2, const State& state) const {
-  if (state.at_rest) return squared(params_.expert.at_rest.velocity_sigma_m_s);
+  if (state.at_rest) return squared(params_.expert.at_rest.kVelocitySigma_m_s);
   const double assumed = squared(params_.velocity_m_sqrts) / params_.motion_tau_s;
   const double turning = 0.5 * squared(params_.radius_m) * state.rate_rad_s.squaredNorm();
   return std::max({assumed, power_m2_s2, turning});
@@ -219,7 +221,7 @@ void TumbleAttitude::align(const Eigen::Quaterniond& corrected, State& state) co
   // The velocity variance is assumed, because a wrong tilt after a data gap falsifies the filtered velocity.
   const double velocity = body_velocity_variance_m2_s2(alignment.velocity_m2_s2, state);
   const double variance = alignment.variance_rad2(velocity, params_.gravity_m_s2);
-  if (variance > squared(params_.expert.gap.aligned_tilt_rad)) {
+  if (variance > squared(params_.expert.gap.kAlignedTilt_rad)) {
     // When the body comes to rest, the coarse alignment restarts and uses only later data.
     if (state.at_rest && alignment.velocity_m2_s2 > velocity) alignment.begin(velocity, alignment.tilt_rad2());
     return;
@@ -268,7 +270,7 @@ void TumbleAttitude::add_recovered(double dt_s, State& state) const {
 /// Predicts one filter step: attitude.md (A6), (A7), (A8), (A9).
 void TumbleAttitude::predict_node(State& state) const {
   const double h = state.node_s;
-  const double keep = std::exp(-h / params_.displacement_tau_s);
+  const double keep = std::exp(-h / params_.kDisplacementTau_s);
   const Eigen::Vector2d gained = state.force_integral_W_m_s.head<2>();  // gravity has no horizontal component
   state.displacement_W_m = keep * state.displacement_W_m + h * (state.v_W_m_s + 0.5 * gained);
   state.v_W_m_s += gained;
@@ -290,7 +292,7 @@ void TumbleAttitude::predict_node(State& state) const {
   state.covariance.diagonal().segment<2>(kTilt).array() += turn + state.recovered_variance_rad2[0];
   if (state.alignment.running) state.alignment.tilt_variance_growth_rad2 += turn + state.recovered_variance_rad2[0];
   state.covariance(kHeading, kHeading) += state.at_rest ? 0.0 : turn + state.recovered_variance_rad2[1];
-  state.covariance.diagonal().segment<3>(kBias).array() += squared(params_.expert.bias_walk_rad_s_sqrts) * h;
+  state.covariance.diagonal().segment<3>(kBias).array() += squared(params_.expert.kBiasWalk_rad_s_sqrts) * h;
   state.covariance.diagonal().segment<2>(kVelocity).array() += squared(kAccelerationNoise_m_s_sqrts) * h;
 }
 
@@ -352,12 +354,11 @@ void TumbleAttitude::correct_node(State& state) const {
   if (state.at_rest) {
     if (rolls) detect_slip(turned - state.v_W_m_s, state);
     for (int axis = 0; axis < 2; ++axis) {
-      update(kVelocity + axis, -state.v_W_m_s[axis], squared(params_.expert.at_rest.velocity_sigma_m_s), state);
+      update(kVelocity + axis, -state.v_W_m_s[axis], squared(params_.expert.at_rest.kVelocitySigma_m_s), state);
     }
   } else if (rolls && !detect_slip(turned - state.v_W_m_s, state)) {
     for (int axis = 0; axis < 2; ++axis) {
-      update(kVelocity + axis, turned[axis] - state.v_W_m_s[axis], squared(params_.expert.rolling.velocity_sigma_m_s),
-             state);
+      update(kVelocity + axis, turned[axis] - state.v_W_m_s[axis], squared(kRollingVelocitySigma_m_s), state);
     }
   }
   if (!rolls) correct_body(turned, state);
@@ -365,7 +366,7 @@ void TumbleAttitude::correct_node(State& state) const {
     const Eigen::Vector3d mean_rate_rad_s = state.rest.mean_rate_rad_s();
     for (int axis = 0; axis < 3; ++axis) {
       update(kBias + axis, mean_rate_rad_s[axis] - state.bias_rad_s[axis],
-             squared(params_.expert.at_rest.rate_sigma_rad_sqrts) / h, state);
+             squared(params_.expert.at_rest.kRateSigma_rad_sqrts) / h, state);
     }
   }
   state.covariance = (0.5 * (state.covariance + state.covariance.transpose())).eval();

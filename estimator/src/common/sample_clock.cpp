@@ -91,7 +91,7 @@ SampleClock::SampleClock(const Params& params) : params_(params) {
 bool SampleClock::corrects_stamps(const State& state) const {
   if (!state.line_fitted) return false;
   const double jitter = std::sqrt(state.mean_square_error_ns2) / state.period_ns;
-  return jitter >= params_.jitter_min && jitter <= params_.jitter_max &&
+  return jitter >= params_.kJitterMin && jitter <= params_.jitter_max &&
          state.lag_one_error_product_ns2 <= kErrorCorrelationMax * state.mean_square_error_ns2;
 }
 
@@ -150,7 +150,7 @@ void SampleClock::update_line(double step_ns, TimeNs stamp_ns, State& state) con
   const double passed_ns = step_ns - state.fit_residual_ns;
   const double number = std::max(1.0, std::round(passed_ns / state.period_ns));
   const double prediction_error_ns = passed_ns - number * state.period_ns;
-  const double jitter_ns = std::max(std::sqrt(state.mean_square_error_ns2), params_.jitter_min * state.period_ns);
+  const double jitter_ns = std::max(std::sqrt(state.mean_square_error_ns2), params_.kJitterMin * state.period_ns);
   const double before =
       state.sum * state.weighted_number_squared_sum - state.weighted_number_sum * state.weighted_number_sum;
   const double extrapolation_sigma_ns = number * jitter_ns * std::sqrt(state.sum / before);

@@ -67,7 +67,7 @@ StateEstimate estimate_before_map(const Params& params, const MotionState& level
   calibration.T_IL = params.T_IL;
   calibration.gravity_W_m_s2 = Eigen::Vector3d(0.0, 0.0, -params.expert.gravity_m_s2);
   Motion error = levelled.covariance;
-  const double level = params.expert.start.level_sigma_rad, world = params.expert.world.tilt_sigma_rad;
+  const double level = params.expert.start.kLevelSigma_rad, world = params.expert.world.tilt_sigma_rad;
   if (u::variances(error, u::tilt).maxCoeff() <= level * level) u::variances(error, u::tilt).setConstant(world * world);
   return of_motion(levelled, calibration, levelled.covariance, error);
 }
@@ -133,7 +133,7 @@ StateEstimate estimate_at_first_sweep(const Params& params, const StateEstimate&
   MotionState start = reckoned.mean.state;
   start.covariance.setZero();
   u::variances(start.covariance, u::tilt)
-      .setConstant(params.expert.start.level_sigma_rad * params.expert.start.level_sigma_rad);
+      .setConstant(params.expert.start.kLevelSigma_rad * params.expert.start.kLevelSigma_rad);
   StateEstimate out = estimate_at_start(params, start);
   // rows: errors of velocity and gravity in the map frame; columns: errors of position, attitude and velocity before
   Eigen::Matrix<double, 6, 9> T = Eigen::Matrix<double, 6, 9>::Zero();

@@ -105,7 +105,7 @@ Status level_at_rest(const LidarInertialOdometry::Params& params, const Eigen::V
   state = MotionState{};
   if (Status status = level(force_I_m_s2, state.q_WI); !status.ok()) return status;
   u::variances(state.covariance, u::tilt)
-      .setConstant(params.expert.start.level_sigma_rad * params.expert.start.level_sigma_rad);
+      .setConstant(params.expert.start.kLevelSigma_rad * params.expert.start.kLevelSigma_rad);
   u::variances(state.covariance, u::velocity).setConstant(kStartSpeedSigma_m_s * kStartSpeedSigma_m_s);
   return {};
 }

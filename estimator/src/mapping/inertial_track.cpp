@@ -14,11 +14,6 @@ namespace {
 
 using Params = LidarInertialOdometry::Params;
 
-constexpr TimeNs kArcStep_ns = 5'000'000;
-constexpr TimeNs kArcMost_ns = 10'000'000'000;  // longest bridged flight; no flight lasts longer
-// If the rate after a data gap differs from the free-flight prediction by more, an impact occurred in the gap.
-constexpr double kArcOff_rad_s = 0.5;
-
 WindowRate rate_of(const MotionSample& sample) {
   return {sample.w_WI_I_rad_s, sample.rate_sigma_rad_s, sample.from_ns, sample.time_ns};
 }
@@ -78,58 +73,18 @@ void InertialTrack::take(const Params& params, const ImuSample& sample, const Ra
     next.from_ns = std::max(from_ns, next.time_ns - (newest_->time_ns - newest_->from_ns));
   next.bridges_gap = after_gap && next.from_ns == from_ns;
   if (next.bridges_gap) next.rate_sigma_rad_s.setConstant(params.expert.prior.rate_sigma_max_rad_s);
-  const bool in_flight = params.expert.flight.body && !samples_.empty() && detect_flight(params, next, after_gap);
   before_newest_ = newest_;
   newest_ = rate_of(next);
-  if (after_gap && !next.bridges_gap) fill_gap(params, in_flight);
+  if (after_gap && !next.bridges_gap) fill_gap(params);
   samples_.push_back(next);
 }
 
-void InertialTrack::fill_gap(const Params& params, bool in_flight) {
+void InertialTrack::fill_gap(const Params& params) {
   const std::size_t first = samples_.size();
-  if (!in_flight || !bridge_flight(params, *before_newest_, *newest_))
-    bridge_gap(params.expert.prior, *before_newest_, *newest_, samples_);
+  bridge_gap(params.expert.prior, *before_newest_, *newest_, samples_);
   if (pending_rates_rad_s_.empty()) return;
   for (const MotionSample& part : std::span(samples_).subspan(first))
     pending_rates_rad_s_.insert(pending_rates_rad_s_.end() - 1, part.w_WI_I_rad_s);
-}
-
-/// Returns false if the rate after a data gap contradicts the prediction for free flight: flight_arc.md (A12).
-bool InertialTrack::bridge_flight(const Params& params, const WindowRate& before, const WindowRate& after) {
-  if (after.from_ns - before.time_ns > kArcMost_ns) return false;
-  const std::size_t first = samples_.size();
-  if (!flight_arc(*params.expert.flight.body, before.rate_rad_s, before.time_ns, after.from_ns, kArcStep_ns, samples_)
-           .ok())
-    return false;
-  const Eigen::Vector3d off_rad_s = after.rate_rad_s - samples_.back().w_WI_I_rad_s;
-  const Eigen::Vector3d sigma_rad_s = (before.sigma_rad_s.cwiseAbs2() + after.sigma_rad_s.cwiseAbs2()).cwiseSqrt();
-  if (((off_rad_s.cwiseAbs() - 3.0 * sigma_rad_s).array() > kArcOff_rad_s).any()) {
-    samples_.resize(first);
-    return false;
-  }
-  for (MotionSample& part : std::span(samples_).subspan(first)) {
-    part.rate_sigma_rad_s = (sigma_rad_s + off_rad_s.cwiseAbs()).cwiseMin(params.expert.prior.rate_sigma_max_rad_s);
-    part.in_flight = true;
-  }
-  return true;
-}
-
-/// See flight_arc.md (A3), (A4), (A5). If a gap follows the sample, the next rate is predicted for free flight.
-bool InertialTrack::detect_flight(const Params& params, const MotionSample& next, bool after_gap) {
-  MotionSample& now = samples_.back();
-  if (now.in_flight) return true;
-  if (now.at_rest || now.bridges_gap || !before_newest_) return false;
-  const TimeNs span_ns = rate_of(next).middle_ns() - before_newest_->middle_ns();
-  if (span_ns <= 0 || (span_ns > 2 * kGap_ns && !after_gap)) return false;
-  const double span_s = seconds(span_ns);
-  const Eigen::Vector3d acceleration = after_gap
-                                           ? torque_free_acceleration(*params.expert.flight.body, now.w_WI_I_rad_s)
-                                           : Eigen::Vector3d((next.w_WI_I_rad_s - before_newest_->rate_rad_s) / span_s);
-  const Eigen::Vector3d force = flight_force(*params.expert.flight.body, now.w_WI_I_rad_s, acceleration);
-  if ((now.f_I_m_s2 - force).norm() > params.expert.flight.force_m_s2) return false;
-  now.f_I_m_s2 = force;
-  now.in_flight = true;
-  return true;
 }
 
 void InertialTrack::update_rest(const Params& params, const ImuSample& sample, const RateState& rate,

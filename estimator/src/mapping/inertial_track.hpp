@@ -52,9 +52,7 @@ class InertialTrack {
 
   void update_rest(const Params& params, const ImuSample& sample, const RateState& rate, MotionSample& next);
   void revoke_rest(std::optional<TimeNs> rest_start_ns);
-  bool detect_flight(const Params& params, const MotionSample& next, bool after_gap);
-  void fill_gap(const Params& params, bool in_flight);
-  bool bridge_flight(const Params& params, const WindowRate& before, const WindowRate& after);
+  void fill_gap(const Params& params);
 
   std::vector<MotionSample> samples_;
   std::optional<TimeNs> boundary_ns_;  // end of the last sweep

@@ -23,8 +23,6 @@ detail::OutOfBounds out_of_bounds(const OdometryParams& params) {
   OdometryParams::fields(params, visit);
   visit(params.range_max_m, {"range_max_m", "m", params.range_min_m, 1e4, ""});
   visit(params.expert.map.spacing_m, {"map_spacing_m", "m", 0.0, params.expert.map.voxel_m, ""});
-  if (const std::optional<FlyingBody>& body = params.expert.flight.body)
-    visit(body->p_IB_I_m.norm(), {"body.p_IB_I_m", "m", 0.0, 1e3, ""});
   visit(params.expert.map.radius_m, {"map_radius_m", "m", params.range_max_m / 10.0, 1e5, ""});
   const Eigen::Matrix3d R = params.T_IL.linear();
   const double orthogonality = (R * R.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();

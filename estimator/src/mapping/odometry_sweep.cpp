@@ -161,7 +161,7 @@ Status LidarInertialOdometry::Impl::dead_reckon(TimeNs end_ns) {
     levelled.time_ns = end_ns;
     if (!track.has_not_moved()) {
       mapping::unknowns::variances(levelled.covariance, mapping::unknowns::velocity)
-          .setConstant(std::pow(params.expert.standstill.creep_max_m_s, 2));
+          .setConstant(std::pow(Standstill::kCreepMax_m_s, 2));
     }
     boundary = mapping::SweepBoundary{.state_estimate = mapping::estimate_before_map(params, levelled)};
   }
@@ -224,7 +224,7 @@ StateEstimate LidarInertialOdometry::Impl::update(const MotionWindow& motion, co
 void LidarInertialOdometry::Impl::predict_stationary(const MotionWindow& motion, const mapping::SweepBoundary& from,
                                                      Prediction& prediction) const {
   if (std::holds_alternative<mapping::InertialPrior>(known) && track.rests_until(motion.end_ns))
-    mapping::predict_rest(params, from, prediction);
+    mapping::predict_rest(from, prediction);
 }
 
 std::vector<InsertedPoint> LidarInertialOdometry::Impl::insert(const UpdatedSweep& sweep, mapping::SweepPoints& points,
@@ -318,7 +318,7 @@ Status LidarInertialOdometry::Impl::continue_by_inertia(const MotionWindow& moti
       !status.ok())
     return status;
   const std::unique_ptr<Prediction> prediction(new Prediction(mapping::predict(params, at, motion, trajectory, known)));
-  if (rests) mapping::predict_rest(params, at, *prediction);
+  if (rests) mapping::predict_rest(at, *prediction);
   const std::unique_ptr<const StateEstimate> start(new StateEstimate(mapping::posterior(*prediction)));
   const Registration::Estimate& mean = start->mean;
   if (Status status = trajectory.build(mean.state, motion.samples, motion.end_ns, mean.calibration.gravity_W_m_s2,

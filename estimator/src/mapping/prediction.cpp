@@ -29,7 +29,7 @@ constexpr double kDeficitCarryMax = 3.0;
 constexpr double kKnotSigmaRatio = 0.05;
 // Standard deviation of the velocity during the initial rest.
 constexpr double kStartSigma_m_s = 0.01;
-// Minimum number of consecutive sweeps at rest before creep_max_m_s applies.
+// Minimum number of consecutive sweeps at rest before kCreepMax_m_s applies.
 constexpr int kRestingSweepsMin = 3;
 
 namespace u = unknowns;
@@ -124,10 +124,10 @@ Prediction predict(const Params& params, const SweepBoundary& boundary, const Mo
   next.prior.mean.calibration = boundary.state_estimate.mean.calibration;
   carry_deficit(params, boundary, trajectory, next);
   if (window.samples.front().at_rest) next.zero_velocity_update(kStartSigma_m_s);
-  // The speed limit creep_max_m_s excludes constant motion, which the IMU cannot distinguish from rest.
-  const bool creeps = boundary.state_estimate.mean.state.v_WI_m_s.norm() < params.expert.standstill.creep_max_m_s;
+  // The speed limit kCreepMax_m_s excludes constant motion, which the IMU cannot distinguish from rest.
+  const bool creeps = boundary.state_estimate.mean.state.v_WI_m_s.norm() < Standstill::kCreepMax_m_s;
   if (window.resting_sweeps >= kRestingSweepsMin && !boundary.constrained && creeps)
-    next.zero_velocity_update(params.expert.standstill.sigma_m_s);
+    next.zero_velocity_update(Standstill::kSigma_m_s);
   apply_velocity_prior(known, next);
   const std::uint8_t axes = params.expert.rails.estimate_deficit ? trajectory.clipped_axes() : 0;
   MotionNoise within = inertial_noise(params, trajectory, window.samples, axes);
@@ -144,8 +144,8 @@ Prediction predict(const Params& params, const SweepBoundary& boundary, const Mo
   return next;
 }
 
-void predict_rest(const Params& params, const SweepBoundary& boundary, Prediction& prediction) {
-  prediction.zero_velocity_update(params.expert.standstill.sigma_m_s);
+void predict_rest(const SweepBoundary& boundary, Prediction& prediction) {
+  prediction.zero_velocity_update(Standstill::kSigma_m_s);
   prediction.compose(boundary.state_estimate);
 }
 

@@ -45,7 +45,7 @@ Prediction predict(const LidarInertialOdometry::Params& params, const SweepBound
                    const MotionWindow& window, const SweepTrajectory& trajectory, const MotionPrior& known);
 
 /// At rest after a tracking failure, a prediction of zero motion stops the drift of the velocity.
-void predict_rest(const LidarInertialOdometry::Params& params, const SweepBoundary& boundary, Prediction& prediction);
+void predict_rest(const SweepBoundary& boundary, Prediction& prediction);
 
 bool prior_is_certain(const LidarInertialOdometry::Params& params, const SweepBoundary& boundary,
                       const MotionWindow& window, const SweepTrajectory& trajectory);

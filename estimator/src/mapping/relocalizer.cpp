@@ -30,6 +30,10 @@ constexpr double kDeficitSigmas = 5.0;  // largest tried increase, in standard d
 
 constexpr int kStartsPerRound = 12;  // number of initial poses per round: six axes, two directions
 constexpr double kStartSigmas = 1.5;
+constexpr double kShiftMin_m = 0.3, kRotationMin_rad = 0.1;  // closer starting poses converge to one pose
+// distance and rotation of the starting poses from the prior; each round adds both
+constexpr double kShift_m = 1.0, kRotation_rad = 0.3;
+constexpr int kRounds = 3;
 
 bool converged(const Registration::Result& found) {
   return found.verdict == RegistrationVerdict::converged;
@@ -72,9 +76,8 @@ void track(const Params& params, const Registration::Prior& prior, const Scene& 
 
 /// If no initial pose fits, the result is the pose with the most inliers. The number of initial poses per sweep is
 /// limited, so an unsuccessful search continues with the next sweep.
-void search(const Params& params, const SearchContext& from, const Scene& scene, Aligner& aligner,
-            SweepTrajectory& trajectory, Registration::Result& found) {
-  const RelocalisationParams& starts = params.expert.search;
+void search(const SearchContext& from, const Scene& scene, Aligner& aligner, SweepTrajectory& trajectory,
+            Registration::Result& found) {
   const Registration::Prior& prior = from.prior;
   if (from.contradicted != nullptr) {
     const auto start = std::make_unique<Registration::Prior>(prior);
@@ -93,9 +96,9 @@ void search(const Params& params, const SearchContext& from, const Scene& scene,
   for (int k = 0; k < moved && !(converged(found) && fits(found)); ++k) {
     if (converged(found) && (!best || found.inliers > best->found.inliers))
       best = std::make_unique<Best>(Best{found, trajectory});
-    const int index = 1 + (failed_searches(from.tracking) * moved + k) % (kStartsPerRound * starts.rounds);
+    const int index = 1 + (failed_searches(from.tracking) * moved + k) % (kStartsPerRound * kRounds);
     const auto start = std::make_unique<Registration::Prior>(prior);
-    move_start(starts, index, *start);
+    move_start(index, *start);
     aligner.align_coarse_to_fine(*start, prior, scene, trajectory, found);
   }
   if (best && !(converged(found) && (fits(found) || found.inliers >= best->found.inliers))) {
@@ -107,7 +110,7 @@ void search(const Params& params, const SearchContext& from, const Scene& scene,
 
 }  // namespace
 
-void move_start(const RelocalisationParams& params, int index, Registration::Prior& prior) {
+void move_start(int index, Registration::Prior& prior) {
   if (index == 0) return;
   const int round = 1 + (index - 1) / kStartsPerRound;
   const int axis = (index - 1) / 2 % 6;
@@ -115,11 +118,9 @@ void move_start(const RelocalisationParams& params, int index, Registration::Pri
   const double sigma = std::sqrt(prior.covariance(axis, axis));
   MotionState& state = prior.mean.state;
   if (axis < 3) {
-    state.p_WI_m[axis] +=
-        sign * std::clamp(kStartSigmas * sigma, RelocalisationParams::kShiftMin_m, round * params.shift_m);
+    state.p_WI_m[axis] += sign * std::clamp(kStartSigmas * sigma, kShiftMin_m, round * kShift_m);
   } else {
-    const double angle =
-        sign * std::clamp(kStartSigmas * sigma, RelocalisationParams::kRotationMin_rad, round * params.rotation_rad);
+    const double angle = sign * std::clamp(kStartSigmas * sigma, kRotationMin_rad, round * kRotation_rad);
     state.q_WI = so3::exp(angle * Eigen::Vector3d::Unit(axis - 3)) * state.q_WI;
   }
 }
@@ -129,7 +130,7 @@ Attempt attempt(const Params& params, const SearchContext& from, const Scene& sc
   Registration::Result& found = alignment.emplace();
   found.points = scene.points.size();
   if (is_lost(from.tracking)) {
-    search(params, from, scene, aligner, trajectory, found);
+    search(from, scene, aligner, trajectory, found);
   } else {
     track(params, from.prior, scene, aligner, trajectory, found);
   }

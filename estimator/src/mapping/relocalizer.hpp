@@ -41,6 +41,6 @@ void judge(const LidarInertialOdometry::Params& params, const TrackingState& bef
 
 /// Initial pose number 0 is the predicted pose; all others are shifted or rotated along one axis, closest first:
 /// mapping.md (R66).
-void move_start(const RelocalisationParams& params, int index, Registration::Prior& prior);
+void move_start(int index, Registration::Prior& prior);
 
 }  // namespace tumble::mapping

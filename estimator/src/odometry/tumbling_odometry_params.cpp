@@ -102,10 +102,8 @@ RegimeSmoother::Params recording_rate_params(const TumblingOdometry::Params& par
   out.rate.expert.planes = stream.rate.expert.planes;
   out.rate.expert.accel_planes = stream.rate.expert.accel_planes;
   out.rate.expert.rests = stream.rate.expert.rests;
-  out.evidence = stream.evidence;
+  static_cast<RegimeParams&>(out) = stream;
   out.hand_held = stream.hand_held.body;
-  out.hand_held_probability_min = stream.hand_held_probability_min;
-  out.segment_gap_max_s = stream.segment_gap_max_s;
   return out;
 }
 

@@ -30,10 +30,10 @@ template <class EstimateCallback>
 void rest_rows(const RollingParams& params, const RollingIntegrals& sums, const RollingNominal& nominal,
                bool spins_in_place, EstimateCallback&& take) {
   for (int axis = 0; axis < 3; ++axis) {
-    take(kVelocity + axis, -nominal.v_WI_m_s[axis], squared(params.expert.contact.rest_velocity_sigma_m_s));
+    take(kVelocity + axis, -nominal.v_WI_m_s[axis], squared(params.expert.contact.kRestVelocitySigma_m_s));
     if (spins_in_place) continue;
     const double bias_rad_s = sums.rate_integral_I_rad[axis] / sums.node_s;
-    take(kGyroBias + axis, bias_rad_s, squared(params.expert.contact.rest_rate_sigma_rad_s));
+    take(kGyroBias + axis, bias_rad_s, squared(params.expert.contact.kRestRateSigma_rad_s));
   }
 }
 

@@ -33,7 +33,7 @@ Status RollingFilter::step_with(const ImuSample& sample, State& state, Listener 
     double dt_s = 0.0;
     if (const Status bad = elapsed(sample.time_ns, state.last_time_ns, params_.expert.gap.gap_max_s, dt_s); !bad.ok())
       return bad;
-    if (dt_s > params_.expert.gap.gap_min_duration_s) {
+    if (dt_s > params_.expert.gap.kGapMinDuration_s) {
       bridge(sample, dt_s, state, listener);
     } else {
       state.average.add(sample, dt_s);
@@ -148,7 +148,7 @@ bool RollingFilter::spins_in_place(const State& state) const {
   const double averaged = params_.expert.node_s / (2.0 * kSlowRateTau_s);
   const Hypothesis& best = state.hypotheses[0];
   const Eigen::Array3d variance = best.P.diagonal().segment<3>(rolling::kGyroBias).array() +
-                                  squared(params_.expert.contact.rest_rate_sigma_rad_s) * averaged;
+                                  squared(params_.expert.contact.kRestRateSigma_rad_s) * averaged;
   const Eigen::Array3d off =
       (state.low_passed_rate_rad_s - state.nominal.gyro_bias_rad_s - best.x.segment<3>(rolling::kGyroBias)).array();
   return (off.square() > kSpinSigmas * kSpinSigmas * variance).any();

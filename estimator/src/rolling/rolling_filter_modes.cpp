@@ -80,7 +80,7 @@ double log_stationary(const rolling::Contact& c, const RollingFilter::Hypothesis
   Eigen::Matrix3d S = H * h.P * H.transpose();
   if (slope_reset && mode == RollingMode::incline) {
     const Eigen::Matrix<double, 3, 2> by_slope = c.H.middleCols<2>(rolling::kSlope);
-    S += squared(params.expert.contact.slope_sigma) * by_slope * by_slope.transpose();
+    S += squared(params.expert.contact.kSlopeSigma) * by_slope * by_slope.transpose();
   }
   const auto log_det_with = [&](const Eigen::Vector3d& variance, Eigen::LLT<Eigen::Matrix3d>& factor) {
     factor.compute(S + Eigen::Matrix3d(variance.asDiagonal()));
@@ -106,7 +106,7 @@ double log_moving(const rolling::Contact& c, const RollingFilter::Hypothesis& h,
   const double horizontal = log_change(change.head<2>().squaredNorm());
   if (mode == RollingMode::bump) return horizontal + log_rise(change.z());
   const double check_vertical =
-      c.H.row(2) * h.P * c.H.row(2).transpose() + squared(params.expert.contact.vertical_sigma_m_s);
+      c.H.row(2) * h.P * c.H.row(2).transpose() + squared(params.expert.contact.kVerticalSigma_m_s);
   return horizontal + log_normal(u.z(), check_vertical);
 }
 
@@ -122,7 +122,7 @@ double log_transition(const RollingParams& params, RollingMode from, RollingMode
     if (b == RollingMode::bump) return a == RollingMode::slip ? kSlipBumpPerS : modes.bump_begins_per_s;
     if (a == RollingMode::incline) return kInclineEndsPerS;
     if (a == RollingMode::rough) return kRoughEndsPerS;
-    return a == RollingMode::slip ? modes.slip_ends_per_s : modes.bump_ends_per_s;
+    return a == RollingMode::slip ? modes.kSlipEndsPerS : modes.kBumpEndsPerS;
   };
   if (from != to) return std::log(rate(from, to) * h_s);
   double leaving = 0.0;
@@ -144,7 +144,7 @@ std::span<const Candidate> propose(const RollingParams& params, const rolling::C
   const double node_s = state.sums.node_s;
   const bool in_gap = state.sums.gap_s > 0.0;
   const bool too_fast = c.rolling_speed_m_s > params.speed_max_m_s;
-  const auto shortest = static_cast<std::int64_t>(std::ceil(params.expert.modes.event_shortest_s / node_s - 1e-9));
+  const auto shortest = static_cast<std::int64_t>(std::ceil(params.expert.modes.kEventShortest_s / node_s - 1e-9));
   std::size_t total = 0;
   for (int parent = 0; parent < state.count; ++parent) {
     const RollingFilter::Hypothesis& h = state.hypotheses[static_cast<std::size_t>(parent)];

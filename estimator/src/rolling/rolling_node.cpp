@@ -54,8 +54,8 @@ constexpr double kGapTimeSigmaRatio = 0.15;  // uncertain time of a rate change 
 /// See rolling.md (R18), (R19).
 Eigen::Vector3d contact_variance(const RollingParams& params, const Contact& c, RollingMode mode) {
   const double rough =
-      mode == RollingMode::rough ? squared(params.expert.contact.rough_share * c.rolling_speed_m_s) : 0.0;
-  return {c.grip_variance, c.grip_variance, squared(params.expert.contact.vertical_sigma_m_s) + rough + c.gap_variance};
+      mode == RollingMode::rough ? squared(params.expert.contact.kRoughShare * c.rolling_speed_m_s) : 0.0;
+  return {c.grip_variance, c.grip_variance, squared(params.expert.contact.kVerticalSigma_m_s) + rough + c.gap_variance};
 }
 
 /// See rolling.md (R17).
@@ -97,7 +97,7 @@ void set_prior(const RollingParams& params, const Eigen::Vector3d& rate_I_rad_s,
   const double tilt = moves ? kStartTilt_rad : 0.0, velocity = moves ? params.radius_m * rate_I_rad_s.norm() : 0.0;
   // The initial heading defines the world's x axis, so its prior variance is 0.
   prior.segment<2>(kAttitude).setConstant(squared(params.expert.prior.tilt_sigma_rad) + squared(tilt));
-  prior.segment<3>(kVelocity).setConstant(squared(params.expert.prior.velocity_sigma_m_s) + squared(velocity));
+  prior.segment<3>(kVelocity).setConstant(squared(params.expert.prior.kVelocitySigma_m_s) + squared(velocity));
   prior.segment<3>(kGyroBias).setConstant(squared(params.expert.prior.gyro_bias_sigma_rad_s));
   prior.segment<3>(kAccelBias).setConstant(squared(params.expert.prior.accel_bias_sigma_m_s2));
   prior.segment<9>(kAccelScale).setConstant(squared(params.expert.prior.accel_scale_sigma));
@@ -359,7 +359,7 @@ void update_slope_for_mode(const RollingParams& params, RollingMode from, Rollin
   if (!resets_slope(from, to)) return;
   P.middleRows<2>(kSlope).setZero();
   P.middleCols<2>(kSlope).setZero();
-  const double sigma = to == RollingMode::incline ? params.expert.contact.slope_sigma : kLevelSlopeSigma;
+  const double sigma = to == RollingMode::incline ? params.expert.contact.kSlopeSigma : kLevelSlopeSigma;
   P.diagonal().segment<2>(kSlope).setConstant(squared(sigma));
   x.segment<2>(kSlope) = -nominal.slope;
 }
@@ -384,7 +384,7 @@ bool reset_tilt(const RollingParams& params, const RollingIntegrals& sums, bool 
   P.diagonal().segment<2>(kAttitude).setConstant(squared(tilt_sigma_rad));
   P(kAttitude + 2, kAttitude + 2) = squared(kLostSpeed_m_s);  // practically unknown, but small enough for linearisation
   P.diagonal().segment<3>(kVelocity).setConstant(
-      squared(at_rest ? params.expert.contact.rest_velocity_sigma_m_s : kLostSpeed_m_s));
+      squared(at_rest ? params.expert.contact.kRestVelocitySigma_m_s : kLostSpeed_m_s));
   return true;
 }
 

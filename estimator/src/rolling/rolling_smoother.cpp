@@ -39,7 +39,7 @@ bool equal(const ImuSample& a, const ImuSample& b) {
 
 /// Returns the factor from the variance of the final pass, which uses reduced noise, to the reported variance.
 double stated(const RollingSmoother::Params& params) {
-  return 1.0 / (params.final_pass_noise_ratio * params.final_pass_noise_ratio);
+  return 1.0 / (params.kFinalPassNoiseRatio * params.kFinalPassNoiseRatio);
 }
 
 rolling::Readings::Cursor start_cursor(const ImuSample& sample) {
@@ -161,14 +161,13 @@ bool RollingSmoother::State::operator==(const State& other) const {
 RollingSmoother::RollingSmoother(const Params& p) : params_(p), filter_(p.filter) {
   require_valid_fields(p);
   require_within("lag_s", p.lag_s, p.filter.expert.node_s, kWholeRun);
-  require_within("block_s", p.block_s, p.filter.expert.node_s, 1e3);
-  final_pass_params_ = scale_noise(p.filter, p.final_pass_noise_ratio);
+  final_pass_params_ = scale_noise(p.filter, p.kFinalPassNoiseRatio);
   lag_nodes_ = static_cast<std::size_t>(std::ceil(p.lag_s / p.filter.expert.node_s - 1e-9));
-  block_nodes_ = static_cast<std::size_t>(std::ceil(p.block_s / p.filter.expert.node_s - 1e-9));
+  block_nodes_ = static_cast<std::size_t>(std::ceil(p.kBlock_s / p.filter.expert.node_s - 1e-9));
 }
 
 std::size_t RollingSmoother::preallocated_samples() const {
-  return static_cast<std::size_t>(std::ceil((params_.lag_s + params_.block_s + 1.0) * params_.rate_max_hz));
+  return static_cast<std::size_t>(std::ceil((params_.lag_s + params_.kBlock_s + 1.0) * params_.rate_max_hz));
 }
 
 Status RollingSmoother::step(const ImuSample& sample, State& state, std::vector<RollingEstimate>& out) const {

@@ -77,7 +77,7 @@ bool Readings::next(Reading& out) {
   for (; out.end < samples_.size(); ++out.end) {
     const ImuSample& sample = samples_[out.end];
     const double dt_s = seconds(sample.time_ns - last_ns);
-    if (dt_s > params_.expert.gap.gap_min_duration_s) {
+    if (dt_s > params_.expert.gap.kGapMinDuration_s) {
       if (out.average.readings > 0) break;
       cursor_.gap_rate_rad_s = cursor_.last_rate_rad_s;
       cursor_.gap_start_ns = last_ns;

@@ -26,7 +26,6 @@ class ClippedBaseline {
 
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
-      visit.group("rails_", p.rails);
       visit(p.tilted_rails,
             switch_field("tilted_rails",
                          "1: also search for tilted saturation limits; 0: treat each axis separately, as published",

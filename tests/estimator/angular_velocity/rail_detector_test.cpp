@@ -165,11 +165,6 @@ TEST(RailDetector, AFlipFromRailToRailIsAnOverflow) {
 TEST(RailDetector, RefusesParametersOutsideOfTheirBounds) {
   EXPECT_THROW(RailDetector({.stated_gyro_rad_s = 0.0}), InvalidParams);
   EXPECT_THROW(RailDetector({.stated_accel_m_s2 = std::nan("")}), InvalidParams);
-  EXPECT_THROW(RailDetector({.clip_enter_ratio = 0.2}), InvalidParams);
-  EXPECT_THROW(RailDetector({.clip_enter_ratio = 0.01, .clip_leave_ratio = 0.005}), InvalidParams);
-  EXPECT_THROW(RailDetector({.expert = {.plateau = {.samples = 1}}}), InvalidParams);
-  EXPECT_THROW(RailDetector({.expert = {.plateau = {.plateau_spread_ratio = -1.0}}}), InvalidParams);
-  EXPECT_THROW(RailDetector({.range_contradiction_ratio = 0.0}), InvalidParams);
 }
 
 }  // namespace

@@ -162,8 +162,6 @@ TEST(RateSmootherInput, RefusesParametersOutsideOfTheirBounds) {
   refused([](RateSmoother::Params& p) { p.gap_max_s = -1.0; });
   refused([](RateSmoother::Params& p) { p.model.nominal.lever_arm_m.x() = std::nan(""); });
   refused([](RateSmoother::Params& p) { p.model.lever_arm_sigma_m = 0.0; });
-  refused([](RateSmoother::Params& p) { p.model.expert.flight.jerk_psd_rad2_s5 = 0.0; });
-  refused([](RateSmoother::Params& p) { p.model.expert.flight.threshold = 0.5; });
   refused([](RateSmoother::Params& p) { p.rails.stated_gyro_rad_s = -1.0; });
   refused([](RateSmoother::Params& p) { p.model.calibration = RigCalibration{{}, -RigConstants::Matrix::Identity()}; });
 }

@@ -333,7 +333,6 @@ TEST(RateStream, RefusesParametersOutsideOfTheirBounds) {
   refused([](RateStream::Params& p) { p.lag_s = 0.01; });
   refused([](RateStream::Params& p) { p.lag_s = 11.0; });
   refused([](RateStream::Params& p) { p.expert.initial_threshold_factor = 0.0; });
-  refused([](RateStream::Params& p) { p.expert.bound_damping = 0.0; });
   refused([](RateStream::Params& p) { p.gap_max_s = std::nan(""); });
   refused([](RateStream::Params& p) { p.model.rate_max_rad_s = 0.0; });
 }

@@ -134,9 +134,6 @@ TEST(SaaveInput, RefusesParametersOutsideOfTheirBounds) {
   refused([](Saave::Params& p) { p.lever_arm_m.y() = std::nan(""); });
   refused([](Saave::Params& p) { p.lever_arm_m.x() = 11.0; });
   refused([](Saave::Params& p) { p.saturation_point_rad_s = 0.0; });
-  refused([](Saave::Params& p) { p.variance_measured_rad2_s2 = -1.0; });
-  refused([](Saave::Params& p) { p.variance_estimated_rad2_s2 = 0.0; });
-  refused([](Saave::Params& p) { p.variance_rejected_rad2_s2 = INFINITY; });
   refused([](Saave::Params& p) { p.jerk_psd_rad2_s5 = 0.0; });
   refused([](Saave::Params& p) { p.gap_max_s = 0.0; });
 }

@@ -50,10 +50,10 @@ ScaleInformation scale_information(std::uint64_t seed, const Vector3d& moments) 
     const RateKnot& knot = estimates[k].knot;
     const Vector3d& a = knot.acceleration_rad_s2;
     const double noise = p.accel_noise_density * 10.0, force = estimates[k].contact_force_m_s2.norm();
-    const double share = p.expert.readings.accel_scale_error * recording.samples[k].specific_force_m_s2.norm();
+    const double share = p.expert.kAccelScaleError * recording.samples[k].specific_force_m_s2.norm();
     const double force2 = p.expert.flight.sigma_m_s2 * p.expert.flight.sigma_m_s2 + noise * noise + share * share;
     const double torque2 = std::pow(p.expert.flight.euler_sigma_rad_s2, 2) +
-                           std::pow(p.expert.contact.twist_ratio * p.expert.contact.lever_rad_m * force, 2);
+                           std::pow(p.expert.contact.twist_ratio * p.expert.contact.kLever_rad_m * force, 2);
     // contact contains no information about the inertia
     const Vector3d torque = estimates[k].flight_weight < 0.05
                                 ? Vector3d(J * a + 2.0 * knot.rate_rad_s.cross(Vector3d(J * knot.rate_rad_s)))
@@ -62,9 +62,9 @@ ScaleInformation scale_information(std::uint64_t seed, const Vector3d& moments) 
                    torque.squaredNorm() / torque2 + std::pow(knot.rate_rad_s.norm() / p.rate_max_rad_s, 2) +
                    std::pow(a.norm() / p.acceleration_max_rad_s2, 2);
     if (k + 1 == estimates.size()) continue;
-    const double change = p.expert.contact.gain_rad_m * std::max(force, estimates[k + 1].contact_force_m_s2.norm());
-    const double jerk = p.expert.flight.jerk_psd_rad2_s5 + change * change / 0.01;
-    out.at_most += model.jump(knot, estimates[k + 1].knot, 0.01) * p.expert.flight.jerk_psd_rad2_s5 / jerk;
+    const double change = p.expert.contact.kGain_rad_m * std::max(force, estimates[k + 1].contact_force_m_s2.norm());
+    const double jerk = p.expert.flight.kJerkPsd_rad2_s5 + change * change / 0.01;
+    out.at_most += model.jump(knot, estimates[k + 1].knot, 0.01) * p.expert.flight.kJerkPsd_rad2_s5 / jerk;
   }
   return out;
 }

@@ -114,38 +114,6 @@ TEST(InertialTrack, ASweepRestsWhileTheImuSaysNothingButGravity) {
   EXPECT_FALSE(rests(9.6, 0.0, 2));
 }
 
-/// Returns the parts of a gap of 0.3 s in a flight that turns by 3 rad/s, and by `after_rad_s` after the gap.
-std::vector<MotionSample> parts_of_a_gap(double after_rad_s) {
-  Listener listener;
-  listener.params.expert.flight.body = FlyingBody{};
-  listener.hear(5, Eigen::Vector3d(0.0, 3.0, 0.0), Eigen::Vector3d::Zero());
-  listener.now_ns += 300'000'000;
-  listener.hear(1, Eigen::Vector3d(0.0, after_rad_s, 0.0), Eigen::Vector3d::Zero());
-  const auto samples = listener.track.samples();
-  EXPECT_EQ(samples.back().time_ns - samples.back().from_ns, listener.step_ns);  // a reading covers only its own window
-  std::vector<MotionSample> parts;
-  for (std::size_t k = 0; k + 1 < samples.size(); ++k) {
-    EXPECT_EQ(samples[k].time_ns, samples[k + 1].from_ns);
-    if (samples[k].from_ns >= 50'000'000) parts.push_back(samples[k]);
-  }
-  return parts;
-}
-
-TEST(InertialTrack, AFlightGoesOnThroughAGapThatItsRateBearsOut) {
-  const auto flown = parts_of_a_gap(3.2);
-  ASSERT_FALSE(flown.empty());
-  for (const MotionSample& part : flown) {
-    EXPECT_TRUE(part.in_flight && !part.bridges_gap);
-    EXPECT_NEAR(part.w_WI_I_rad_s.y(), 3.0, 1e-9);
-    EXPECT_GE(part.rate_sigma_rad_s.y(), 0.2 - 1e-9);  // error at the end
-  }
-  // with an impact inside the gap
-  const auto struck = parts_of_a_gap(8.0);
-  ASSERT_FALSE(struck.empty());
-  for (const MotionSample& part : struck) EXPECT_TRUE(part.bridges_gap && !part.in_flight);
-  EXPECT_NEAR(struck[struck.size() / 2].w_WI_I_rad_s.y(), 5.5, 0.2);
-}
-
 // The window before a gap may itself be a gap at rest; no sample may overlap the previous one.
 TEST(InertialTrack, SamplesDoNotOverlapWhateverTheirWindows) {
   Listener listener;

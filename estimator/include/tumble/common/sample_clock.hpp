@@ -28,15 +28,13 @@ namespace tumble {
 class SampleClock {
  public:
   struct Params {
-    double memory_s = 2.0;      ///< time constant of the fitted line
-    double jitter_min = 0.005;  ///< minimum jitter of corrected time stamps, in sample periods
+    double memory_s = 2.0;                       ///< time constant of the fit
+    static constexpr double kJitterMin = 0.005;  ///< minimum jitter of corrected time stamps, in sample periods
     double jitter_max = 0.15;
 
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit(p.memory_s, {"memory_s", "s", 0.01, 1e3, "time constant of the fit of sample times to time stamps"});
-      visit(p.jitter_min,
-            {"jitter_min", "1", 0.0, 1.0, "minimum jitter of time stamps that are corrected, in sample periods"});
       visit(p.jitter_max, {"jitter_max", "1", 0.0, 0.2,
                            "maximum jitter of time stamps that are corrected, in sample periods; 0: never correct"});
     }

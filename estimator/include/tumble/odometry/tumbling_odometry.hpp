@@ -89,12 +89,13 @@ class TumblingOdometry {
   /// map and localises the robot again. The argument of reset(pose) is a pose in the prior map. Returns `ok` or an
   /// error of LidarInertialOdometry::use_map().
   Status use_map(PriorMap map);
-  /// Processes an IMU sample, and registers the sweeps whose rates become available. Time stamps must increase. Returns
-  /// `non_finite`, `out_of_range`, `time_order` or `gap` if the sample is rejected. A single wrong time stamp causes
-  /// the loss of one sample. After a gap of more than a second, add_imu() rejects the first sample with `gap`, and the
-  /// second sample restarts the rate estimation with the current calibration. Inertial integration bridges the gap. If the clock steps back, add_imu() rejects samples
-  /// with `time_order` for 0.2 s. The run then restarts at the newest pose, like reset(pose). OutlierFilter rejects
-  /// outliers and may delay one to five samples. newest() is then older.
+  /// Processes an IMU sample, and registers the sweeps whose rates become available. Time stamps must increase.
+  /// Returns `non_finite`, `out_of_range`, `time_order` or `gap` if the sample is rejected. A single wrong time stamp
+  /// causes the loss of one sample. After a gap of more than a second, add_imu() rejects the first sample with `gap`,
+  /// and the second sample restarts the rate estimation with the current calibration. Inertial integration bridges
+  /// the gap. If the clock steps back, add_imu() rejects samples with `time_order` for 0.2 s. The run then restarts
+  /// at the newest pose, like reset(pose). OutlierFilter rejects outliers and may delay one to five samples. newest()
+  /// is then older.
   Status add_imu(const ImuSample& sample);
   /// Processes a sweep of points fired in [start_ns, end_ns], at any time after the sweep's last point. The points are
   /// copied. Points from before the end of the last sweep are dropped, because time stamps of sweeps may overlap by

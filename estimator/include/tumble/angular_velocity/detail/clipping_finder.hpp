@@ -60,7 +60,6 @@ class ClippingFinder {
 
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
-      visit.group("rails_", p.axis_aligned_rails);
       visit.group("planes_", p.planes);
       visit.group("accel_planes_", p.accel_planes);
       visit(p.tilted,

@@ -8,7 +8,6 @@
 #include <span>
 
 #include "tumble/common/imu.hpp"
-#include "tumble/common/parameters.hpp"
 
 namespace tumble {
 
@@ -19,78 +18,15 @@ struct Clipping {
   bool operator==(const Clipping&) const = default;
 };
 
-struct RailPlateauParams {
-  int samples = 4;  ///< minimum number of readings of a plateau
-  /// largest spread of the readings of a plateau, relative to the saturation limit
-  double plateau_spread_ratio = 2e-5;
-  /// A gyro plateau (run of equal readings) below this rate needs twice as many readings, and a jump at its start or
-  /// end.
-  double low_gyro_plateau_rad_s = 1.0;
-  double gyro_plateau_min_rad_s = 0.02;  ///< minimum rate of a gyro plateau
-  double accel_plateau_min_m_s2 = 15.0;  ///< minimum force of an accelerometer plateau; above gravity
-  /// Minimum jump of the readings at the start or end of a low plateau, in steps of the sensor's resolution.
-  double jump_min_digits = 8.0;
-
-  template <class Self, class Visitor>
-  static void fields(Self& p, Visitor& visit) {
-    visit(p.samples, {"plateau_samples", "1", 2, 1000, "number of equal readings in a row that form a plateau"});
-    visit(p.plateau_spread_ratio, {"plateau_spread_share", "1", 0.0, 0.01,
-                                   "maximum spread of the readings of a plateau, as a share of the plateau's level"});
-    visit(p.low_gyro_plateau_rad_s,
-          {"plateau_gyro_low_rad_s", "rad/s", 1e-6, 1000.0,
-           "a gyro plateau below this rate needs twice as many readings, and a jump at its start or end"});
-    visit(p.gyro_plateau_min_rad_s, {"plateau_gyro_min_rad_s", "rad/s", 1e-6, 1000.0,
-                                     "a gyro plateau below this rate does not count as a saturation limit"});
-    visit(p.accel_plateau_min_m_s2,
-          {"plateau_accel_min_m_s2", "m/s^2", 1e-6, 1000.0,
-           "an accelerometer plateau below this force does not count as a saturation limit; must be above gravity"});
-    visit(p.jump_min_digits,
-          {"plateau_jump_digits", "1", 1.0, 1000.0,
-           "minimum jump at the start or end of a low plateau, in steps of the reading's resolution"});
-  }
-};
-
-struct RailDetectorExpertParams {
-  RailPlateauParams plateau = {};
-
-  template <class Self, class Visitor>
-  static void fields(Self& p, Visitor& visit) {
-    visit.group("", p.plateau);
-  }
-};
-
 struct RailDetectorParams {
   /// Measuring range of the gyro [rad/s], in (0, 1000], and of the accelerometer [m/s^2], in (0, 1e5], according to the
   /// data sheet or the user.
   std::optional<double> stated_gyro_rad_s = std::nullopt;
   std::optional<double> stated_accel_m_s2 = std::nullopt;
-  /// readings above (1 - clip_enter_ratio) * saturation limit are clipped
-  double clip_enter_ratio = 0.003;
-  /// neighbours of clipped readings above (1 - clip_leave_ratio) * saturation limit are clipped
-  double clip_leave_ratio = 0.02;
-  double range_contradiction_ratio = 0.02;  ///< minimum relative difference that contradicts the stated range
 
   /// Saturation limits of an earlier run of the device, in the order of RailDetector::State::channels; 0: none.
   /// RailDetector uses known limits from the start of a run until readings exceed the limits.
   std::array<double, 6> known = {};
-
-  using Expert = RailDetectorExpertParams;
-  Expert expert = {};  ///< rarely changed parameters
-
-  template <class Self, class Visitor>
-  static void fields(Self& p, Visitor& visit) {
-    visit(p.clip_enter_ratio,
-          {"clip_enter_ratio", "1", 0.0, 0.1,
-           "a reading within this distance of the saturation limit counts as clipped, as a share of the limit"});
-    visit(p.clip_leave_ratio,
-          {"clip_leave_ratio", "1", 0.0, 0.5,
-           "a neighbour of a clipped reading within this distance of the saturation limit also counts "
-           "as clipped, as a share of the limit"});
-    visit(p.range_contradiction_ratio,
-          {"range_contradiction_ratio", "1", 1e-6, 1.0,
-           "maximum accepted difference between stated and measured saturation limit, as a share of the stated limit"});
-    visit.group("", p.expert);
-  }
 };
 
 /// Detects the saturation limit of each gyro and accelerometer axis from the readings of the axis. The saturation limit

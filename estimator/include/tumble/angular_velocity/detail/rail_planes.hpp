@@ -34,8 +34,8 @@ class RailPlaneFinder {
       return out;
     }
     /// prior standard deviation of each cross-axis sensitivity of a sensing element, before compensation
-    double slope_sigma = 0.03;
-    double slope_max = 0.12;  ///< largest cross-axis sensitivity
+    static constexpr double kSlopeSigma = 0.03;
+    static constexpr double kSlopeMax = 0.12;  ///< largest cross-axis sensitivity
     /// minimum saturation limit [rad/s]; excludes constant readings at rest and in slow motion
     double distance_min_rad_s = 1.5;
     /// Range of the sensor according to its data sheet [rad/s], if known. RailPlaneFinder assumes a saturation limit
@@ -43,35 +43,21 @@ class RailPlaneFinder {
     std::optional<double> stated_rad_s = std::nullopt;
     /// prior standard deviation of RailPlane::offset_rad_s and of the differences between elements, relative to the
     /// limit
-    double offset_sigma_ratio = 0.02;
-    int samples_min = 4;            ///< minimum number of samples on the plane of one sign
-    double log_odds_before = -6.0;  ///< prior log odds of saturation for each element and sign
-    double log_odds_min = 1.0;      ///< minimum log odds for accepting a plane
-    double log_odds_keep = -3.0;    ///< minimum log odds for keeping an accepted plane
-    /// Planes of saturated readings found in an earlier run of the same device. RailPlaneFinder uses known planes from
-    /// the start of a run until readings contradict the planes.
+    static constexpr double kOffsetSigmaRatio = 0.02;
+    int samples_min = 4;                            ///< minimum number of samples on the plane of one sign
+    static constexpr double kLogOddsBefore = -6.0;  ///< prior log odds of saturation for each element and sign
+    static constexpr double kLogOddsMin = 1.0;      ///< minimum log odds for accepting a plane
+    static constexpr double kLogOddsKeep = -3.0;    ///< minimum log odds for keeping an accepted plane
+    /// Saturation planes found in an earlier run of the same device. RailPlaneFinder uses known planes from the start
+    /// of a run until readings contradict the planes.
     RailPlanes known = {};
 
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
-      visit(p.slope_sigma, {"slope_sigma", "1", 1e-4, 0.2,
-                            "prior standard deviation of each cross-axis sensitivity of a sensing element, before "
-                            "the device's compensation"});
-      visit(p.slope_max, {"slope_max", "1", 0.0, 0.3, "largest cross-axis sensitivity of a sensing element"});
       visit(p.distance_min_rad_s, {"distance_min_rad_s", "rad/s", 0.01, 1000.0,
                                    "minimum saturation limit that is detected; in m/s^2 for an accelerometer"});
-      visit(p.offset_sigma_ratio,
-            {"offset_sigma_ratio", "1", 1e-4, 0.2,
-             "prior standard deviation of a saturation limit's offset, and of the difference between the limits of two "
-             "elements, as a share of the limit"});
       visit(p.samples_min,
             {"samples_min", "1", 2, 1000, "minimum number of samples at a saturation limit, for each sign"});
-      visit(p.log_odds_before, {"log_odds_before", "1", -100.0, 100.0,
-                                "prior log odds of a tilted saturation limit, per element and sign"});
-      visit(p.log_odds_min,
-            {"log_odds_min", "1", -100.0, 100.0, "minimum log odds with which a tilted saturation limit is accepted"});
-      visit(p.log_odds_keep, {"log_odds_keep", "1", -100.0, 100.0,
-                              "minimum log odds with which an accepted tilted saturation limit is kept"});
     }
   };
 

@@ -38,7 +38,6 @@ struct RateSmootherParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit.group("", p.model);
-    visit.group("rails_", p.rails);
     visit(p.recovered_sigma_rad_s, {"recovered_sigma_rad_s", "rad/s", 0.0, 1e4,
                                     "maximum standard deviation of a clipped axis that is reported as recovered; "
                                     "otherwise the axis is reported as bounded",

@@ -13,7 +13,7 @@ struct RigInflationParams {
   /// The calibration's covariance is multiplied by 1 + covariance / (1 + n / samples), up to the prior covariance,
   /// after n flight samples.
   double covariance = 60.0;
-  double samples = 30.0;
+  static constexpr double kSamples = 30.0;
   /// The standard deviation of a clipped rate in contact is at least contact / (1 + n / samples) times the saturation
   /// deficit.
   double contact = 0.5;
@@ -26,8 +26,6 @@ struct RigInflationParams {
     visit(p.covariance, {"rig_inflation", "1", 0.0, 1e3,
                          "the covariance of an uncalibrated rig is multiplied by 1 + rig_inflation / (1 + n / "
                          "rig_inflation_samples), with n flight samples of model_error_s each"});
-    visit(p.samples, {"rig_inflation_samples", "1", 1.0, 1e6,
-                      "number of flight samples after which the effect of rig_inflation is halved"});
     visit(p.contact,
           {"contact_inflation", "1", 0.0, 10.0,
            "minimum standard deviation of a clipped rate in contact, as a share of the saturation deficit; divided "
@@ -44,10 +42,10 @@ struct RateStreamExpertParams {
   RailPlaneFinder::Params accel_planes = RailPlaneFinder::Params::for_accelerometer();
   RestDetector::Params rests = {};
   double initial_threshold_factor = 8.0;  ///< factor on a clipped sample's contact threshold; halved in each step
-  double step_max_rad_s = 10.0;           ///< largest change of a sample's rate in one step
-  int bound_hard_steps = 3;               ///< number of steps until the lower bounds of a sample in contact become soft
-  double bound_damping = 0.5;             ///< weight of a new lower bound in each step
-  int flight_run_min = 6;                 ///< minimum number of consecutive flight samples that update the calibration
+  static constexpr double kStepMax_rad_s = 10.0;  ///< largest change of a sample's rate in one step
+  int bound_hard_steps = 3;  ///< number of steps until the lower bounds of a sample in contact become soft
+  static constexpr double kBoundDamping = 0.5;  ///< weight of a new lower bound in each step
+  int flight_run_min = 6;  ///< minimum number of consecutive flight samples that update the calibration
   RigInflationParams inflation = {};
   /// prior probability of an uncalibrated device; 0: the device is assumed to match its data sheet
   double uncalibrated = 0.3;
@@ -60,8 +58,6 @@ struct RateStreamExpertParams {
     visit(p.initial_threshold_factor,
           {"initial_threshold_factor", "1", 1.0, 1000.0,
            "factor on the contact threshold (flight_threshold) of a new clipped sample, halved in each step"});
-    visit(p.step_max_rad_s,
-          {"step_max_rad_s", "rad/s", 1e-3, 1e4, "maximum change of the rate of one sample in one step"});
     visit(p.bound_hard_steps,
           {"bound_hard_steps", "1", 0, 4096,
            "number of steps after which clipped rates in contact have truncated normal distributions"});
@@ -70,8 +66,6 @@ struct RateStreamExpertParams {
     visit.group("", p.inflation);
     visit(p.uncalibrated,
           {"uncalibrated", "1", 0.0, 0.99, "prior probability that the IMU does not match its data sheet"});
-    visit(p.bound_damping,
-          {"bound_damping", "1", 0.01, 1.0, "share of the computed change of a lower bound that each step applies"});
   }
 };
 

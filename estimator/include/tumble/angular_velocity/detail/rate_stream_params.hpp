@@ -37,7 +37,6 @@ struct RateStreamParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit.group("", p.model);
-    visit.group("rails_", p.rails);
     visit(p.period_s, {"period_s", "s", 1e-5, 1.0, "nominal time between samples"});
     visit(p.lag_s, {"lag_s", "s", 2e-5, 10.0,
                     "age of a sample when its estimate is reported; a larger value adds delay and makes the estimate "

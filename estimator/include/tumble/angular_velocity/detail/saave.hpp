@@ -35,11 +35,11 @@ class Saave {
     /// largest reading of the device.
     double saturation_point_rad_s = 0.0;
     /// variance of an unclipped reading [(rad/s)^2]; default: (0.03 deg/s/sqrt(Hz) * sqrt(100 Hz))^2
-    double variance_measured_rad2_s2 = 2.741e-5;
+    static constexpr double kVarianceMeasured_rad2_s2 = 2.741e-5;
     /// variance of a recovered rate [(rad/s)^2]: 0.2741 in the code of the ICRA 2024 paper, 3.648 in the paper
-    double variance_estimated_rad2_s2 = 0.2741;
+    static constexpr double kVarianceEstimated_rad2_s2 = 0.2741;
     /// variance of a clipped axis whose rate Saave cannot recover [(rad/s)^2]
-    double variance_rejected_rad2_s2 = 1e6;
+    static constexpr double kVarianceRejected_rad2_s2 = 1e6;
     /// power spectral density of the white angular jerk [rad^2/s^5]
     double jerk_psd_rad2_s5 = 1e6;
     /// maximum time between two samples [s]
@@ -53,14 +53,6 @@ class Saave {
             {"saturation_point_rad_s", "rad/s", 0.01, 1000.0,
              "readings beyond this value count as clipped; choose a value slightly below the gyro's saturation limit",
              FieldRank::basic});
-      visit(p.variance_measured_rad2_s2,
-            {"variance_measured_rad2_s2", "rad^2/s^2", 1e-12, 1e12, "variance of an unclipped reading"});
-      visit(p.variance_estimated_rad2_s2,
-            {"variance_estimated_rad2_s2", "rad^2/s^2", 1e-12, 1e12,
-             "variance of a recovered axis: 0.2741 in the code of the ICRA 2024 paper, 3.648 in the paper",
-             FieldRank::basic});
-      visit(p.variance_rejected_rad2_s2,
-            {"variance_rejected_rad2_s2", "rad^2/s^2", 1e-12, 1e12, "variance of a clipped axis without an estimate"});
       visit(
           p.jerk_psd_rad2_s5,
           {"jerk_psd_rad2_s5", "rad^2/s^5", 1e-12, 1e12,

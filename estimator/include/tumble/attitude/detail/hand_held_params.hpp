@@ -7,21 +7,17 @@
 namespace tumble {
 
 struct HandMotionParams {
-  double hand_tau_s = 0.1;             ///< correlation time of the hand's acceleration
-  double velocity_tau_s = 0.3;         ///< correlation time of the hand's velocity
-  double position_tau_s = 1.0;         ///< correlation time of the hand's position
-  double position_leak_s = 10.0;       ///< time constant with which the hand's position returns to zero
-  double hand_noise_adaptation = 0.8;  ///< weight of the measured acceleration power: 0 (not used) to 1
-  double hand_window_s = 2.0;          ///< averaging time of the measured acceleration power
-  double hand_noise_floor_ratio =
+  static constexpr double kHandTau_s = 0.1;      ///< correlation time of the hand's acceleration
+  static constexpr double kVelocityTau_s = 0.3;  ///< correlation time of the hand's velocity
+  static constexpr double kPositionTau_s = 1.0;  ///< correlation time of the hand's position
+  double position_leak_s = 10.0;                 ///< time constant with which the hand's position returns to zero
+  double hand_noise_adaptation = 0.8;            ///< weight of the measured acceleration power: 0 (not used) to 1
+  static constexpr double kHandWindow_s = 2.0;   ///< averaging time of the measured acceleration power
+  static constexpr double kHandNoiseFloorRatio =
       1.0;  ///< minimum ratio of the adapted to the assumed power spectral density of the hand's acceleration
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.hand_tau_s,
-          {"hand_tau_s", "s", 1e-3, 10.0, "correlation time of the hand-held point's acceleration", FieldRank::basic});
-    visit(p.velocity_tau_s, {"velocity_tau_s", "s", 1e-3, 1e3, "correlation time of the hand-held point's velocity"});
-    visit(p.position_tau_s, {"position_tau_s", "s", 1e-3, 1e3, "correlation time of the hand-held point's position"});
     visit(p.position_leak_s, {"position_leak_s", "s", 0.1, 1e4,
                               "time constant with which the estimated position of the hand-held point decays to zero"});
     visit(p.hand_noise_adaptation,
@@ -29,59 +25,26 @@ struct HandMotionParams {
            "share by which the assumed acceleration of the hand adapts to the measured acceleration; "
            "0: constant assumed acceleration",
            FieldRank::basic});
-    visit(p.hand_window_s, {"hand_window_s", "s", 0.01, 1e3,
-                            "time window over which the mean square acceleration of the hand is measured"});
-    visit(p.hand_noise_floor_ratio,
-          {"hand_noise_floor_ratio", "1", 1e-3, 1e3,
-           "minimum ratio of the adapted to the assumed power spectral density of the hand's acceleration"});
   }
 };
 
 /// errors of IMU readings other than white noise
 struct HandHeldReadingParams {
-  double deficit_error_ratio = 0.02;    ///< error of an unclipped element / saturation deficit of a clipped element
-  double rail_sigma_rad_s = 0.01;       ///< standard deviation of a saturation limit
-  double accel_error_ratio = 0.02;      ///< additional force noise / (magnitude of the specific force - gravity)
-  double rotation_error_sqrts = 1e-3;   ///< angle random walk per rad/s of rate, from scale errors
-  double recovered_sigma_rad_s = 1.0;   ///< clipped rates with a smaller standard deviation count as recovered
-  double recovered_tau_s = 0.005;       ///< correlation time of the error of a recovered rate
+  static constexpr double kDeficitErrorRatio =
+      0.02;  ///< error of an unclipped element / saturation deficit of a clipped element
+  static constexpr double kRailSigma_rad_s = 0.01;      ///< standard deviation of a saturation limit
+  static constexpr double kAccelErrorRatio = 0.02;      ///< additional force noise / (magnitude of the force - gravity)
+  static constexpr double kRotationError_sqrts = 1e-3;  ///< angle random walk per rad/s of rate, from scale errors
+  static constexpr double kRecoveredSigma_rad_s =
+      1.0;  ///< clipped rates with a smaller standard deviation count as recovered
+  static constexpr double kRecoveredTau_s = 0.005;  ///< correlation time of the error of a recovered rate
   double recovered_scale_sigma = 6e-3;  ///< standard deviation of the gyro's scale error next to recovered rates
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.deficit_error_ratio,
-          {"deficit_error_ratio", "1", 0.0, 1.0,
-           "error of an unclipped sensing element, as a share of the saturation deficit of a clipped element",
-           FieldRank::basic});
-    visit(p.rail_sigma_rad_s, {"rail_sigma_rad_s", "rad/s", 1e-4, 1.0, "standard deviation of the saturation limit"});
-    visit(p.accel_error_ratio,
-          {"accel_error_ratio", "1", 0.0, 1.0,
-           "additional noise of the specific force, per m/s^2 of difference between the specific force and gravity"});
-    visit(p.rotation_error_sqrts, {"rotation_error_sqrts", "sqrt(s)", 0.0, 1.0,
-                                   "angle random walk per rad/s of rate, caused by scale errors", FieldRank::basic});
-    visit(p.recovered_sigma_rad_s, {"recovered_sigma_rad_s", "rad/s", 0.0, 1e4,
-                                    "maximum standard deviation of a clipped rate that is reported as recovered; "
-                                    "otherwise the rate is reported as bounded",
-                                    FieldRank::basic});
-    visit(p.recovered_tau_s, {"recovered_tau_s", "s", 1e-4, 1e4, "correlation time of the error of a recovered rate"});
     visit(p.recovered_scale_sigma,
           {"recovered_scale_sigma", "1", 0.0, 1.0,
            "standard deviation of the gyro's scale error in samples next to recovered rates, as a share of the rate"});
-  }
-};
-
-struct HandHeldRestParams {
-  double rest_sigma_rad_s = 0.01;  ///< standard deviation of the rate at rest, per node
-  double rest_sigma_m_s = 0.02;    ///< standard deviation of the velocity at rest
-  double rest_sigma_m_s2 = 0.1;    ///< standard deviation of the acceleration at rest
-
-  template <class Self, class Visitor>
-  static void fields(Self& p, Visitor& visit) {
-    visit(p.rest_sigma_rad_s, {"rest_sigma_rad_s", "rad/s", 1e-6, 10.0,
-                               "standard deviation of the rate at a node of the smoother, at rest"});
-    visit(p.rest_sigma_m_s, {"rest_sigma_m_s", "m/s", 1e-6, 10.0, "standard deviation of the velocity at rest"});
-    visit(p.rest_sigma_m_s2,
-          {"rest_sigma_m_s2", "m/s^2", 1e-6, 10.0, "standard deviation of the acceleration at rest"});
   }
 };
 
@@ -94,7 +57,6 @@ struct HandHeldExpertParams {
   RestDetector::Params rest = {};
   HandMotionParams hand = {};
   HandHeldReadingParams readings = {};
-  HandHeldRestParams still = {};
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
@@ -108,7 +70,6 @@ struct HandHeldExpertParams {
     visit.group("rest_", p.rest);
     visit.group("", p.hand);
     visit.group("", p.readings);
-    visit.group("", p.still);
   }
 };
 

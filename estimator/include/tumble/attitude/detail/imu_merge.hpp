@@ -26,10 +26,10 @@ struct ImuMergeParams {
   /// pose of each IMU in the common axes C of the rigid body; the first `count` entries are used
   std::array<Eigen::Isometry3d, kImus> T_CI{};
   int count = 1;
-  double rate_noise_rad_s = 0.01;  ///< standard deviation of the mean rate over a window
-  double window_s = 4e-3;          ///< averaging time of the readings
-  double offset_sigma_s = 3e-3;    ///< prior standard deviation of each IMU's time offset; 0: synchronous clocks
-  double gyro_range_rad_s = 1e3;   ///< readings at or above this rate are saturated
+  static constexpr double kRateNoise_rad_s = 0.01;  ///< standard deviation of the mean rate over a window
+  double window_s = 4e-3;                           ///< averaging time of the readings
+  double offset_sigma_s = 3e-3;   ///< prior standard deviation of each IMU's time offset; 0: synchronous clocks
+  double gyro_range_rad_s = 1e3;  ///< readings at or above this rate are saturated
   double accel_range_m_s2 = 1e5;
   double gap_max_s = 1.0;
   /// sensing directions of each IMU, as found by RailPlaneFinder
@@ -41,8 +41,6 @@ struct ImuMergeParams {
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.count, {"count", "1", 1, kImus, "number of IMUs in use"});
-    visit(p.rate_noise_rad_s,
-          {"rate_noise_rad_s", "rad/s", 1e-12, 10.0, "standard deviation of the mean rate over a window"});
     visit(p.window_s, {"window_s", "s", 0.0, 0.1, "duration over which readings are averaged before merging"});
     visit(p.offset_sigma_s,
           {"offset_sigma_s", "s", 0.0, 0.1, "prior standard deviation of an IMU's time offset; 0: no offset"});

@@ -8,9 +8,9 @@
 #include "tumble/angular_velocity/detail/rate_smoother.hpp"
 #include "tumble/attitude/detail/clipped_readings.hpp"
 #include "tumble/attitude/detail/hand_held_smoother.hpp"
+#include "tumble/attitude/detail/regime_params.hpp"
 #include "tumble/attitude/detail/regimes.hpp"
 #include "tumble/attitude/detail/spin_tracker.hpp"
-#include "tumble/common/parameters.hpp"
 
 namespace tumble {
 
@@ -21,26 +21,15 @@ namespace tumble {
 /// SpinTracker replaces the rate of a saturated axis during a steady spin.
 class RegimeSmoother {
  public:
-  struct Params {
+  struct Params : RegimeParams {
     RateSmoother::Params rate;
-    RegimeEvidence::Params evidence;
     HandHeldSmoother::Params hand_held;
-    SpinTracker::Params spin;
-    double hand_held_probability_min =
-        0.02;                        ///< minimum probability of hand-held motion for which HandHeldSmoother runs
-    double segment_gap_max_s = 0.1;  ///< clipped samples closer together than this form one segment
 
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("", p.rate);
-      visit.group("evidence_", p.evidence);
       visit.group("carried_", p.hand_held);
-      visit.group("spin_", p.spin);
-      visit(p.hand_held_probability_min, {"hand_held_probability_min", "1", 0.0, 1.0,
-                                          "minimum probability of hand-held motion for which HandHeldSmoother runs"});
-      visit(p.segment_gap_max_s,
-            {"segment_gap_max_s", "s", 0.0, 10.0,
-             "clipped samples that are less than this time apart belong to one saturated interval"});
+      RegimeParams::fields(p, visit);
     }
   };
   struct Report {

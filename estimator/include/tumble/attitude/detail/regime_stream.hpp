@@ -7,9 +7,9 @@
 
 #include "tumble/angular_velocity/rate_stream.hpp"
 #include "tumble/attitude/detail/hand_held_stream.hpp"
+#include "tumble/attitude/detail/regime_params.hpp"
 #include "tumble/attitude/detail/regimes.hpp"
 #include "tumble/attitude/detail/spin_tracker.hpp"
-#include "tumble/common/parameters.hpp"
 
 namespace tumble {
 
@@ -23,25 +23,15 @@ namespace tumble {
 /// HandHeldStream runs only while the probability of hand-held motion is at least `hand_held_probability_min`.
 class RegimeStream {
  public:
-  struct Params {
+  struct Params : RegimeParams {
     RateStream::Params rate;
-    RegimeEvidence::Params evidence;
     HandHeldStream::Params hand_held;  ///< `rate` overrides `period_s` and `lag_s`
-    SpinTracker::Params spin;
-    double hand_held_probability_min = 0.02;  ///< minimum probability of hand-held motion for which HandHeldStream runs
-    double segment_gap_max_s = 0.1;           ///< clipped samples closer together than this form one segment
 
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("", p.rate);
-      visit.group("evidence_", p.evidence);
       visit.group("carried_", p.hand_held);
-      visit.group("spin_", p.spin);
-      visit(p.hand_held_probability_min, {"hand_held_probability_min", "1", 0.0, 1.0,
-                                          "minimum probability of hand-held motion for which HandHeldStream runs"});
-      visit(p.segment_gap_max_s,
-            {"segment_gap_max_s", "s", 0.0, 10.0,
-             "clipped samples that are less than this time apart belong to one saturated interval"});
+      RegimeParams::fields(p, visit);
     }
   };
   struct ReportedProbability {

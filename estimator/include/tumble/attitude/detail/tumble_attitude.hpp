@@ -19,9 +19,9 @@ struct TumbleAttitudeParams {
   double bias_sigma_start_rad_s = 8.7266e-3;  ///< prior standard deviation of the gyro bias: 0.5 deg/s
   double velocity_m_sqrts = 1.0;              ///< standard deviation of the mean velocity over 1 s of motion
   double displacement_m_sqrts = 0.3;          ///< standard deviation of the mean displacement over 1 s
-  double displacement_tau_s = 10.0;           ///< time constant with which the displacement decays to zero
-  double motion_tau_s = 3.0;                  ///< time constant of the body's velocity and displacement
-  double radius_m = 0.0;                      ///< radius of a sphere that rolls on a level floor; 0: not a sphere
+  static constexpr double kDisplacementTau_s = 10.0;  ///< time constant with which the displacement decays to zero
+  double motion_tau_s = 3.0;                          ///< time constant of the body's velocity and displacement
+  double radius_m = 0.0;  ///< radius of a sphere that rolls on a level floor; 0: not a sphere
   Eigen::Vector3d lever_arm_m =
       Eigen::Vector3d::Zero();  ///< lever arm from the body's centre to the IMU, in sensor axes
 
@@ -44,9 +44,6 @@ struct TumbleAttitudeParams {
                                "standard deviation of the mean velocity over 1 s of motion", FieldRank::basic});
     visit(p.displacement_m_sqrts, {"displacement_m_sqrts", "m sqrt(s)", 1e-12, 1e3,
                                    "standard deviation of the mean displacement over 1 s", FieldRank::basic});
-    visit(p.displacement_tau_s,
-          {"displacement_tau_s", "s", 0.1, 1e4,
-           "time constant with which the modelled displacement of the body decays to zero", FieldRank::basic});
     visit(p.motion_tau_s,
           {"motion_tau_s", "s", 1e-3, 1e4,
            "correlation time of the body's velocity and displacement; also the averaging time of their magnitudes",

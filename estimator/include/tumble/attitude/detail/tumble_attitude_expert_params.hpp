@@ -7,58 +7,43 @@
 namespace tumble {
 
 struct AttitudeRestParams {
-  double velocity_sigma_m_s = 0.005;   ///< standard deviation of the velocity at rest, per node
-  double rate_sigma_rad_sqrts = 2e-3;  ///< standard deviation of the rate measured at rest, mean over 1 s
+  static constexpr double kVelocitySigma_m_s = 0.005;  ///< standard deviation of the velocity at rest, per node
+  static constexpr double kRateSigma_rad_sqrts =
+      2e-3;  ///< standard deviation of the rate measured at rest, mean over 1 s
   /// maximum difference between mean rate and bias at rest, in standard deviations of the difference
   double rate_sigmas = 3.0;
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.velocity_sigma_m_s, {"rest_velocity_sigma_m_s", "m/s", 1e-12, 10.0,
-                                 "standard deviation of the velocity at rest, per filter correction"});
-    visit(p.rate_sigma_rad_sqrts, {"rest_rate_sigma_rad_sqrts", "rad/sqrt(s)", 1e-12, 1.0,
-                                   "standard deviation of the rate measured at rest, mean over 1 s"});
     visit(p.rate_sigmas, {"rest_rate_sigmas", "1", 1.0, 1e6,
                           "maximum difference between mean rate and bias at rest, in standard deviations"});
-  }
-};
-
-struct AttitudeRollingParams {
-  double velocity_sigma_m_s = 0.03;  ///< standard deviation of the velocity when rolling without slip, per node
-
-  template <class Self, class Visitor>
-  static void fields(Self& p, Visitor& visit) {
-    visit(p.velocity_sigma_m_s, {"rolling_velocity_sigma_m_s", "m/s", 1e-12, 10.0,
-                                 "standard deviation of the rolling velocity while gripping, per filter correction"});
   }
 };
 
 struct AttitudeGapParams {
   /// Random walks of the rate and velocity of tumbling bodies during a gap. On hills, stairs and cliffs, the true
   /// random walks over 0.05 to 0.5 s are 3.0 to 11.4 rad/s and 2.4 to 4.1 m/s per sqrt(s) (docs/figures.md).
-  double rate_walk_rad_s_sqrts = 7.0, velocity_walk_m_s_sqrts = 3.3;
+  double rate_walk_rad_s_sqrts = 7.0;
+  static constexpr double kVelocityWalk_m_s_sqrts = 3.3;
   /// Standard deviations of the tilt, per axis. Coarse alignment starts above `lost_tilt_rad`, where the linearised
   /// filter is invalid, and ends below `aligned_tilt_rad`.
-  double lost_tilt_rad = 0.3, aligned_tilt_rad = 0.4;
+  double lost_tilt_rad = 0.3;
+  static constexpr double kAlignedTilt_rad = 0.4;
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
     visit(p.rate_walk_rad_s_sqrts,
           {"gap_rate_walk_rad_s_sqrts", "rad/s/sqrt(s)", 0.0, 1e4, "random walk of the rate during a gap"});
-    visit(p.velocity_walk_m_s_sqrts,
-          {"gap_velocity_walk_m_s_sqrts", "m/s/sqrt(s)", 0.0, 1e4, "random walk of the velocity during a gap"});
     visit(p.lost_tilt_rad,
           {"gap_lost_tilt_rad", "rad", 1e-3, 1e4,
            "standard deviation of the tilt after a gap, above which TumbleAttitude initialises the tilt again"});
-    visit(p.aligned_tilt_rad, {"gap_aligned_tilt_rad", "rad", 1e-3, 1e4,
-                               "standard deviation of the tilt, below which the initialisation after a gap ends"});
   }
 };
 
 struct TumbleAttitudeExpertParams {
-  double bias_walk_rad_s_sqrts = 2e-6;  ///< random walk of the bias per sqrt(s)
-  double recovered_tau_s = 0.05;        ///< correlation time of the error of a recovered rate
-  double node_s = 0.04;                 ///< time between two corrections
+  static constexpr double kBiasWalk_rad_s_sqrts = 2e-6;  ///< random walk of the bias per sqrt(s)
+  double recovered_tau_s = 0.05;                         ///< correlation time of the error of a recovered rate
+  double node_s = 0.04;                                  ///< time between two corrections
   /// Averaging time of the readings. The thresholds of TumbleAttitude assume the default averaging time. An averaging
   /// time of 0 disables averaging.
   double reading_s = 4e-3;
@@ -70,20 +55,16 @@ struct TumbleAttitudeExpertParams {
                                .reading_s = 0.0,  // the readings are already averaged
                                .memory_s = 1.0};
   AttitudeRestParams at_rest = {};
-  AttitudeRollingParams rolling = {};
   AttitudeGapParams gap = {};
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.bias_walk_rad_s_sqrts,
-          {"bias_walk_rad_s_sqrts", "rad/s/sqrt(s)", 0.0, 1.0, "random walk of the gyro bias"});
     visit(p.recovered_tau_s, {"recovered_tau_s", "s", 1e-4, 1e4, "correlation time of the error of a recovered rate"});
     visit(p.node_s, {"node_s", "s", 1e-4, 1.0, "time between two filter corrections"});
     visit(p.reading_s, {"reading_s", "s", 0.0, 0.1, "duration over which readings are averaged; 0: no averaging"});
     visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1e4, "maximum time between two samples; a longer gap causes an error"});
     visit.group("rest_", p.rest);
     visit.group("", p.at_rest);
-    visit.group("", p.rolling);
     visit.group("", p.gap);
   }
 };

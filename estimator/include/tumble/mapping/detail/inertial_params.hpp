@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <optional>
-
 #include "tumble/common/parameters.hpp"
-#include "tumble/mapping/detail/flight_arc.hpp"
 
 namespace tumble {
 
@@ -74,20 +71,6 @@ struct SaturatedImuParams {
            FieldRank::basic});
     visit(p.estimate_deficit, switch_field("estimate_saturation_deficit",
                                            "1: estimate the saturation deficit of clipped axes in the registration"));
-  }
-};
-
-/// Below force_m_s2 at the centre of mass, the computed force of free flight replaces the accelerometer's reading. A
-/// gap of the IMU that begins in flight is bridged by the ballistic arc of flight_arc().
-struct FlightParams {
-  std::optional<FlyingBody> body;  ///< empty: always use the accelerometer
-  double force_m_s2 = 4.0;
-
-  template <class Self, class Visitor>
-  static void fields(Self& p, Visitor& visit) {
-    visit(p.force_m_s2,
-          {"flight_force_m_s2", "m/s^2", 0.0, 100.0,
-           "specific force at the centre of mass below which the body is in flight; applies only with flight_arc"});
   }
 };
 

@@ -21,14 +21,11 @@ struct OdometryExpertParams {
   int window_sweeps = 2;
   RestBoundsParams rest = {};
   OdometryStartParams start = {};
-  StandstillParams standstill = {};
   InertialNoiseParams prior = {};
   SaturatedImuParams rails = {};
-  FlightParams flight = {};
   LocalMapParams map = {};
   MatchingParams matching = {};
   TrackingParams tracking = {};
-  RelocalisationParams search = {};
   WorldCovarianceParams world = {};
 
   template <class Self, class Visitor>
@@ -47,11 +44,8 @@ struct OdometryExpertParams {
                             "number of newest sweeps that are refined together; each pose is final after this number "
                             "minus one of later sweeps",
                             FieldRank::basic});
-    visit.group("", p.flight);
     visit.group("", p.tracking);
     visit.group("start_", p.start);
-    visit.group("standstill_", p.standstill);
-    visit.group("search_", p.search);
     visit.group("world_", p.world);
   }
 };

@@ -71,23 +71,4 @@ struct TrackingParams {
   }
 };
 
-/// Starting poses for a sweep that was not registered from its prior, see docs/maths/mapping.md, heading "Verdicts and
-/// relocalisation".
-struct RelocalisationParams {
-  static constexpr double kShiftMin_m = 0.3, kRotationMin_rad = 0.1;  ///< closer starting poses converge to one pose
-  double shift_m = 1.0;       ///< distance of the other starting poses from the prior, first round
-  double rotation_rad = 0.3;  ///< rotation of the other starting poses from the prior, first round
-  int rounds = 3;             ///< number of rounds; each round adds shift_m and rotation_rad
-
-  template <class Self, class Visitor>
-  static void fields(Self& p, Visitor& visit) {
-    visit(p.shift_m, {"shift_m", "m", kShiftMin_m, 100.0,
-                      "maximum distance of a starting pose from the predicted pose in the first round"});
-    visit(p.rotation_rad, {"rotation_rad", "rad", kRotationMin_rad, 3.15,
-                           "maximum rotation of a starting pose from the predicted pose in the first round"});
-    visit(p.rounds, {"rounds", "1", 1, 100,
-                     "number of rounds of starting poses; each round adds shift_m and rotation_rad to the offsets"});
-  }
-};
-
 }  // namespace tumble

@@ -28,32 +28,22 @@ struct RestBoundsParams {
 struct OdometryStartParams {
   /// standard deviation of the initial tilt in the registration; larger than in WorldCovarianceParams, for starts in
   /// motion
-  double level_sigma_rad = 0.01;
+  static constexpr double kLevelSigma_rad = 0.01;
   double bias_rest_s = 0.1;  ///< minimum duration of a rest that determines the gyro's bias
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.level_sigma_rad,
-          {"level_sigma_rad", "rad", 1e-9, 1.0, "standard deviation of corrections to the levelled tilt"});
     visit(p.bias_rest_s,
           {"bias_rest_s", "s", 0.0, 60.0, "minimum duration of an initial rest that calibrates the gyro bias"});
   }
 };
 
-struct StandstillParams {
-  double sigma_m_s = 0.05;  ///< standard deviation of the velocity while the IMU measures only gravity
+struct Standstill {
+  static constexpr double kSigma_m_s =
+      0.05;  ///< standard deviation of the velocity while the IMU measures only gravity
   /// Maximum estimated speed of a robot that is treated as stationary while the IMU measures only gravity and no
   /// surface constrains the pose. The zero velocity prevents slow drift in a world without features.
-  double creep_max_m_s = 0.5;
-
-  template <class Self, class Visitor>
-  static void fields(Self& p, Visitor& visit) {
-    visit(p.sigma_m_s, {"sigma_m_s", "m/s", 1e-9, 100.0,
-                        "standard deviation of the velocity at a later rest, when the IMU measures only gravity"});
-    visit(p.creep_max_m_s,
-          {"creep_max_m_s", "m/s", 0.0, 100.0,
-           "if no surface constrains the pose, an IMU that measures only gravity is at rest below this speed"});
-  }
+  static constexpr double kCreepMax_m_s = 0.5;
 };
 
 }  // namespace tumble

@@ -26,10 +26,9 @@ struct MotionSample {
   Eigen::Vector3d rate_sigma_rad_s = Eigen::Vector3d::Zero();  ///< standard deviation of the rate, IMU axes
   std::uint8_t clipped_axes = 0;                               ///< bit j: gyro axis j was saturated
   std::uint8_t accel_saturated_axes = 0;                       ///< bit j: accelerometer axis j was saturated
-  bool at_rest = false;                                        ///< the sample belongs to the initial rest
-  std::optional<TimeNs> rest_start_ns;                         ///< first sample of the current rest, from the IMU alone
-  bool in_flight = false;    ///< f_I_m_s2 is the computed force of free flight, not a measurement
-  bool bridges_gap = false;  ///< the sample bridges a gap: unknown specific force, constant velocity
+  bool at_rest = false;                 ///< the sample belongs to the rest at the start of the run
+  std::optional<TimeNs> rest_start_ns;  ///< first sample of the current rest, from the IMU alone
+  bool bridges_gap = false;             ///< the sample bridges a gap: the force is unknown, the velocity constant
 };
 
 /// Motion of the IMU at one time. The covariance refers to position, attitude and velocity in world axes, with the

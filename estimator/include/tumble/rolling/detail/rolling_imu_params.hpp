@@ -8,8 +8,8 @@ namespace tumble {
 /// A prior standard deviation of 0 marks an exact quantity.
 struct RollingPriorParams {
   double tilt_sigma_rad = 6e-3;
-  double velocity_sigma_m_s = 2e-3;
-  double gyro_bias_sigma_rad_s = 8.7e-4;  ///< 0.05 deg/s
+  static constexpr double kVelocitySigma_m_s = 2e-3;  ///< initial velocity
+  double gyro_bias_sigma_rad_s = 8.7e-4;              ///< 0.05 deg/s
   double accel_bias_sigma_m_s2 = 0.04;
   double accel_scale_sigma = 3.5e-3;  ///< each entry of the scale and misalignment matrix
   double gyro_scale_sigma = 2.5e-3;
@@ -19,8 +19,6 @@ struct RollingPriorParams {
   static void fields(Self& p, Visitor& visit) {
     visit(p.tilt_sigma_rad, {"tilt_sigma_rad", "rad", 0.0, 1e3,
                              "prior standard deviation of the tilt from the first sample", FieldRank::basic});
-    visit(p.velocity_sigma_m_s,
-          {"velocity_sigma_m_s", "m/s", 0.0, 1e3, "prior standard deviation of the initial velocity"});
     visit(p.gyro_bias_sigma_rad_s,
           {"gyro_bias_sigma_rad_s", "rad/s", 0.0, 1e3, "prior standard deviation of the gyro bias", FieldRank::basic});
     visit(p.accel_bias_sigma_m_s2, {"accel_bias_sigma_m_s2", "m/s^2", 0.0, 1e3,
@@ -75,15 +73,14 @@ struct RollingRailParams {
 /// gap_min_duration_s, the specific force between the readings is unknown. RollingFilter interpolates the rate
 /// linearly.
 struct RollingGapParams {
-  double gap_min_duration_s = 0.06;
-  double gap_max_s = 1.0;  ///< a longer gap ends the estimation
+  static constexpr double kGapMinDuration_s =
+      0.06;                ///< a longer time between two readings is a gap, in which the force is unknown
+  double gap_max_s = 1.0;  ///< a longer gap ends the run
 
   template <class Self, class Visitor>
   static void fields(Self& p, Visitor& visit) {
-    visit(p.gap_min_duration_s,
-          {"gap_min_duration_s", "s", 1e-9, 1.0,
-           "minimum time between two readings that counts as a gap, in which the specific force is unknown"});
-    visit(p.gap_max_s, {"gap_max_s", "s", 1e-9, 1.0, "maximum time between two samples; a longer gap causes an error"});
+    visit(p.gap_max_s,
+          {"gap_max_s", "s", 1e-9, 1.0, "maximum time between two samples; a longer gap causes an error"});
   }
 };
 

@@ -28,24 +28,21 @@ class RollingSmoother {
   struct Params {
     RollingParams filter = {};
     /// ratio of the smoother's to RollingFilter's process noise; the reported covariance ignores this ratio
-    double final_pass_noise_ratio = 0.65;
-    double lag_s = kWholeRun;    ///< delay of an estimate behind the newest sample
-    double block_s = 0.2;        ///< RollingSmoother reports estimates in blocks of this duration
-    double rate_max_hz = 500.0;  ///< sample rate for which memory is allocated in advance
-    /// Measured horizontal distance of the centre between first and last sample, and its standard deviation; 0: not
+    static constexpr double kFinalPassNoiseRatio = 0.65;
+    double lag_s = kWholeRun;                ///< delay of an estimate behind the newest sample
+    static constexpr double kBlock_s = 0.2;  ///< RollingSmoother reports estimates in blocks of this duration
+    double rate_max_hz = 500.0;              ///< sample rate for which memory is allocated in advance
+    /// Measured horizontal distance of the centre between start and end of the run, and its standard deviation; 0: not
     /// measured. A measured distance corrects the radius of the sphere.
     double known_distance_m = 0.0, known_distance_sigma_m = 5e-3;
 
     template <class Self, class Visitor>
     static void fields(Self& p, Visitor& visit) {
       visit.group("", p.filter);
-      visit(p.final_pass_noise_ratio,
-            {"final_pass_noise_ratio", "1", 1e-6, 1.0,
-             "process noise of the smoother, as a share of the process noise of RollingFilter"});
-      visit(p.lag_s, {"lag_s", "s", 1e-3, 1e9,
-                      "maximum delay of a pose; a longer delay makes poses more accurate; 1e9: until the last sample",
-                      FieldRank::basic});
-      visit(p.block_s, {"block_s", "s", 1e-3, 1e3, "length of the blocks in which estimates are reported"});
+      visit(p.lag_s,
+            {"lag_s", "s", 1e-3, 1e9,
+             "maximum delay of a pose; a longer delay makes poses more accurate; 1e9: until the end of the run",
+             FieldRank::basic});
       visit(p.rate_max_hz,
             {"rate_max_hz", "Hz", 1e-3, 1e5, "sample rate for which the memory of the delay is allocated in advance"});
       visit(p.known_distance_m,

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "tumble/attitude/detail/regimes.hpp"
+#include "tumble/attitude/detail/spin_tracker.hpp"
+#include "tumble/common/parameters.hpp"
+
+namespace tumble {
+
+/// Parameters that RegimeSmoother and RegimeStream share.
+struct RegimeParams {
+  RegimeEvidence::Params evidence;
+  SpinTracker::Params spin;
+  double hand_held_probability_min = 0.02;  ///< minimum probability of hand-held motion for which its estimator runs
+  double segment_gap_max_s = 0.1;           ///< clipped samples closer together than this form one segment
+
+  template <class Self, class Visitor>
+  static void fields(Self& p, Visitor& visit) {
+    visit.group("evidence_", p.evidence);
+    visit.group("spin_", p.spin);
+    visit(p.hand_held_probability_min,
+          {"hand_held_probability_min", "1", 0.0, 1.0,
+           "minimum probability of hand-held motion for which the estimator of hand-held motion runs"});
+    visit(p.segment_gap_max_s, {"segment_gap_max_s", "s", 0.0, 10.0,
+                                "clipped samples that are less than this time apart belong to one saturated interval"});
+  }
+};
+
+}  // namespace tumble
