@@ -60,7 +60,7 @@ Method rate_saave() {
       "on jerk. docs/papers/rig.md compares the errors with those of the ICRA 2024 paper.";
   info.source = "Deschenes et al., Saturation-Aware Angular Velocity Estimation, ICRA 2024";
   info.settings = {&saave_settings()};
-  info.robots = {"rig", "pendulum"};
+  info.robots = {"rig", "pendulum", "sphere"};
   return make_method(std::move(info), run_rate_saave);
 }
 

@@ -187,7 +187,7 @@ Method rate_tumble() {
   info.ours = true;
   info.source = "ours: extends Deschenes et al., Saturation-Aware Angular Velocity Estimation, ICRA 2024";
   info.settings = {&rate_tumble_settings()};
-  info.robots = {"rig", "pendulum"};
+  info.robots = {"rig", "pendulum", "sphere"};
   info.calibrates_rig = true;
   return make_method(std::move(info),
                      [](const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {

@@ -128,7 +128,7 @@ Method rate_tumble_lag() {
       "Runs the smoother of rate/tumble as a stream, with the same factors in a sliding window and with a fixed lag.";
   info.ours = true;
   info.settings = {&rate_tumble_lag_settings()};
-  info.robots = {"rig", "pendulum"};
+  info.robots = {"rig", "pendulum", "sphere"};
   info.calibrates_rig = true;
   return make_method(std::move(info),
                      [](const sim::Sensors& sensors, const sim::Values& parameters, const OracleInput&) {

@@ -8,8 +8,9 @@
 namespace tumble::sim {
 
 std::span<const MotionType* const> all_motion_types() {
-  static const std::array kTypes = {&push_motion(),      &throw_motion(), &drop_motion(),   &hand_roll_motion(),
-                                    &hand_path_motion(), &twirl_motion(), &stroll_motion(), &swing_motion()};
+  static const std::array kTypes = {&push_motion(),      &throw_motion(),     &drop_motion(),
+                                    &hand_roll_motion(), &hand_path_motion(), &twirl_motion(),
+                                    &stroll_motion(),    &swing_motion(),     &launch_motion()};
   return kTypes;
 }
 

@@ -35,6 +35,7 @@ const MotionType& hand_path_motion();
 const MotionType& twirl_motion();
 const MotionType& stroll_motion();
 const MotionType& swing_motion();
+const MotionType& launch_motion();
 
 std::span<const MotionType* const> all_motion_types();
 const MotionType& find_motion_type(std::string_view name);

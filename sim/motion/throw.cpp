@@ -12,12 +12,12 @@ namespace {
 
 constexpr std::array kOwnThrowParameters = {
     Parameter{"rest_s", 1.75, 0.5, 30.0, "s", "time for which the robot is held still before the throw"},
-    Parameter{"throw_s", 0.3, 0.05, 2.0, "s",
+    Parameter{"throw_s", 0.3, 0.01, 2.0, "s",
               "duration of the swing; force and torque rise and fall as a raised cosine"},
     Parameter{"height_m", 1.0, 0.1, 10.0, "m", "height of the held robot's lowest point above the ground at the start"},
     Parameter{"yaw_rad", 0.0, -3.2, 3.2, "rad", "heading of the held robot; 0: its x axis points down the slope"},
-    Parameter{"velocity_m_s", 4.0, 0.0, 15.0, "m/s", "horizontal velocity at the release"},
-    Parameter{"lift_m_s", 4.0, 0.0, 15.0, "m/s", "upward velocity at the release"},
+    Parameter{"velocity_m_s", 4.0, 0.0, 50.0, "m/s", "horizontal velocity at the release"},
+    Parameter{"lift_m_s", 4.0, 0.0, 50.0, "m/s", "upward velocity at the release"},
 };
 constexpr std::array kThrowParameters = joined(kOwnThrowParameters, kImpulseParameters);
 

@@ -9,7 +9,7 @@
 namespace tumble::sim {
 
 inline constexpr std::array kRoomParameters = {
-    Parameter{"room_half_m", 5.0, 2.5, 30.0, "m", "half width of the square room"},
+    Parameter{"room_half_m", 5.0, 2.5, 1000.0, "m", "half width of the square room"},
     Parameter{"wall_height_m", 2.5, 0.2, 10.0, "m", "height of the four walls"},
     Parameter{"ceiling", 0.0, 0.0, 1.0, "1",
               "1: the room has a ceiling, which is transparent in pictures; 0: no ceiling"},

@@ -2,8 +2,10 @@
 #include "tumble/attitude/detail/regime_smoother.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "tumble/angular_velocity/detail/interpolated_rates.hpp"
 #include "tumble/attitude/detail/clipped_readings.hpp"
@@ -23,6 +25,17 @@ std::vector<ImuSample> interpolate_forces(std::span<const ImuSample> samples) {
   const std::vector<Eigen::Vector3d> forces = forces_between_readings(samples);
   for (std::size_t k = 0; k < forces.size(); ++k) out[k].specific_force_m_s2 = forces[k];
   return out;
+}
+
+/// Returns the bits of SpinTracker for the saturated axes of the accelerometer.
+std::uint8_t saturated_forces(const ImuSample& sample, const RateReport& report) {
+  constexpr double kMargin = 0.95;  // the saturation limits differ between the axes
+  unsigned out = 0;
+  for (int j = 0; j < 3; ++j) {
+    const std::optional<double>& rail = report.rail[static_cast<std::size_t>(3 + j)];
+    if (rail && std::abs(sample.specific_force_m_s2[j]) > kMargin * *rail) out |= 8u << j;
+  }
+  return static_cast<std::uint8_t>(out);
 }
 
 }  // namespace
@@ -60,7 +73,8 @@ void RegimeSmoother::join_spin(std::span<const ImuSample> samples, bool further_
                                Report& report) const {
   std::vector<std::uint8_t> saturated_axes(samples.size());
   for (std::size_t k = 0; k < samples.size(); ++k)
-    saturated_axes[k] = static_cast<std::uint8_t>(rates[k].clipped_axes | report.rate.suspect_axes[k]);
+    saturated_axes[k] = static_cast<std::uint8_t>(rates[k].clipped_axes | report.rate.suspect_axes[k] |
+                                                  saturated_forces(samples[k], report.rate));
   const std::vector<SpinRate> spins = spin_.smooth(samples, saturated_axes);
   for (std::size_t k = 0; k < samples.size(); ++k) {
     rates[k] = spin_.combine(rates[k], spins[k], further_imus);

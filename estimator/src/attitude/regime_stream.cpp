@@ -112,7 +112,8 @@ Status RegimeStream::push(const ImuSample& sample, std::span<const AuxiliaryRead
 
 SpinRate RegimeStream::track_spin(const RateState& rate, State& state) const {
   const RateObservation& observation = state.rate.window[index_of(rate, state)].observation;
-  const auto saturated = static_cast<std::uint8_t>(observation.unmeasured_axes() | observation.partly_saturated_axes());
+  const auto saturated = static_cast<std::uint8_t>(observation.unmeasured_axes() | observation.partly_saturated_axes() |
+                                                   observation.clipping.accel << 3);
   return spin_.step(observation.sample, saturated, state.spin);
 }
 

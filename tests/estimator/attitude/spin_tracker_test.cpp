@@ -114,6 +114,46 @@ TEST(SpinTracker, FollowsASpinBeyondTheSaturationLimit) {
   }
 }
 
+/// Replaces the specific force by that of a lever arm, of an air force that is constant in the world, and of noise. The
+/// rate across the spin axis becomes noise.
+SpinRecording with_force(const SteadySpin& spin, double turning) {
+  SpinRecording out = record_spin(spin);
+  std::mt19937 random(8);
+  std::normal_distribution<double> noise(0.0, 0.2);
+  for (std::size_t k = 0; k < out.samples.size(); ++k) {
+    const double t = static_cast<double>(k) * kSpinPeriod_s, phase = -turning * spin.angle(t), s = out.rate_rad_s[k];
+    const int a = (spin.axis + 1) % 3, b = (spin.axis + 2) % 3;
+    out.samples[k].specific_force_m_s2[a] = -s * s * 0.01 + 3.0 * std::cos(phase) + noise(random);
+    out.samples[k].specific_force_m_s2[b] = s * s * 0.005 + 3.0 * std::sin(phase) + noise(random);
+    out.samples[k].angular_velocity_rad_s[a] = out.samples[k].angular_velocity_rad_s[b] = noise(random);
+  }
+  return out;
+}
+
+TEST(SpinTracker, FollowsASpinByTheForceAlone) {
+  for (const int axis : {0, 1, 2}) {
+    SteadySpin spin;
+    spin.axis = axis, spin.sign = axis == 1 ? -1.0 : 1.0;
+    const SpinRecording recording = with_force(spin, 1.0);
+    for (const SpinErrors& each :
+         {spin_errors(recording, track_spin(recording)), spin_errors(recording, smooth_spin(recording))}) {
+      EXPECT_LT(each.median_rad_s, 0.5) << axis;
+      EXPECT_GT(each.coverage, 0.97) << axis;
+      EXPECT_GT(each.probability_min, 0.9) << axis;
+    }
+  }
+}
+
+// Negative control: the force turns against the spin, and the rate across the spin axis is noise.
+TEST(SpinTracker, RejectsAForceWithoutRelationToTheSpin) {
+  SpinRecording recording = with_force({}, -1.0);
+  for (std::size_t k = 0; k < recording.samples.size(); ++k) {
+    const double s = recording.rate_rad_s[k];
+    recording.samples[k].specific_force_m_s2 += Eigen::Vector3d(0.0, s * s * 0.01, -s * s * 0.005);
+  }
+  EXPECT_LT(spin_errors(recording, track_spin(recording)).probability_max, 0.5);
+}
+
 // Negative control: the rate across the spin axis turns in the opposite sense, slower, or not at all.
 TEST(SpinTracker, RejectsMotionWithoutRelationToTheSpin) {
   for (const double turning : {-1.0, 0.3, 0.0}) {

@@ -20,20 +20,28 @@ struct SpinRate {
   bool saturated = false;    ///< the gyro axis of the spin is saturated or possibly saturated
 };
 
-/// Estimates the rate of a steady spin from the two gyro axes across the spin axis, also while the spin axis is
-/// saturated.
+/// SpinFilter is the state of one Kalman filter; spin_models.hpp defines the components of `x`.
+template <int N>
+struct SpinFilter {
+  Eigen::Matrix<double, N, 1> x = Eigen::Matrix<double, N, 1>::Zero();
+  Eigen::Matrix<double, N, N> P = Eigen::Matrix<double, N, N>::Zero();
+  double variance_ratio = 1.0;  ///< ratio of the measured to the assumed variance of the readings across the spin axis
+};
+
+/// Estimates the rate of a steady spin while the gyro axis of the spin is saturated, from the readings across the spin
+/// axis.
 ///
-/// The axis of a spinning body that is long or has a steady load turns slowly in the world. The rate across the spin
-/// axis is then the sum of a part that is constant in the world and a part that is constant in the body. The gyro
-/// measures the first part modulated at the frequency of the spin: carried.md (C45). SpinTracker estimates both parts
-/// and the rate of the spin with an extended Kalman filter. The estimate needs no lever arm and no accelerometer, so
-/// drag, thrust and vibration of the accelerometer do not affect the estimate.
+/// - **Modulation of the rate:** The axis of a spinning body that is long or has a steady load turns slowly in the
+///   world. The rate across the spin axis is then the sum of a part that is constant in the body and a part that the
+///   gyro measures modulated at the frequency of the spin: carried.md (C45).
+/// - **Centripetal force:** The specific force across the spin axis grows with the squared rate: carried.md (C50). The
+///   lever arm is estimated while the spin axis is unsaturated.
 ///
-/// A second filter assumes that the rate across the spin axis changes independently of the spin. The likelihood ratio
-/// of both filters determines the probability of a steady spin. Only samples with an unsaturated spin axis increase the
-/// probability, because any modulation agrees with some rate beyond the saturation limit. SpinTracker assumes that the
-/// spin axis is close to one gyro axis, and that the body turns by less than half a revolution between two samples.
-/// Cost: O(1) per sample.
+/// For each of both, an extended Kalman filter assumes a steady spin, and a second filter assumes readings that change
+/// independently of the spin. The likelihood ratio of both filters determines the probability of a steady spin. Only
+/// samples with an unsaturated spin axis increase the probability, because any modulation agrees with some rate beyond
+/// the saturation limit. SpinTracker assumes that the spin axis is close to one gyro axis, and that the body turns by
+/// less than half a revolution between two samples. Cost: O(1) per sample.
 class SpinTracker {
  public:
   struct Params {
@@ -44,6 +52,7 @@ class SpinTracker {
     double memory_s = 0.2;
     double changes_hz = 0.02;
     double probability_min = 0.1;
+    double body_size_m = 0.3;
 
     /// Calls `visit` once for each parameter, with its value, name, unit, bounds and meaning.
     template <class Self, class Visitor>
@@ -62,23 +71,22 @@ class SpinTracker {
       visit(p.changes_hz, {"changes_hz", "Hz", 1e-9, 10.0, "assumed frequency of starts and ends of a steady spin"});
       visit(p.probability_min, {"probability_min", "1", 0.0, 1.0,
                                 "minimum probability of a steady spin that changes the rate of a saturated axis"});
+      visit(p.body_size_m,
+            {"body_size_m", "m", 1e-3, 100.0,
+             "size of the body: prior standard deviation of the lever arm from the spin axis to the IMU"});
     }
   };
-  using Vector = Eigen::Matrix<double, 6, 1>;
-  using Matrix = Eigen::Matrix<double, 6, 6>;
-
-  /// Filter is the state of one Kalman filter: rate and angular acceleration about the spin axis, and the rate across
-  /// the spin axis that is constant in the world (two components) and in the body (two components), in body axes.
-  struct Filter {
-    Vector x = Vector::Zero();
-    Matrix P = Matrix::Zero();
-    double variance_ratio = 1.0;  ///< ratio of the measured to the assumed variance of the rate across the spin axis
+  /// Hypotheses are a steady spin and readings without relation to the spin.
+  template <int N>
+  struct Hypotheses {
+    SpinFilter<N> spin, independent;
+    double probability = 0.0;           ///< probability of a steady spin
+    double measured_probability = 0.0;  ///< `probability` at the last sample with an unsaturated spin axis
   };
   struct State {
-    Filter spin, independent;
+    Hypotheses<6> modulation;
+    Hypotheses<8> centripetal;
     int axis = -1;
-    double probability = 0.0;
-    double measured_probability = 0.0;  ///< `probability` at the last sample with an unsaturated spin axis
     TimeNs time_ns = 0;
   };
 
@@ -86,11 +94,11 @@ class SpinTracker {
   explicit SpinTracker(const Params& params);
 
   /// Processes the next finite sample. Bit j of `saturated_axes` states that the reading of gyro axis j is saturated or
-  /// possibly saturated.
+  /// possibly saturated, and bit 3 + j that the reading of accelerometer axis j is saturated.
   SpinRate step(const ImuSample& sample, std::uint8_t saturated_axes, State& state) const;
 
   /// Returns the rate of the spin at each sample of a recording, from all earlier and later samples of the spin. The
-  /// argument `saturated_axes` contains one value per sample. Memory: about 1 kB per sample of the longest spin.
+  /// argument `saturated_axes` contains one value per sample. Memory: about 2 kB per sample of the longest spin.
   std::vector<SpinRate> smooth(std::span<const ImuSample> samples, std::span<const std::uint8_t> saturated_axes) const;
 
   /// Combines a rate with the rate of the spin by the probability of a steady spin. The result equals `rate` if the
@@ -99,14 +107,10 @@ class SpinTracker {
   RateState combine(const RateState& rate, const SpinRate& spin, bool further_imus = false) const;
 
  private:
-  struct Prediction;
-  struct Recorded;
-  bool select_axis(const ImuSample& sample, std::uint8_t saturated_axes, State& state) const;
-  Prediction predict(const Filter& filter, double turning, double dt_s) const;
-  double update(const Prediction& predicted, const ImuSample& sample, std::uint8_t saturated_axes, int axis,
-                double dt_s, Filter& filter) const;
-  SpinRate advance(const ImuSample& sample, std::uint8_t saturated_axes, State& state, Recorded* recorded) const;
-  void smooth(std::span<const Recorded> run, std::span<SpinRate> out) const;
+  bool select_axis(const ImuSample& sample, State& state) const;
+  template <class Model, class Recorder>
+  SpinRate advance(const Model& model, const ImuSample& sample, std::uint8_t saturated_axes, double dt_s, bool first,
+                   int axis, Hypotheses<Model::kStates>& hypotheses, const Recorder& record) const;
 
   Params params_;
 };

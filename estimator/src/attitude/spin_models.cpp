@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "spin_models.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "tumble/common/detail/scalar_update.hpp"
+#include "tumble/common/detail/squared.hpp"
+
+namespace tumble {
+
+namespace {
+
+using Eigen::Matrix2d;
+using Eigen::Vector2d;
+
+constexpr int kRate = 0, kAcceleration = 1;
+constexpr int kTurning = 2, kFixed = 4;               // of Modulation
+constexpr int kArm = 2, kForce = 4, kWorldForce = 6;  // of Centripetal
+constexpr double kReading_s = 0.01;                   // time within which vibration is correlated
+constexpr double kScaleMemory_s = 0.5;                // averaging time of the variance ratio
+constexpr double kVarianceRatioMax = 1e3;             // bounds of the variance ratio
+constexpr double kReadingSigma_rad_s = 0.02;          // of an unsaturated reading
+constexpr double kRailSigma_rad_s = 0.1;              // of a lower bound
+constexpr double kStartSigma_rad_s = 1.0, kStartSigma_rad_s2 = 10.0, kStartSaturatedRatio = 0.5;
+constexpr double kForceSigma_m_s2 = 0.3, kForceWalk_m_s2_sqrts = 0.1, kVibration_m_s2 = 0.5;
+// Angular jerk relative to that of Modulation: the air changes the spin slowly.
+constexpr double kForceJerkRatio = 0.3;
+constexpr double kWorldForceSigma_m_s2 = 3.0, kWorldForceWalk_m_s2_sqrts = 1.0;
+
+// Returns the two axes across the spin axis, in the order of a right-handed frame.
+Vector2d across(const Eigen::Vector3d& v, int axis) {
+  return {v[(axis + 1) % 3], v[(axis + 2) % 3]};
+}
+
+bool is_set(std::uint8_t axes, int axis) {
+  return (axes >> axis & 1u) != 0;
+}
+
+bool across_is_valid(std::uint8_t axes, int axis) {
+  return (axes & 7u & ~(1u << axis)) == 0;
+}
+
+SpinReading rate_reading(const ImuSample& sample, std::uint8_t saturated_axes, int axis, double dt_s) {
+  SpinReading out;
+  out.rate_rad_s = sample.angular_velocity_rad_s[axis];
+  out.saturated = is_set(saturated_axes, axis);
+  out.dt_s = dt_s;
+  return out;
+}
+
+template <int N>
+SpinFilter<N> start_filter(const SpinReading& reading) {
+  SpinFilter<N> out;
+  out.x[kRate] = reading.rate_rad_s;
+  out.P.diagonal().setConstant(squared(kStartSigma_rad_s));
+  out.P(kAcceleration, kAcceleration) = squared(kStartSigma_rad_s2);
+  if (reading.saturated) out.P(kRate, kRate) = squared(kStartSaturatedRatio * reading.rate_rad_s);
+  return out;
+}
+
+// Predicts rate and angular acceleration in `out.x`, and the covariance with the derivatives `out.F`.
+template <int N>
+void predict_spin(const SpinFilter<N>& filter, double jerk_rad_s3_sqrts, double dt_s, SpinPrediction<N>& out) {
+  out.F(kRate, kAcceleration) = dt_s;
+  out.x[kRate] += dt_s * filter.x[kAcceleration];
+  out.P = out.F * filter.P * out.F.transpose();
+  const double jerk = squared(jerk_rad_s3_sqrts) * dt_s;
+  out.P(kRate, kRate) += jerk * dt_s * dt_s / 3.0;
+  out.P(kRate, kAcceleration) += 0.5 * jerk * dt_s;
+  out.P(kAcceleration, kRate) += 0.5 * jerk * dt_s;
+  out.P(kAcceleration, kAcceleration) += jerk;
+}
+
+// Turns the components `part` of the state by the angle -ratio * (angle of the spin), with the derivatives `out.F`. In
+// the axes of the body, a vector that is constant in the world turns by minus the angle of the spin.
+template <int N>
+void turn_part(const SpinFilter<N>& filter, int part, double related, double dt_s, SpinPrediction<N>& out) {
+  const auto& x = filter.x;
+  const double angle = -related * dt_s * (x[kRate] + 0.5 * dt_s * x[kAcceleration]);
+  const double c = std::cos(angle), s = std::sin(angle);
+  const Matrix2d turn = (Matrix2d() << c, -s, s, c).finished();
+  const Vector2d by_angle = (Matrix2d() << -s, -c, c, -s).finished() * x.template segment<2>(part);
+  out.F.template block<2, 2>(part, part) = turn;
+  out.F.template block<2, 1>(part, kRate) = -related * dt_s * by_angle;
+  out.F.template block<2, 1>(part, kAcceleration) = -0.5 * related * dt_s * dt_s * by_angle;
+  out.x.template segment<2>(part) = turn * x.template segment<2>(part);
+}
+
+// Updates a filter with the readings across the spin axis. Returns their log likelihood: (C47), (C48) of carried.md.
+template <int N>
+double update_across(const Eigen::Matrix<double, 2, N>& H, const Vector2d& innovation, double sigma, double dt_s,
+                     SpinFilter<N>& filter) {
+  const double variance = filter.variance_ratio * squared(sigma) * std::max(1.0, kReading_s / std::max(dt_s, 1e-6));
+  const Matrix2d noise = variance * Matrix2d::Identity();
+  const Matrix2d S = H * filter.P * H.transpose() + noise;
+  const double squared_norm = innovation.dot(S.inverse() * innovation);
+  filter.x += vector_update<2, N>(H, innovation, noise, filter.P);
+  const double ratio = 1.0 + std::min(1.0, dt_s / kScaleMemory_s) * (0.5 * squared_norm - 1.0);
+  filter.variance_ratio = std::clamp(ratio * filter.variance_ratio, 1.0 / kVarianceRatioMax, kVarianceRatioMax);
+  return -0.5 * (squared_norm + std::log(S.determinant()));
+}
+
+// A saturated reading is a lower bound, which moves only a smaller estimate. After an overflow, the reading has the
+// wrong sign and no information. If `keeps_variance` is true, a bound does not reduce the variance.
+template <int N>
+void update_rate(const SpinReading& reading, bool keeps_variance, SpinFilter<N>& filter) {
+  const double innovation = reading.rate_rad_s - filter.x[kRate];
+  if (!reading.saturated) {
+    filter.x += component_update<N>(kRate, innovation, squared(kReadingSigma_rad_s), filter.P);
+  } else if (innovation * reading.rate_rad_s > 0.0 && filter.x[kRate] * reading.rate_rad_s > 0.0) {
+    Eigen::Matrix<double, N, N> bounded = filter.P;
+    filter.x += component_update<N>(kRate, innovation, squared(kRailSigma_rad_s), bounded);
+    if (!keeps_variance) filter.P = bounded;
+  }
+  filter.P = (0.5 * (filter.P + filter.P.transpose())).eval();
+}
+
+}  // namespace
+
+SpinReading Modulation::reading(const ImuSample& sample, std::uint8_t saturated_axes, int axis, double dt_s) const {
+  SpinReading out = rate_reading(sample, saturated_axes, axis, dt_s);
+  out.across = tumble::across(sample.angular_velocity_rad_s, axis);
+  out.across_valid = across_is_valid(saturated_axes, axis);
+  return out;
+}
+
+Modulation::Filter Modulation::start(const SpinReading& reading) const {
+  Filter out = start_filter<kStates>(reading);
+  out.x.segment<2>(kFixed) = reading.across;
+  return out;
+}
+
+SpinPrediction<Modulation::kStates> Modulation::predict(const Filter& filter, double related, double dt_s) const {
+  SpinPrediction<kStates> out;
+  out.F.setIdentity();
+  out.x = filter.x;
+  turn_part(filter, kTurning, related, dt_s, out);
+  predict_spin(filter, params.jerk_rad_s3_sqrts, dt_s, out);
+  out.P.diagonal().segment<4>(kTurning).array() += filter.variance_ratio * squared(params.walk_rad_s_sqrts) * dt_s;
+  return out;
+}
+
+double Modulation::update(const SpinPrediction<kStates>& predicted, const SpinReading& reading, double,
+                          Filter& filter) const {
+  filter.x = predicted.x;
+  filter.P = predicted.P;
+  double log_likelihood = 0.0;
+  if (reading.across_valid) {
+    Eigen::Matrix<double, 2, kStates> H = Eigen::Matrix<double, 2, kStates>::Zero();
+    H.block<2, 2>(0, kTurning).setIdentity();
+    H.block<2, 2>(0, kFixed).setIdentity();
+    log_likelihood =
+        update_across<kStates>(H, reading.across - H * filter.x, params.vibration_rad_s, reading.dt_s, filter);
+  }
+  update_rate(reading, false, filter);
+  return log_likelihood;
+}
+
+SpinReading Centripetal::reading(const ImuSample& sample, std::uint8_t saturated_axes, int axis, double dt_s) const {
+  SpinReading out = rate_reading(sample, saturated_axes, axis, dt_s);
+  out.across = tumble::across(sample.specific_force_m_s2, axis);
+  out.across_valid = across_is_valid(static_cast<std::uint8_t>(saturated_axes >> 3), axis);
+  return out;
+}
+
+Centripetal::Filter Centripetal::start(const SpinReading& reading) const {
+  Filter out = start_filter<kStates>(reading);
+  out.P.diagonal().segment<2>(kArm).setConstant(squared(params.body_size_m));
+  out.P.diagonal().segment<2>(kForce).setConstant(squared(kForceSigma_m_s2));
+  out.P.diagonal().segment<2>(kWorldForce).setConstant(squared(kWorldForceSigma_m_s2));
+  return out;
+}
+
+SpinPrediction<Centripetal::kStates> Centripetal::predict(const Filter& filter, double related, double dt_s) const {
+  SpinPrediction<kStates> out;
+  out.F.setIdentity();
+  out.x = filter.x;
+  turn_part(filter, kWorldForce, related, dt_s, out);
+  predict_spin(filter, kForceJerkRatio * params.jerk_rad_s3_sqrts, dt_s, out);
+  const double scale = filter.variance_ratio * dt_s;
+  out.P.diagonal().segment<2>(kForce).array() += scale * squared(kForceWalk_m_s2_sqrts);
+  out.P.diagonal().segment<2>(kWorldForce).array() += scale * squared(kWorldForceWalk_m_s2_sqrts);
+  return out;
+}
+
+double Centripetal::update(const SpinPrediction<kStates>& predicted, const SpinReading& reading, double related,
+                           Filter& filter) const {
+  filter.x = predicted.x;
+  filter.P = predicted.P;
+  double log_likelihood = 0.0;
+  if (reading.across_valid) {
+    const double rate = filter.x[kRate], acceleration = filter.x[kAcceleration];
+    const Vector2d arm = filter.x.segment<2>(kArm), turned(-arm.y(), arm.x());
+    const Matrix2d by_arm = (Matrix2d() << -rate * rate, -acceleration, acceleration, -rate * rate).finished();
+    Eigen::Matrix<double, 2, kStates> H = Eigen::Matrix<double, 2, kStates>::Zero();
+    H.col(kRate) = -2.0 * related * rate * arm;
+    H.col(kAcceleration) = related * turned;
+    H.block<2, 2>(0, kArm) = related * by_arm;
+    H.block<2, 2>(0, kForce).setIdentity();
+    H.block<2, 2>(0, kWorldForce).setIdentity();
+    const Vector2d predicted_force =
+        related * by_arm * arm + filter.x.segment<2>(kForce) + filter.x.segment<2>(kWorldForce);
+    log_likelihood = update_across<kStates>(H, reading.across - predicted_force, kVibration_m_s2, reading.dt_s, filter);
+  }
+  update_rate(reading, true, filter);
+  return log_likelihood;
+}
+
+}  // namespace tumble

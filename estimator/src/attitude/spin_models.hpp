@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+
+#include "tumble/attitude/detail/spin_tracker.hpp"
+
+namespace tumble {
+
+// Measurement models of a steady spin. The first two states of each model are the rate and the angular acceleration
+// about the spin axis. `related` is 1 for a steady spin, and 0 for the filter that assumes no relation to the spin.
+
+template <int N>
+struct SpinPrediction {
+  Eigen::Matrix<double, N, 1> x;
+  Eigen::Matrix<double, N, N> P, F;
+};
+
+/// SpinReading is one sample about a spin axis: the readings of the two axes across the spin axis, in the order of a
+/// right-handed frame.
+struct SpinReading {
+  double rate_rad_s = 0.0;
+  bool saturated = false;
+  Eigen::Vector2d across = Eigen::Vector2d::Zero();  ///< gyro [rad/s] or accelerometer [m/s^2]
+  bool across_valid = false;                         ///< both axes are unsaturated
+  double dt_s = 0.0;
+};
+
+/// Modulation models the rate across the spin axis, equations (C45) and (C46) of carried.md. After rate and angular
+/// acceleration, the states are the parts that are constant in the world (two components) and in the body (two
+/// components), in body axes.
+struct Modulation {
+  static constexpr int kStates = 6;
+  using Filter = SpinFilter<kStates>;
+  const SpinTracker::Params& params;
+
+  SpinReading reading(const ImuSample& sample, std::uint8_t saturated_axes, int axis, double dt_s) const;
+  Filter start(const SpinReading& reading) const;
+  SpinPrediction<kStates> predict(const Filter& filter, double related, double dt_s) const;
+  double update(const SpinPrediction<kStates>& predicted, const SpinReading& reading, double related,
+                Filter& filter) const;
+};
+
+/// Centripetal models the specific force across the spin axis, equations (C50) and (C51) of carried.md. After rate and
+/// angular acceleration, the states are two components each, across the spin axis in body axes: the lever arm, the
+/// external force that is constant in the body, and the external force that is constant in the world.
+struct Centripetal {
+  static constexpr int kStates = 8;
+  using Filter = SpinFilter<kStates>;
+  const SpinTracker::Params& params;
+
+  SpinReading reading(const ImuSample& sample, std::uint8_t saturated_axes, int axis, double dt_s) const;
+  Filter start(const SpinReading& reading) const;
+  SpinPrediction<kStates> predict(const Filter& filter, double related, double dt_s) const;
+  double update(const SpinPrediction<kStates>& predicted, const SpinReading& reading, double related,
+                Filter& filter) const;
+};
+
+}  // namespace tumble
