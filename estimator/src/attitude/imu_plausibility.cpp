@@ -116,7 +116,7 @@ void ImuPlausibility::process_average(State& state) const {
     state.length_s = 0.0;
     state.window_started = true;
     state.in_range = true;
-    state.force_is_constant = force.norm() >= kDirectionForceRatioMin;
+    state.force_is_constant = force.norm() >= kDirectionForceRatioMin * params_.gravity_m_s2;
   }
 }
 

@@ -229,7 +229,7 @@ std::vector<FramePose> PriorScene::search(const std::vector<SurfacePoint>& point
   for (const SurfacePoint& point : points)
     if (slope_class(point.normal_W) >= 2) anchors.push_back(point);
   if (anchors.empty() || cells_.empty()) return {};
-  const SurfacePoint anchor = anchors[std::min(7 * attempt, anchors.size() - 1)];
+  const SurfacePoint anchor = anchors[7 * attempt % anchors.size()];
 
   std::vector<FramePose> starts;
   for (const Candidate& candidate : best_candidates(points, anchor, region, tried)) {
